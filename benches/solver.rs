@@ -1,0 +1,95 @@
+//! What the solver costs: `cargo bench --bench solver`. Read the figures as ratios to each other.
+//!
+//! The hand-over to the blocking pool is measured in the same run, since it decides what is worth handing over.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use stickslip::mechanics::protocol::falling_amplitude;
+use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Springs, Tangential};
+
+const REVERSALS: usize = 20;
+const RADII: usize = 200;
+
+fn setup() -> Setup {
+    Setup {
+        profile: Profile::Sphere(Sphere::new(0.01).expect("a valid radius")),
+        elasticity: Elasticity::effective(1.15e11, 8.5e10).expect("valid moduli"),
+        friction: 0.3,
+        preload: Preload::NormalForce(10.0),
+    }
+}
+
+fn virgin() -> Contact {
+    Contact::new(setup()).expect("a valid contact")
+}
+
+fn to(displacement: f64) -> Move {
+    Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() }
+}
+
+fn exact_scene() -> f64 {
+    let mut contact = virgin();
+    let figures = contact.figures();
+    for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
+        contact.apply(&to(target)).expect("a displacement has no limit");
+    }
+    (0..RADII).map(|index| contact.shear(figures.contact_radius * index as f64 / RADII as f64)).sum()
+}
+
+fn springs_scene(count: usize) -> f64 {
+    let figures = virgin().figures();
+    let mut springs = Springs::new(setup(), count, figures.contact_radius).expect("a valid count");
+    for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
+        springs.apply(&to(target)).expect("a displacement has no limit");
+    }
+    (0..RADII).map(|index| springs.shear(figures.contact_radius * index as f64 / RADII as f64)).sum()
+}
+
+/// Random positions within gross slip, the same in every run.
+fn positions(count: usize, unit: f64) -> Vec<f64> {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..count).map(|_| (2.0 * next() - 1.0) * unit).collect()
+}
+
+fn moves(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("move at constant load");
+    for history in [1_000, 1_000_000] {
+        let mut contact = virgin();
+        let path = positions(history, contact.figures().gross_slip_displacement);
+        for &target in &path {
+            contact.apply(&to(target)).expect("a displacement has no limit");
+        }
+        let mut targets = path.iter().cycle();
+        group.bench_function(format!("after {history} moves"), |bencher| {
+            bencher.iter(|| contact.apply(&to(*targets.next().expect("the cycle is endless"))));
+        });
+    }
+    group.finish();
+}
+
+fn scenes(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("20 reversals and 200 radii");
+    group.sample_size(20);
+    group.bench_function("exact", |bencher| bencher.iter(|| black_box(exact_scene())));
+    for count in [100, 1_000, 10_000] {
+        group.bench_function(format!("{count} springs"), |bencher| bencher.iter(|| black_box(springs_scene(count))));
+    }
+    group.finish();
+}
+
+fn hand_over(criterion: &mut Criterion) {
+    let runtime = tokio::runtime::Builder::new_multi_thread().build().expect("threads are to be had");
+    criterion.bench_function("hand-over to the blocking pool and back", |bencher| {
+        bencher.iter(|| {
+            runtime.block_on(async { tokio::spawn(async { tokio::task::spawn_blocking(|| black_box(1)).await }).await })
+        });
+    });
+}
+
+criterion_group!(benches, moves, scenes, hand_over);
+criterion_main!(benches);

@@ -1,0 +1,396 @@
+//! A contact with its history: what it is made of, how it moves, what state it is in.
+
+use super::double::Double;
+use super::elasticity::Elasticity;
+use super::error::Error;
+use super::memory::Memory;
+use super::normal::{self, Figures, Preload};
+use super::profile::{At, Point, Profile};
+use super::range;
+use super::route::{Approach, DEFAULT_TOLERANCE, Route, Stop, Tangent};
+
+/// What a contact is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The shape of the indenter.
+    pub profile: Profile,
+    /// The reduced moduli.
+    pub elasticity: Elasticity,
+    /// Coulomb's coefficient of friction mu.
+    pub friction: f64,
+    /// The normal load that the virgin contact starts with.
+    pub preload: Preload,
+}
+
+/// Where a move leads, along a straight line in the quantities that it names.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Move {
+    /// The tangential target; without one the displacement stays.
+    pub tangential: Option<Tangential>,
+    /// The normal target; without one the indentation stays.
+    pub normal: Option<Normal>,
+    /// Whether the numbers are increments.
+    pub relative: bool,
+}
+
+/// A tangential target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tangential {
+    /// Displacement U of the indenter, m.
+    Displacement(f64),
+    /// Tangential force F_x, N.
+    Force(f64),
+}
+
+/// A normal target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Normal {
+    /// Indentation d, m; below nought the bodies part.
+    Indentation(f64),
+    /// Normal force F_N, N.
+    NormalForce(f64),
+}
+
+/// What the last move did to the contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regime {
+    /// Nothing slipped.
+    Stick,
+    /// An outer ring slipped.
+    PartialSlip,
+    /// All of it slipped.
+    GrossSlip,
+    /// There is no contact.
+    Separated,
+}
+
+/// The state after a move. Positive displacement gives positive force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Tangential displacement U of the indenter, m.
+    pub displacement: f64,
+    /// Tangential force F_x, N.
+    pub force: f64,
+    /// Indentation d, m.
+    pub indentation: f64,
+    /// Normal force F_N, N.
+    pub normal_force: f64,
+    /// Contact radius a, m.
+    pub contact_radius: f64,
+    /// Radius of the part that did not slip in the last move, m.
+    pub stick_radius: f64,
+    /// What the last move did.
+    pub regime: Regime,
+    /// Friction work since the start, J.
+    pub dissipated_energy: f64,
+    /// Elastic energy of the tangential deformation, J.
+    pub elastic_energy: f64,
+    /// Pieces held in memory.
+    pub memory_depth: usize,
+}
+
+/// A frictional contact, solved exactly.
+///
+/// ```
+/// use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+///
+/// let mut contact = Contact::new(Setup {
+///     profile: Profile::Sphere(Sphere::new(0.01)?),
+///     elasticity: Elasticity::effective(1.15e11, 8.5e10)?,
+///     friction: 0.3,
+///     preload: Preload::NormalForce(10.0),
+/// })?;
+/// let half = 0.5 * contact.figures().gross_slip_displacement;
+/// contact.apply(&Move { tangential: Some(Tangential::Displacement(half)), ..Move::default() })?;
+/// // Cattaneo (1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
+/// assert!((contact.state().force - 3.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-14);
+/// # Ok::<(), stickslip::mechanics::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Contact {
+    pub(super) profile: Profile,
+    pub(super) elasticity: Elasticity,
+    pub(super) friction: f64,
+    pub(super) memory: Memory,
+    displacement: Double,
+    /// As asked for or, under a prescribed indentation, as it follows: rounding it twice would move the friction limit.
+    normal_force: f64,
+    dissipated: Double,
+    initial: Figures,
+    path_error: f64,
+    /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
+    inverse_scale: Double,
+}
+
+/// Estimates of what rounding, or a coarse model, has cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Error of the tangential force over mu F_N.
+    pub force_error: f64,
+    /// Error of the shear stress over mu p_max, or over mu times the mean pressure where the former is infinite.
+    pub stress_error: f64,
+}
+
+impl Contact {
+    /// The virgin contact of a definition: displacement and tangential force are nought.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for friction or preload outside [`range`].
+    pub fn new(setup: Setup) -> Result<Contact, Error> {
+        let Setup { profile, elasticity, friction, preload } = setup;
+        range::FRICTION.check(friction)?;
+        let indentation = match preload {
+            Preload::NormalForce(force) => {
+                normal::indentation(&profile, &elasticity, range::NORMAL_FORCE.check(force)?)
+            }
+            Preload::Indentation(depth) => range::PRELOAD_INDENTATION.check(depth)?,
+            Preload::ContactRadius(radius) => profile.level(range::CONTACT_RADIUS.check(radius)?),
+        };
+        range::PRELOAD_INDENTATION.check(indentation)?;
+        let memory = Memory::new(&profile, Double::from(indentation));
+        let normal_force = match preload {
+            Preload::NormalForce(force) => force,
+            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, memory.edge()),
+        };
+        let initial = figures(&profile, &elasticity, friction, memory.edge(), normal_force);
+        let scale = friction * elasticity.e_star() / elasticity.g_star();
+        let inverse_scale = if friction > 0.0 { Double::from(1.0).over(Double::from(scale)) } else { Double::ZERO };
+        Ok(Contact {
+            profile,
+            elasticity,
+            friction,
+            memory,
+            displacement: Double::ZERO,
+            normal_force,
+            dissipated: Double::ZERO,
+            initial,
+            path_error: 0.0,
+            inverse_scale,
+        })
+    }
+
+    /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
+    ///
+    /// # Errors
+    /// As [`Contact::apply_within`].
+    pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
+        self.apply_within(step, DEFAULT_TOLERANCE)
+    }
+
+    /// Moves along a line that is straight in the quantities named. What is straight in displacement and indentation is
+    /// exact; what is straight in a force while the other quantity changes is followed to `tolerance`, relative to mu F_N.
+    /// Nothing has changed when an error is returned.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a target outside [`range`]; [`Error::ForceExceedsFriction`] for a tangential force that
+    /// friction cannot hold all the way.
+    pub fn apply_within(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
+        let approach = self.approach(step)?;
+        let tangent = self.tangent(step)?;
+        // Without a tangential target the displacement stays, and any way to the new indentation is the same.
+        let straight = match (step.tangential, step.normal) {
+            (None, _) => true,
+            (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
+            (Some(Tangential::Force(_)), _) => false,
+        };
+        if let (true, Tangent::Displacement { to: displacement, .. }) = (straight, tangent) {
+            let (indentation, normal_force) = match approach {
+                Approach::Indentation { from, to } if from == to => (to, self.normal_force),
+                Approach::Indentation { to, .. } => (to, self.normal_force_at(to)),
+                Approach::Force { to, .. } => (self.indentation_for(to), to),
+            };
+            self.advance(&Stop { indentation, normal_force, displacement });
+            return Ok(());
+        }
+        self.follow(&Route { tangent, approach }, tolerance)
+    }
+
+    fn approach(&self, step: &Move) -> Result<Approach, Error> {
+        let here = self.memory.edge().level;
+        Ok(match step.normal {
+            None => Approach::Indentation { from: here, to: here },
+            Some(Normal::Indentation(depth)) => {
+                let base = if step.relative { here } else { Double::ZERO };
+                let to = base + Double::from(depth);
+                range::INDENTATION.check(to.value())?;
+                Approach::Indentation { from: here, to }
+            }
+            Some(Normal::NormalForce(force)) => {
+                let from = self.normal_force();
+                let to = range::NORMAL_FORCE.check(if step.relative { from + force } else { force })?;
+                range::INDENTATION.check(normal::indentation(&self.profile, &self.elasticity, to))?;
+                Approach::Force { from, to }
+            }
+        })
+    }
+
+    fn tangent(&self, step: &Move) -> Result<Tangent, Error> {
+        let here = self.displacement;
+        Ok(match step.tangential {
+            None => Tangent::Displacement { from: here, to: here },
+            Some(Tangential::Displacement(target)) => {
+                let base = if step.relative { here } else { Double::ZERO };
+                let to = base + Double::from(target);
+                range::DISPLACEMENT.check(to.value())?;
+                Tangent::Displacement { from: here, to }
+            }
+            Some(Tangential::Force(target)) => {
+                let from = self.force();
+                let to = range::FORCE.check(if step.relative { from + target } else { target })?;
+                Tangent::Force { from, to }
+            }
+        })
+    }
+
+    /// The straight move in displacement and indentation that every other move is made of.
+    pub(super) fn advance(&mut self, stop: &Stop) {
+        self.displacement = stop.displacement;
+        self.normal_force = stop.normal_force;
+        let passage = self.memory.advance(&self.profile, stop.indentation, self.scaled(stop.displacement));
+        let scale = self.scale();
+        let work = 2.0 * self.elasticity.g_star() * scale * scale * passage.work;
+        self.dissipated = self.dissipated + Double::from(work);
+        if self.memory.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
+            // What gross slip wipes out takes its errors with it.
+            self.path_error = 0.0;
+        }
+    }
+
+    /// W = U/m, m.
+    pub(super) fn scaled(&self, displacement: Double) -> Double {
+        displacement * self.inverse_scale
+    }
+
+    pub(super) fn displacement(&self) -> Double {
+        self.displacement
+    }
+
+    pub(super) fn add_path_error(&mut self, error: f64) {
+        self.path_error += error;
+    }
+
+    /// Normal force, N, at an indentation, m.
+    pub(super) fn normal_force_at(&self, indentation: Double) -> f64 {
+        if indentation.value() <= 0.0 {
+            return 0.0;
+        }
+        normal::force(&self.profile, &self.elasticity, &self.profile.point(indentation))
+    }
+
+    /// m = mu E*/G*: displacement of the surface where it slips, over its normal displacement.
+    pub(super) fn scale(&self) -> f64 {
+        self.friction * self.elasticity.e_star() / self.elasticity.g_star()
+    }
+
+    /// Tangential force, N.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        2.0 * self.elasticity.g_star() * self.scale() * self.memory.force()
+    }
+
+    /// Indentation, m, that carries a normal force, N.
+    pub(super) fn indentation_for(&self, normal_force: f64) -> Double {
+        Double::from(normal::indentation(&self.profile, &self.elasticity, normal_force))
+    }
+
+    /// Normal force, N: the one asked for, to the bit, where one was.
+    #[must_use]
+    pub fn normal_force(&self) -> f64 {
+        self.normal_force
+    }
+
+    /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
+    #[must_use]
+    pub fn pressure(&self, radius: f64) -> f64 {
+        normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &At::radius(radius))
+    }
+
+    /// How many straight pieces the history has left.
+    #[must_use]
+    pub fn memory_depth(&self) -> usize {
+        self.memory.pieces().len()
+    }
+
+    /// Bytes that the contact takes, its history included.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Contact>() + self.memory.heap_bytes()
+    }
+
+    /// The figures of the present normal load.
+    #[must_use]
+    pub fn figures(&self) -> Figures {
+        figures(&self.profile, &self.elasticity, self.friction, self.memory.edge(), self.normal_force)
+    }
+
+    /// The figures of the definition's preload.
+    #[must_use]
+    pub fn initial_figures(&self) -> Figures {
+        self.initial
+    }
+
+    /// What rounding and curved paths have cost. The force is a sum over pieces, each good to some units in the last place of
+    /// itself, so its rounding scales with the magnitudes that went into the sum; a stress likewise, whose terms are
+    /// bounded by mu p.
+    #[must_use]
+    pub fn accuracy(&self) -> Estimate {
+        let carried = self.friction * self.normal_force;
+        let summed = self.force_unit() * self.memory.force_size();
+        let terms = if carried > 0.0 { summed / carried } else { 0.0 };
+        Estimate {
+            force_error: f64::EPSILON * (2.0 + 6.0 * terms) + self.path_error,
+            stress_error: f64::EPSILON * (4.0 + 12.0 * terms) + self.path_error,
+        }
+    }
+
+    /// The state after the last move.
+    #[must_use]
+    pub fn state(&self) -> State {
+        let edge = self.memory.edge();
+        let scale = self.scale();
+        let (stick_radius, regime) = self.stick();
+        State {
+            displacement: self.displacement.value(),
+            force: self.force(),
+            indentation: edge.level.value(),
+            normal_force: self.normal_force(),
+            contact_radius: edge.radius,
+            stick_radius,
+            regime,
+            dissipated_energy: self.dissipated.value(),
+            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.memory.energy()).max(0.0),
+            memory_depth: self.memory_depth(),
+        }
+    }
+
+    fn stick(&self) -> (f64, Regime) {
+        let edge = self.memory.edge();
+        if edge.level.value() < 0.0 {
+            return (0.0, Regime::Separated);
+        }
+        if self.friction <= 0.0 {
+            return (0.0, Regime::GrossSlip);
+        }
+        match self.memory.slip_from() {
+            None => (edge.radius, Regime::Stick),
+            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
+            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
+            Some(_) => (edge.radius, Regime::Stick),
+        }
+    }
+}
+
+fn figures(profile: &Profile, elasticity: &Elasticity, friction: f64, edge: &Point, normal_force: f64) -> Figures {
+    let max_pressure = normal::pressure(profile, elasticity, edge, &At::radius(0.0));
+    let indentation = edge.level.value();
+    Figures {
+        e_star: elasticity.e_star(),
+        g_star: elasticity.g_star(),
+        indentation,
+        contact_radius: edge.radius,
+        normal_force,
+        max_pressure: max_pressure.is_finite().then_some(max_pressure),
+        gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
+        gross_slip_force: friction * normal_force,
+    }
+}

@@ -1,0 +1,139 @@
+//! The two moduli that an axisymmetric contact needs, from the constants of its bodies.
+//!
+//! 1/E* = sum (1 - nu_i^2)/E_i (Hertz 1881) and 1/G* = sum (2 - nu_i)/(4 G_i) (Mindlin 1949), with
+//! G_i = E_i/(2 (1 + nu_i)). A rigid body adds nothing to either sum.
+
+use super::error::Error;
+use super::range;
+
+/// An isotropic elastic body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    youngs_modulus: f64,
+    poisson_ratio: f64,
+}
+
+impl Body {
+    /// A body of Young's modulus (Pa) and Poisson's ratio.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::YOUNGS_MODULUS`] and [`range::POISSON_RATIO`].
+    pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Result<Body, Error> {
+        Ok(Body {
+            youngs_modulus: range::YOUNGS_MODULUS.check(youngs_modulus)?,
+            poisson_ratio: range::POISSON_RATIO.check(poisson_ratio)?,
+        })
+    }
+
+    fn normal_compliance(self) -> f64 {
+        (1.0 - self.poisson_ratio) * (1.0 + self.poisson_ratio) / self.youngs_modulus
+    }
+
+    fn tangential_compliance(self) -> f64 {
+        (2.0 - self.poisson_ratio) * (1.0 + self.poisson_ratio) / (2.0 * self.youngs_modulus)
+    }
+
+    fn shear_modulus(self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+}
+
+/// The reduced moduli of a pair of bodies, and how far normal and tangential contact are truly independent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elasticity {
+    e_star: f64,
+    g_star: f64,
+    dundurs_beta: Option<f64>,
+    poisson: Option<f64>,
+}
+
+impl Elasticity {
+    /// Two elastic bodies.
+    #[must_use]
+    pub fn of_bodies(first: Body, second: Body) -> Elasticity {
+        let (g1, g2) = (first.shear_modulus(), second.shear_modulus());
+        let (nu1, nu2) = (first.poisson_ratio, second.poisson_ratio);
+        let beta = 0.5 * (g1 * (1.0 - 2.0 * nu2) - g2 * (1.0 - 2.0 * nu1)) / (g1 * (1.0 - nu2) + g2 * (1.0 - nu1));
+        Elasticity {
+            e_star: 1.0 / (first.normal_compliance() + second.normal_compliance()),
+            g_star: 1.0 / (first.tangential_compliance() + second.tangential_compliance()),
+            dundurs_beta: Some(beta),
+            poisson: Some(nu1.max(nu2)),
+        }
+    }
+
+    /// An elastic body against a rigid one.
+    #[must_use]
+    pub fn against_rigid(body: Body) -> Elasticity {
+        let nu = body.poisson_ratio;
+        Elasticity {
+            e_star: 1.0 / body.normal_compliance(),
+            g_star: 1.0 / body.tangential_compliance(),
+            dundurs_beta: Some(-(1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))),
+            poisson: Some(nu),
+        }
+    }
+
+    /// The reduced moduli E* and G* themselves (Pa); the bodies, and so Dundurs' beta, remain unknown.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::E_STAR`] and [`range::G_STAR`].
+    pub fn effective(e_star: f64, g_star: f64) -> Result<Elasticity, Error> {
+        Ok(Elasticity {
+            e_star: range::E_STAR.check(e_star)?,
+            g_star: range::G_STAR.check(g_star)?,
+            dundurs_beta: None,
+            poisson: None,
+        })
+    }
+
+    /// Reduced modulus E*, Pa.
+    #[must_use]
+    pub fn e_star(&self) -> f64 {
+        self.e_star
+    }
+
+    /// Reduced shear modulus G*, Pa.
+    #[must_use]
+    pub fn g_star(&self) -> f64 {
+        self.g_star
+    }
+
+    /// Dundurs' second parameter of the pair; `None` where only the reduced moduli are known. Normal and tangential
+    /// contact decouple exactly only where it is nought.
+    #[must_use]
+    pub fn dundurs_beta(&self) -> Option<f64> {
+        self.dundurs_beta
+    }
+
+    /// The larger Poisson's ratio of the elastic bodies; `None` where only the reduced moduli are known.
+    #[must_use]
+    pub fn largest_poisson_ratio(&self) -> Option<f64> {
+        self.poisson
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Body, Elasticity};
+
+    #[test]
+    fn like_bodies_have_mindlins_ratio_and_no_coupling() {
+        for nu in [0.0, 0.25, 0.3, 0.5] {
+            let body = Body::new(2.1e11, nu).unwrap();
+            let pair = Elasticity::of_bodies(body, body);
+            let ratio = (2.0 - nu) / (2.0 * (1.0 - nu));
+            assert!((pair.e_star() / pair.g_star() / ratio - 1.0).abs() < 1e-15);
+            assert!(pair.dundurs_beta().unwrap().abs() < 1e-16);
+        }
+    }
+
+    #[test]
+    fn a_very_stiff_partner_is_a_rigid_one() {
+        let soft = Body::new(1e6, 0.2).unwrap();
+        let stiff = Elasticity::of_bodies(soft, Body::new(1e18, 0.3).unwrap());
+        let rigid = Elasticity::against_rigid(soft);
+        assert!((stiff.e_star() / rigid.e_star() - 1.0).abs() < 1e-11);
+        assert!((stiff.dundurs_beta().unwrap() - rigid.dundurs_beta().unwrap()).abs() < 1e-11);
+    }
+}

@@ -1,0 +1,82 @@
+//! What numbers the mechanics accepts: one constant a quantity, used by every check and every document that names it.
+
+use std::fmt;
+
+use super::error::Error;
+
+/// A quantity's name, unit and closed interval, bounds included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The name that clients know the quantity by.
+    pub quantity: &'static str,
+    /// SI unit, empty for a pure number.
+    pub unit: &'static str,
+    /// The smallest value accepted.
+    pub min: f64,
+    /// The largest value accepted.
+    pub max: f64,
+}
+
+/// Any radius of a body or a contact.
+pub const RADIUS: Range = Range { quantity: "radius", unit: "m", min: 1e-15, max: 1e9 };
+/// Young's modulus of a body.
+pub const YOUNGS_MODULUS: Range = Range { quantity: "youngs_modulus", unit: "Pa", min: 1e-3, max: 1e18 };
+/// Poisson's ratio of a body; auxetic bodies are allowed.
+pub const POISSON_RATIO: Range = Range { quantity: "poisson_ratio", unit: "", min: -0.99, max: 0.5 };
+/// The reduced modulus E*.
+pub const E_STAR: Range = Range { quantity: "e_star", unit: "Pa", min: 1e-3, max: 1e18 };
+/// The reduced shear modulus G*.
+pub const G_STAR: Range = Range { quantity: "g_star", unit: "Pa", min: 1e-3, max: 1e18 };
+/// Coulomb's coefficient of friction; nought means no tangential force at all.
+pub const FRICTION: Range = Range { quantity: "friction", unit: "", min: 0.0, max: 100.0 };
+/// A normal force that presses the bodies together.
+pub const NORMAL_FORCE: Range = Range { quantity: "normal_force", unit: "N", min: 0.0, max: 1e18 };
+/// The contact radius that a preload may ask for; nought is a contact just touching.
+pub const CONTACT_RADIUS: Range = Range { quantity: "contact_radius", unit: "m", min: 0.0, max: 1e9 };
+/// The indentation that a preload may ask for.
+pub const PRELOAD_INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: 0.0, max: 1e9 };
+/// The indentation that a move may ask for; below nought the bodies are apart.
+pub const INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: -1e9, max: 1e9 };
+/// The tangential displacement of the indenter.
+pub const DISPLACEMENT: Range = Range { quantity: "displacement", unit: "m", min: -1e9, max: 1e9 };
+/// A tangential force.
+pub const FORCE: Range = Range { quantity: "force", unit: "N", min: -1e20, max: 1e20 };
+/// How many springs the foundation may have.
+pub const SPRING_COUNT: Range = Range { quantity: "count", unit: "", min: 2.0, max: 1e6 };
+
+impl Range {
+    /// Whether `value` lies inside, bounds included; never for a NaN.
+    #[must_use]
+    pub fn contains(&self, value: f64) -> bool {
+        (self.min..=self.max).contains(&value)
+    }
+
+    /// Gives `value` back.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if it lies outside or is not a number.
+    pub fn check(&self, value: f64) -> Result<f64, Error> {
+        if self.contains(value) {
+            Ok(value)
+        } else {
+            Err(Error::OutOfRange { quantity: self.quantity, value, allowed: self.to_string() })
+        }
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} to {}", short(self.min), short(self.max))?;
+        if !self.unit.is_empty() {
+            write!(f, " {}", self.unit)?;
+        }
+        Ok(())
+    }
+}
+
+/// The number as a person would write it: with an exponent only where it saves a row of noughts.
+pub(super) fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    let plain = magnitude.to_bits() == 0 || (1e-2..1e5).contains(&magnitude);
+    if plain { value.to_string() } else { format!("{value:e}") }
+}

@@ -1,0 +1,346 @@
+//! The paper's spring foundation: an independent second solver, and the yardstick of the first.
+//!
+//! N springs at the midpoints of equal cells over twice the reach (Kraft & Pohrt 2016, section 2): normal stiffness E* dx,
+//! tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to order
+//! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
+
+use super::contact::{Estimate, Move, Normal, Regime, Setup, State, Tangential};
+use super::error::Error;
+use super::normal::Figures;
+use super::range;
+use super::traction::{Peak, Residual};
+use super::{Contact, Profile};
+
+/// Radii at which the search for peaks looks, at the most.
+const SCAN: usize = 2000;
+/// Radii at which the stresses of the coarser foundation are compared.
+const COMPARED: usize = 64;
+
+/// A foundation of springs in contact.
+#[derive(Clone, Debug)]
+pub struct Springs {
+    profile: Profile,
+    initial: Figures,
+    friction: f64,
+    spacing: f64,
+    springs: Vec<Spring>,
+    displacement: f64,
+    indentation: f64,
+    dissipated: f64,
+    slipped: bool,
+    stick_radius: f64,
+    /// The same on half as many springs, which shows how fast the error falls.
+    coarser: Option<Box<Springs>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Spring {
+    radius: f64,
+    level: f64,
+    /// How many springs of the row it stands for: two, but one at the centre.
+    weight: f64,
+    carried: f64,
+}
+
+/// The largest contact radius, m, on a path.
+///
+/// # Errors
+/// Those of [`Contact::new`] and, for the normal targets, of [`Contact::apply`].
+pub fn reach(setup: &Setup, moves: &[Move]) -> Result<f64, Error> {
+    let mut contact = Contact::new(setup.clone())?;
+    let mut reach = contact.figures().contact_radius;
+    for step in moves.iter().filter(|step| step.normal.is_some()) {
+        contact.apply(&Move { tangential: None, ..*step })?;
+        reach = reach.max(contact.figures().contact_radius);
+    }
+    Ok(reach)
+}
+
+impl Springs {
+    /// A virgin contact on `count` springs over twice `reach`, m, the largest contact radius to come.
+    ///
+    /// # Errors
+    /// Those of [`Contact::new`], and [`Error::OutOfRange`] by [`range::SPRING_COUNT`].
+    pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+        range::SPRING_COUNT.check(count as f64)?;
+        let mut fine = Springs::alone(setup.clone(), count, reach)?;
+        fine.coarser = Some(Box::new(Springs::alone(setup, count.div_ceil(2).max(2), reach)?));
+        Ok(fine)
+    }
+
+    fn alone(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+        let contact = Contact::new(setup.clone())?;
+        let initial = contact.figures();
+        let Setup { profile, friction, .. } = setup;
+        let spacing = 2.0 * reach / count as f64;
+        let first = if count.is_multiple_of(2) { 0.5 } else { 0.0 };
+        let springs = (0..count.div_ceil(2))
+            .map(|index| {
+                let radius = (index as f64 + first) * spacing;
+                let weight = if radius > 0.0 { 2.0 } else { 1.0 };
+                Spring { radius, level: profile.level(radius), weight, carried: 0.0 }
+            })
+            .collect();
+        Ok(Springs {
+            profile,
+            initial,
+            friction,
+            spacing,
+            springs,
+            displacement: 0.0,
+            indentation: initial.indentation,
+            dissipated: 0.0,
+            slipped: false,
+            stick_radius: initial.contact_radius,
+            coarser: None,
+        })
+    }
+
+    /// Figures of the definition, from the exact normal contact.
+    #[must_use]
+    pub fn initial_figures(&self) -> Figures {
+        self.initial
+    }
+
+    /// Bound on a spring's displacement over its normal displacement, mu E*/G*.
+    fn scale(&self) -> f64 {
+        self.friction * self.initial.e_star / self.initial.g_star
+    }
+
+    /// Moves along a straight line. Nothing has changed when an error is returned.
+    ///
+    /// # Errors
+    /// As [`Contact::apply`].
+    pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
+        let pair = step.normal.is_some() && step.tangential.is_some();
+        let base = |value: f64| if step.relative { value } else { 0.0 };
+        let indentation = match step.normal {
+            None => self.indentation,
+            Some(Normal::Indentation(depth)) => range::INDENTATION.check(base(self.indentation) + depth)?,
+            Some(Normal::NormalForce(_)) if pair => {
+                return Err(Error::Unsupported {
+                    what: "springs follow a normal force only without a tangential target",
+                });
+            }
+            Some(Normal::NormalForce(force)) => {
+                let force = range::NORMAL_FORCE.check(base(self.normal_force()) + force)?;
+                self.profile.indentation_for(force / (2.0 * self.initial.e_star))
+            }
+        };
+        let displacement = match step.tangential {
+            None => self.displacement,
+            Some(Tangential::Displacement(target)) => range::DISPLACEMENT.check(base(self.displacement) + target)?,
+            Some(Tangential::Force(_)) if pair => {
+                return Err(Error::Unsupported {
+                    what: "springs follow a tangential force only at constant indentation",
+                });
+            }
+            Some(Tangential::Force(target)) => {
+                self.displacement_for(range::FORCE.check(base(self.force()) + target)?)?
+            }
+        };
+        self.advance(indentation, displacement);
+        if let Some(coarser) = &mut self.coarser {
+            coarser.advance(indentation, displacement);
+        }
+        Ok(())
+    }
+
+    /// What the discretisation costs, from half as many springs on the same path (Richardson): forces err to order 2, so
+    /// that a third of the difference is left; stresses to order 1.5 to 2, taken at its whole.
+    #[must_use]
+    pub fn accuracy(&self) -> Estimate {
+        let Some(coarser) = &self.coarser else { return Estimate { force_error: 1.0, stress_error: 1.0 } };
+        let limit = self.friction * self.normal_force();
+        let edge = self.contact_radius();
+        let largest = (0..COMPARED)
+            .map(|index| edge * (index as f64 + 0.5) / COMPARED as f64)
+            .map(|radius| (self.shear(radius) - coarser.shear(radius)).abs())
+            .fold(0.0, f64::max);
+        let mean_pressure = self.normal_force() / (std::f64::consts::PI * edge * edge);
+        let pressure = self.friction * self.initial.max_pressure.unwrap_or(mean_pressure);
+        let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
+        Estimate {
+            force_error: relative((self.force() - coarser.force()).abs() / 3.0, limit) + f64::EPSILON,
+            stress_error: relative(largest, pressure) + f64::EPSILON,
+        }
+    }
+
+    fn advance(&mut self, d1: f64, u1: f64) {
+        let scale = self.scale();
+        let (dd, du) = (d1 - self.indentation, u1 - self.displacement);
+        let stiffness = self.initial.g_star * self.spacing;
+        let mut work = 0.0;
+        let mut stick_radius: f64 = 0.0;
+        self.slipped = false;
+        for spring in &mut self.springs {
+            let (before, after) = (self.indentation - spring.level, d1 - spring.level);
+            if before <= 0.0 && after <= 0.0 {
+                continue;
+            }
+            // The part of the move in which the spring touches.
+            let span = if before <= 0.0 {
+                after / dd
+            } else if after <= 0.0 {
+                before / -dd
+            } else {
+                1.0
+            };
+            let trial = spring.carried + du * span;
+            let bound = scale * after.max(0.0);
+            let slip = trial.abs() - bound;
+            if slip > 0.0 {
+                let rate = du * trial.signum() - scale * dd;
+                let mean = bound - 0.5 * scale * dd * slip / rate;
+                work += spring.weight * stiffness * slip * mean;
+                spring.carried = bound.copysign(trial);
+                self.slipped = true;
+            } else {
+                spring.carried = trial;
+                stick_radius = stick_radius.max(spring.radius + 0.5 * self.spacing);
+            }
+        }
+        self.dissipated += work;
+        self.indentation = d1;
+        self.displacement = u1;
+        let radius = self.contact_radius();
+        self.stick_radius = if self.slipped { stick_radius.min(radius) } else { radius };
+    }
+
+    /// The displacement, m, that gives a tangential force, N: bisected, since the force only grows with it.
+    fn displacement_for(&self, target: f64) -> Result<f64, Error> {
+        let limit = self.friction * self.normal_force();
+        if target.abs() >= limit {
+            let part = (limit - target.signum() * self.force()) / (target - self.force()).abs();
+            return Err(Error::ForceExceedsFriction { target, limit, part: part.clamp(0.0, 1.0) });
+        }
+        let scale = self.scale();
+        let stiffness = self.initial.g_star * self.spacing;
+        let force_at = |change: f64| -> f64 {
+            self.in_contact()
+                .map(|spring| {
+                    let bound = scale * (self.indentation - spring.level);
+                    spring.weight * stiffness * (spring.carried + change).clamp(-bound, bound)
+                })
+                .sum()
+        };
+        let widest = 2.0 * scale * self.indentation;
+        let (mut low, mut high) = (-widest, widest);
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return Ok(self.displacement + middle);
+            }
+            if force_at(middle) < target { low = middle } else { high = middle }
+        }
+    }
+
+    fn in_contact(&self) -> impl Iterator<Item = &Spring> {
+        self.springs.iter().take_while(|spring| spring.level < self.indentation)
+    }
+
+    fn contact_radius(&self) -> f64 {
+        if self.indentation < 0.0 { 0.0 } else { self.profile.radius(self.indentation) }
+    }
+
+    /// Tangential force, N.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        let sum: f64 = self.in_contact().map(|spring| spring.weight * spring.carried).sum();
+        self.initial.g_star * self.spacing * sum
+    }
+
+    /// Normal force, N.
+    #[must_use]
+    pub fn normal_force(&self) -> f64 {
+        let sum: f64 = self.in_contact().map(|spring| spring.weight * (self.indentation - spring.level)).sum();
+        self.initial.e_star * self.spacing * sum
+    }
+
+    /// The state after the last move; `memory_depth` counts the springs in contact.
+    #[must_use]
+    pub fn state(&self) -> State {
+        let stiffness = self.initial.g_star * self.spacing;
+        let energy: f64 =
+            self.in_contact().map(|spring| 0.5 * spring.weight * stiffness * spring.carried.powi(2)).sum();
+        let regime = if self.indentation < 0.0 {
+            Regime::Separated
+        } else if !self.slipped {
+            Regime::Stick
+        } else if self.stick_radius > 0.0 {
+            Regime::PartialSlip
+        } else {
+            Regime::GrossSlip
+        };
+        State {
+            displacement: self.displacement,
+            force: self.force(),
+            indentation: self.indentation,
+            normal_force: self.normal_force(),
+            contact_radius: self.contact_radius(),
+            stick_radius: if self.indentation < 0.0 { 0.0 } else { self.stick_radius },
+            regime,
+            dissipated_energy: self.dissipated,
+            elastic_energy: energy,
+            memory_depth: self.in_contact().count(),
+        }
+    }
+
+    /// Pressure, Pa, at a radius, m.
+    #[must_use]
+    pub fn pressure(&self, radius: f64) -> f64 {
+        let edge = self.indentation - self.profile.level(self.contact_radius());
+        self.initial.e_star * self.stress(radius, edge, |spring| self.indentation - spring.level)
+    }
+
+    /// Shear stress, Pa, at a radius, m.
+    #[must_use]
+    pub fn shear(&self, radius: f64) -> f64 {
+        let room = self.scale() * (self.indentation - self.profile.level(self.contact_radius())).max(0.0);
+        let last = self.in_contact().last().map_or(0.0, |spring| spring.carried);
+        self.initial.g_star * self.stress(radius, last.clamp(-room, room), |spring| spring.carried)
+    }
+
+    /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring
+    /// to spring and on to `at_edge`; level from the centre to the first spring beyond it.
+    fn stress(&self, radius: f64, at_edge: f64, displacement: impl Fn(&Spring) -> f64) -> f64 {
+        let edge = self.contact_radius();
+        if radius > edge || self.indentation <= 0.0 {
+            return 0.0;
+        }
+        let root = |x: f64| ((x - radius) * (x + radius)).max(0.0).sqrt();
+        let mut sum = if at_edge.abs() > 0.0 { at_edge / root(edge) } else { 0.0 };
+        let mut inner: Option<(f64, f64)> = None;
+        let nodes = self.in_contact().map(|spring| (spring.radius, displacement(spring))).chain([(edge, at_edge)]);
+        for (x, u) in nodes {
+            if let Some((x0, u0)) = inner
+                && x > radius
+                && x > x0
+                && x0 > 0.0
+            {
+                let from = x0.max(radius);
+                sum -= (u - u0) / (x - x0) * ((x + root(x)) / (from + root(from))).ln();
+            }
+            inner = Some((x, u));
+        }
+        sum / std::f64::consts::PI
+    }
+
+    /// The extrema of the shear stress, as far as the springs resolve them.
+    #[must_use]
+    pub fn residual(&self) -> Residual {
+        let count = self.in_contact().count();
+        let stride = count.div_ceil(SCAN).max(1);
+        let samples: Vec<Peak> = self
+            .in_contact()
+            .step_by(stride)
+            .map(|spring| Peak { radius: spring.radius, shear: self.shear(spring.radius) })
+            .collect();
+        let peaks: Vec<Peak> = samples
+            .windows(3)
+            .filter(|near| (near[1].shear - near[0].shear) * (near[2].shear - near[1].shear) < 0.0)
+            .map(|near| near[1])
+            .collect();
+        Residual::of(self.shear(0.0), peaks)
+    }
+}
