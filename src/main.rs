@@ -1,3 +1,187 @@
 //! The command line.
 
-fn main() {}
+use std::fmt::Display;
+use std::io::{self, Read as _, Write as _};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use stickslip::api::{self, App, Problem};
+use stickslip::client::Client;
+use stickslip::sessions::{self, Sessions};
+use stickslip::simulation::{self, Pool, Stop};
+use stickslip::store::{MemoryStore, Store};
+use stickslip::wire::{self, SimulateRequest};
+use tokio::net::TcpListener;
+use tokio::signal::unix::{SignalKind, signal};
+use tracing_subscriber::EnvFilter;
+
+/// How long work that does not look at its flag may hold up the end of the process.
+const LAST_WORK: Duration = Duration::from_millis(500);
+
+/// How long a service may take to say that it is well.
+const LONGEST_ANSWER: Duration = Duration::from_secs(2);
+
+/// Frictional contact with memory, exactly: a service, and the same on the command line.
+#[derive(Parser)]
+#[command(version, about, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    serve: Serve,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Serve HTTP; the same as no command at all.
+    Serve(Serve),
+    /// Run the body of POST /simulate from a file and print the reply.
+    Simulate {
+        /// The file, or - for standard input.
+        file: PathBuf,
+    },
+    /// Print the OpenAPI document.
+    Openapi,
+    /// Ask a running service whether it is well; for container health checks.
+    Healthcheck {
+        /// Where it listens.
+        #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
+        listen: SocketAddr,
+    },
+    /// Draw the figures of the paper, as SVG and CSV.
+    Figures {
+        /// The folder to write them to.
+        #[arg(long)]
+        out: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct Serve {
+    /// Address and port to listen on; port 0 takes a free one.
+    #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
+    listen: SocketAddr,
+    /// Where contacts are kept: `memory:` keeps them until the process ends.
+    #[arg(long, env = "STICKSLIP_STORE", default_value = "memory:")]
+    store: String,
+    /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
+    #[arg(long, env = "STICKSLIP_LOG", default_value = "info")]
+    log: String,
+    /// How to log it.
+    #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
+    log_format: LogFormat,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LogFormat {
+    Text,
+    Json,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match cli.command.unwrap_or(Command::Serve(cli.serve)) {
+        Command::Serve(options) => serve(options),
+        Command::Simulate { file } => simulate(&file),
+        Command::Openapi => print(api::document().trim_end()),
+        Command::Healthcheck { listen } => healthcheck(listen),
+        Command::Figures { out } => stickslip::figures::write(&out)
+            .map_err(|error| format!("cannot write figures to {}: {error}", out.display())),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn print(text: impl Display) -> Result<(), String> {
+    match writeln!(io::stdout(), "{text}") {
+        // A reader that has seen enough, such as `head`, is no failure.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
+        _ => Ok(()),
+    }
+}
+
+fn simulate(file: &std::path::Path) -> Result<(), String> {
+    let mut body = Vec::new();
+    let read = if file.as_os_str() == "-" {
+        io::stdin().lock().read_to_end(&mut body)
+    } else {
+        std::fs::File::open(file).and_then(|mut file| file.read_to_end(&mut body))
+    };
+    read.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
+    let reply = wire::read::<SimulateRequest>(&body)
+        .map_err(Problem::from)
+        .and_then(|simulation| Ok(simulation::simulate(&simulation, &Stop::default())?))
+        .map_err(|problem| json(&problem.document("command line")))?;
+    print(json(&reply))
+}
+
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string_pretty(value).unwrap_or_else(|error| error.to_string())
+}
+
+fn healthcheck(mut address: SocketAddr) -> Result<(), String> {
+    if address.ip().is_unspecified() {
+        // A service that listens everywhere is reached at home.
+        let home: IpAddr = if address.is_ipv4() { Ipv4Addr::LOCALHOST.into() } else { Ipv6Addr::LOCALHOST.into() };
+        address.set_ip(home);
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    let client = Client::new(format!("http://{address}"));
+    let answer = runtime.block_on(async { tokio::time::timeout(LONGEST_ANSWER, client.healthz()).await });
+    match answer {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(error)) => Err(format!("{address} is not well: {error}")),
+        Err(_) => Err(format!("{address} does not answer")),
+    }
+}
+
+fn serve(options: Serve) -> Result<(), String> {
+    let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
+    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr);
+    match options.log_format {
+        LogFormat::Text => log.with_ansi(false).init(),
+        LogFormat::Json => log.json().flatten_event(true).init(),
+    }
+    let store = store(&options.store)?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    let served = runtime.block_on(listen(options.listen, store));
+    runtime.shutdown_timeout(LAST_WORK);
+    served
+}
+
+fn store(url: &str) -> Result<Arc<dyn Store>, String> {
+    match url {
+        "memory:" => Ok(Arc::new(MemoryStore::new())),
+        other => Err(format!("--store {other}: unknown kind of store, expected memory:")),
+    }
+}
+
+async fn listen(address: SocketAddr, store: Arc<dyn Store>) -> Result<(), String> {
+    let listener = TcpListener::bind(address).await.map_err(|error| format!("cannot listen on {address}: {error}"))?;
+    let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
+    let signals = (signal(SignalKind::terminate()), signal(SignalKind::interrupt()));
+    let (Ok(mut terminate), Ok(mut interrupt)) = signals else {
+        return Err("cannot listen for signals".to_owned());
+    };
+    let stop = async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = interrupt.recv() => {}
+        }
+    };
+    let pool = Pool::of_the_machine();
+    let sessions = Sessions::new(store, pool.clone(), sessions::CAPACITY);
+    print(format_args!("stickslip listens on http://{address}, try /docs"))?;
+    api::serve(listener, api::router(App { sessions, pool }), stop).await.map_err(|error| format!("stopped: {error}"))
+}

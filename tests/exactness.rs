@@ -2,11 +2,13 @@
 
 mod physics;
 
+use std::cell::{Cell, RefCell};
+
 use physics::masing::{Masing, first_force, first_stress};
 use physics::points::Points;
 use physics::{Ball, PLAIN, Random, UNIT, Worst, displace, forall, oblique, paths, press, push};
 use proptest::prelude::*;
-use stickslip::mechanics::{Contact, Error, Move, Normal, Preload};
+use stickslip::mechanics::{Contact, Error, Move, Normal, Preload, Regime};
 
 /// Contacts of bodies from nanometres to kilometres and from kilopascals to terapascals.
 fn any_ball() -> impl Strategy<Value = Ball> {
@@ -46,7 +48,7 @@ fn paths_at_constant_load_follow_masing_and_madelung() {
 fn stress_at_a_kink_keeps_all_its_digits() {
     // At the cusp an error e of the radius would cost sqrt(e), 1e-8 for a rounded radius.
     let peaks = Worst::new("shear stress at kinks / mu p_max", 1e-13);
-    let met = std::cell::Cell::new(0);
+    let met = Cell::new(0);
     forall(200, paths::slides(60), |steps| {
         let mut contact = UNIT.contact();
         let mut masing = Masing::new(1.0);
@@ -57,7 +59,9 @@ fn stress_at_a_kink_keeps_all_its_digits() {
         let unit = UNIT.stress_limit(1.0);
         for peak in contact.residual().peaks {
             for (_, kink) in masing.strokes().filter(|(_, u)| *u < 1.0) {
-                if (peak.radius - (1.0 - kink).sqrt()).abs() <= 2e-16 {
+                // Of kinks close to each other the displacements themselves have lost the distance.
+                let near = masing.strokes().filter(|(_, u)| (u - kink).abs() < 1e-4).count();
+                if near == 1 && (peak.radius - (1.0 - kink).sqrt()).abs() <= 2e-16 {
                     let outer = kink.sqrt();
                     let term = |(factor, u): (f64, f64)| {
                         let stuck = (kink - u).max(0.0);
@@ -80,6 +84,7 @@ fn oblique_paths_equal_points_followed_one_by_one() {
     let stresses = Worst::new("shear stress on oblique paths / mu p_max", 1e-10);
     let radii = prop::collection::vec(0.0..1.0_f64, 6);
     let balls = prop_oneof![Just(UNIT), Just(PLAIN), any_ball()];
+    let met = RefCell::new(Vec::new());
     forall(400, (balls, paths::oblique_steps(40), radii), |(ball, steps, radii)| {
         let mut contact = ball.contact();
         let path = paths::waypoints(&steps);
@@ -87,6 +92,7 @@ fn oblique_paths_equal_points_followed_one_by_one() {
         for (index, &waypoint) in path.iter().enumerate().skip(1) {
             contact.apply(&ball.towards(waypoint)).unwrap();
             points.go(waypoint);
+            met.borrow_mut().push(contact.state().regime);
             if index % 4 > 0 && index + 1 < path.len() {
                 continue;
             }
@@ -107,6 +113,9 @@ fn oblique_paths_equal_points_followed_one_by_one() {
             }
         }
     });
+    for regime in [Regime::Stick, Regime::PartialSlip, Regime::GrossSlip, Regime::Separated] {
+        assert!(met.borrow().iter().filter(|met| **met == regime).count() > 100, "{regime:?} hardly ever met");
+    }
 }
 
 #[test]

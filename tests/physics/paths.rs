@@ -15,6 +15,8 @@ pub enum Step {
     Grow(f64, f64),
     /// By a small change of both.
     Nudge(f64, f64),
+    /// Part of the way back to the last waypoint: again and again, it piles up memory.
+    Inward(f64),
     /// Back to the waypoint so many moves ago.
     Back(usize),
     /// To the mirror image of the displacement so many moves ago.
@@ -25,6 +27,7 @@ fn slide() -> impl Strategy<Value = Step> {
     prop_oneof![
         8 => (-1.0..1.0_f64).prop_map(Step::Slide),
         2 => (-3.0..3.0_f64).prop_map(Step::Slide),
+        6 => (0.3..0.99_f64).prop_map(Step::Inward),
         2 => (1..9_usize).prop_map(Step::Back),
         2 => (1..9_usize).prop_map(Step::Mirror),
         1 => small().prop_map(|change| Step::Nudge(0.0, change)),
@@ -71,6 +74,7 @@ pub fn waypoints(steps: &[Step]) -> Vec<(f64, f64)> {
             Step::Grow(rise, ratio) if depth < 2.0 => (depth + rise, slide + rise * ratio),
             Step::Grow(rise, ratio) => (depth - 2.0 * rise, slide + rise * ratio),
             Step::Nudge(rise, change) => (depth + rise, slide + change),
+            Step::Inward(share) => (depth + share * (past(1).0 - depth), slide + share * (past(1).1 - slide)),
             Step::Back(count) => past(count),
             Step::Mirror(count) => (depth, -past(count).1),
         };

@@ -56,15 +56,20 @@ impl Points {
         let depth = self.depth().max(0.0);
         // What the numbers of the path are rounded by.
         let unit = self.path.iter().fold(0.0, |unit: f64, (depth, w)| unit.max(depth.abs() + w.abs()));
-        let at = |index: usize| depth * (index as f64 / CELLS as f64);
+        // Just inside an edge, present or past, something thin may hide between parts that are in line.
+        let edges = self.path.iter().map(|(edge, _)| *edge).filter(|edge| *edge > 0.0 && *edge <= depth);
+        let edges =
+            edges.flat_map(|edge| (1..=16).map(move |power| edge * (1.0 - 0.125_f64.powi(power))).chain([edge]));
+        let cells = (1..CELLS).map(|index| depth * (index as f64 / CELLS as f64));
+        let mut ends: Vec<f64> = cells.chain(edges).filter(|end| *end < depth).collect();
+        ends.sort_by(f64::total_cmp);
         let mut nodes = vec![(0.0, self.carried(0.0))];
         if depth > 0.0 {
-            for index in 0..CELLS {
+            // The edge itself is out of contact by the letter; its bound is nought.
+            let carried = ends.into_iter().map(|end| (end, self.carried(end))).chain([(depth, 0.0)]);
+            for outer in carried {
                 let inner = nodes[nodes.len() - 1];
-                let end = at(index + 1);
-                // The edge itself is out of contact by the letter; its bound is nought.
-                let carried = if index + 1 == CELLS { 0.0 } else { self.carried(end) };
-                self.refine(inner, (end, carried), unit, &mut nodes);
+                self.refine(inner, outer, unit, &mut nodes);
             }
         }
         Shape { nodes }
@@ -72,6 +77,9 @@ impl Points {
 
     fn refine(&self, inner: (f64, f64), outer: (f64, f64), unit: f64, nodes: &mut Vec<(f64, f64)>) {
         let width = outer.0 - inner.0;
+        if width <= 0.0 {
+            return;
+        }
         let off = |fraction: f64| {
             let y = inner.0 + fraction * width;
             let straight = inner.1 + (outer.1 - inner.1) * ((y - inner.0) / width);
@@ -133,6 +141,11 @@ impl Shape {
                 if y0 > s { -(w1 - w0) / (outer + (y0 - s).sqrt()) } else { -(w1 - w0) / (y1 - y0) * outer }
             })
             .sum()
+    }
+
+    /// The levels of all nodes: kinks among them, with others ever closer to them, as the bisection left them.
+    pub fn levels(&self) -> Vec<f64> {
+        self.nodes.iter().map(|(y, _)| *y).collect()
     }
 
     /// Levels at which the slope changes, from the centre outward, as the bisection left them.

@@ -1,32 +1,31 @@
-//! Gauss-Legendre quadrature, and the same halved until it agrees with itself.
+//! Gauss-Lobatto quadrature, halved until it agrees with itself.
 
 use std::sync::LazyLock;
 
-/// Nodes in (0, 1) and weights, by Newton's method on the Legendre polynomial.
-pub fn gauss(count: usize) -> Vec<(f64, f64)> {
-    (0..count)
-        .map(|index| {
-            let n = count as f64;
-            let mut x = (std::f64::consts::PI * (index as f64 + 0.75) / (n + 0.5)).cos();
-            let mut slope = 1.0;
-            for _ in 0..20 {
-                let (mut last, mut value) = (1.0, x);
-                for k in 2..=count {
-                    let k = k as f64;
-                    (last, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * last) / k);
-                }
-                slope = n * (x * value - last) / (x * x - 1.0);
-                x -= value / slope;
-            }
-            (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
-}
+const POINTS: usize = 10;
 
-static TEN: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss(10));
+/// Nodes in [0, 1] and weights. Both ends are nodes, so that a kink hard by an end is not overlooked.
+static LOBATTO: LazyLock<[(f64, f64); POINTS]> = LazyLock::new(|| {
+    let degree = (POINTS - 1) as f64;
+    std::array::from_fn(|index| {
+        let mut x = (std::f64::consts::PI * index as f64 / degree).cos();
+        let mut value = 1.0;
+        // The interior nodes are the extrema of the Legendre polynomial of that degree.
+        for _ in 0..20 {
+            let mut last = 1.0;
+            value = x;
+            for k in 2..POINTS {
+                let k = k as f64;
+                (last, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * last) / k);
+            }
+            x -= (x * value - last) / ((degree + 1.0) * value);
+        }
+        (0.5 * (1.0 + x), 1.0 / (degree * (degree + 1.0) * value * value))
+    })
+});
 
 fn once(f: &dyn Fn(f64) -> f64, low: f64, high: f64) -> f64 {
-    (high - low) * TEN.iter().map(|(x, weight)| weight * f(low + x * (high - low))).sum::<f64>()
+    (high - low) * LOBATTO.iter().map(|(x, weight)| weight * f(low + x * (high - low))).sum::<f64>()
 }
 
 /// int f over [low, high]; every part is halved until both halves agree with the whole within `tolerance`.

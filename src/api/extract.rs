@@ -1,0 +1,147 @@
+//! What handlers take out of a request. Whatever does not fit leaves as a [`Problem`].
+
+use axum::body::Body;
+use axum::extract::{FromRequest, FromRequestParts, Path, Request};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
+use futures::StreamExt as _;
+use sha2::{Digest as _, Sha256};
+use uuid::Uuid;
+
+use crate::simulation::cost;
+use crate::store::RequestKey;
+use crate::wire::{self, Document};
+
+use super::problem::{Kind, Problem};
+use super::{App, limits};
+
+/// A checked body, and the headers that make it safe to repeat.
+pub struct Command<T: Document> {
+    /// The body.
+    pub body: T::Checked,
+    /// The idempotency key, with what it stands for.
+    pub key: Option<RequestKey>,
+}
+
+/// As [`Command`], but no body at all counts as `{}`.
+pub struct OptionalCommand<T: Document>(pub Command<T>);
+
+/// The session named in the path. What is not an identifier names no session.
+pub struct ContactId(pub Uuid);
+
+/// The sequence that the client expects by `If-Match`; none if it does not say, or says `*`.
+pub struct Expected(pub Option<u64>);
+
+impl<T: Document + 'static> FromRequest<App> for Command<T> {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
+        command(request, app, false).await
+    }
+}
+
+impl<T: Document + 'static> FromRequest<App> for OptionalCommand<T> {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
+        command(request, app, true).await.map(OptionalCommand)
+    }
+}
+
+async fn command<T: Document + 'static>(request: Request, app: &App, optional: bool) -> Result<Command<T>, Problem> {
+    let (parts, body) = request.into_parts();
+    let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| is_json(value.as_bytes()));
+    if declared == Some(false) || (declared.is_none() && !optional) {
+        return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
+    }
+    let mut bytes = read(body).await?;
+    if optional && bytes.is_empty() {
+        bytes.extend_from_slice(b"{}");
+    } else if declared.is_none() {
+        return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
+    }
+    let key = idempotency_key(&parts.headers)?;
+    let length = bytes.len();
+    let work = move || {
+        let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
+        wire::read::<T>(&bytes).map(|body| Command { body, key })
+    };
+    let price = if length > cost::INLINE_BODY { cost::INLINE } else { 0 };
+    app.pool.run(price, work).await?.map_err(Problem::from)
+}
+
+/// `application/json`, with or without a charset.
+fn is_json(content_type: &[u8]) -> bool {
+    let essence = content_type.split(|byte| *byte == b';').next().unwrap_or_default();
+    essence.trim_ascii().eq_ignore_ascii_case(b"application/json")
+}
+
+async fn read(body: Body) -> Result<Vec<u8>, Problem> {
+    let mut stream = body.into_data_stream();
+    let (mut bytes, mut length) = (Vec::new(), 0_usize);
+    while let Some(chunk) = stream.next().await {
+        let chunk = chunk.map_err(|_| Problem::new(Kind::NotJson, "the body broke off"))?;
+        length = length.saturating_add(chunk.len());
+        if length <= limits::BODY {
+            bytes.extend_from_slice(&chunk);
+        } else if length > limits::DRAIN {
+            break;
+        }
+    }
+    if length > limits::BODY {
+        let detail = format!("the body has more than the {} bytes that are allowed", limits::BODY);
+        return Err(Problem::new(Kind::TooLarge, detail));
+    }
+    Ok(bytes)
+}
+
+fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
+    let Some(value) = headers.get("idempotency-key") else {
+        return Ok(None);
+    };
+    let key = value.to_str().ok().filter(|key| (1..=limits::KEY_LENGTH).contains(&key.len()));
+    let key = key.filter(|key| key.bytes().all(|byte| byte.is_ascii_graphic()));
+    let refusal = || format!("Idempotency-Key must be 1 to {} visible ASCII characters", limits::KEY_LENGTH);
+    key.map(|key| Some(key.to_owned())).ok_or_else(|| Problem::new(Kind::InvalidInput, refusal()))
+}
+
+/// What a key stands for. The parts are set apart by a byte that none of the first two can hold.
+fn fingerprint(parts: &Parts, body: &[u8]) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    for part in [parts.method.as_str().as_bytes(), parts.uri.path().as_bytes()] {
+        hash.update(part);
+        hash.update([0]);
+    }
+    hash.update(body);
+    hash.finalize().into()
+}
+
+impl FromRequestParts<App> for ContactId {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let missing = |id: &str| Problem::new(Kind::ContactNotFound, format!("there is no contact {id}"));
+        match Path::<String>::from_request_parts(parts, app).await {
+            Ok(Path(id)) => Uuid::parse_str(&id).map(ContactId).map_err(|_| missing(&id)),
+            // Percent signs that do not decode.
+            Err(_) => Err(missing("of this name")),
+        }
+    }
+}
+
+impl FromRequestParts<App> for Expected {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Problem> {
+        let Some(value) = parts.headers.get(header::IF_MATCH) else {
+            return Ok(Expected(None));
+        };
+        let text = value.to_str().unwrap_or_default().trim();
+        let sequence = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map(str::parse::<u64>);
+        match (text, sequence) {
+            ("*", _) => Ok(Expected(None)),
+            (_, Some(Ok(sequence))) => Ok(Expected(Some(sequence))),
+            _ => Err(Problem::new(Kind::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! What the server takes, apart from what [`crate::wire::limits`] says about documents.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+/// Bytes of a body.
+pub const BODY: usize = 8 * 1024 * 1024;
+/// Bytes of a body that is too large which are read and thrown away, so that the client gets to read the answer.
+pub const DRAIN: usize = 8 * BODY;
+/// Items of a page.
+pub const PAGE: RangeInclusive<usize> = 1..=1_000;
+/// Items of a page if the client does not say.
+pub const DEFAULT_PAGE: usize = 100;
+/// Characters of an idempotency key.
+pub const KEY_LENGTH: usize = 255;
+/// Characters of a request identifier that a client may choose.
+pub const REQUEST_ID_LENGTH: usize = 128;
+/// When to try again after an overload.
+pub const RETRY_AFTER: Duration = Duration::from_secs(1);
+/// How long open connections may take to finish once the server has been told to stop.
+pub const GRACE: Duration = Duration::from_secs(3);

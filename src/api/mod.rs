@@ -1,0 +1,64 @@
+//! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
+
+mod contacts;
+mod extract;
+pub mod limits;
+mod meta;
+mod moves;
+mod observe;
+mod openapi;
+pub mod problem;
+mod query;
+mod reply;
+mod serve;
+mod simulate;
+
+use axum::{Router, middleware};
+use tower_http::catch_panic::CatchPanicLayer;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use utoipa_swagger_ui::{Config, SwaggerUi};
+
+use crate::sessions::Sessions;
+use crate::simulation::Pool;
+
+pub use openapi::document;
+pub use problem::Problem;
+pub use serve::serve;
+
+/// What the handlers work with. Clones are handles on the same.
+#[derive(Clone)]
+pub struct App {
+    /// The sessions.
+    pub sessions: Sessions,
+    /// Where long work is done.
+    pub pool: Pool,
+}
+
+/// All routes.
+pub fn router(app: App) -> Router {
+    let (api, _) = described().split_for_parts();
+    let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
+    api.with_state(app)
+        .merge(docs)
+        .fallback(meta::nothing_here)
+        .layer(CatchPanicLayer::custom(meta::panicked))
+        .layer(middleware::from_fn(observe::observe))
+}
+
+/// The routes that the OpenAPI document describes.
+fn described() -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(openapi::base())
+        .routes(routes!(simulate::simulate))
+        .routes(routes!(contacts::create, contacts::list))
+        .routes(routes!(contacts::get, contacts::delete))
+        .routes(routes!(contacts::fork))
+        .routes(routes!(moves::apply))
+        .routes(routes!(moves::path))
+        .routes(routes!(contacts::stress))
+        .routes(routes!(contacts::history))
+        .routes(routes!(meta::openapi))
+        .routes(routes!(meta::problem))
+        .routes(routes!(meta::healthz))
+        .routes(routes!(meta::readyz))
+}

@@ -1,0 +1,60 @@
+//! `/contacts/{id}/move` and `/contacts/{id}/path`: sessions move on.
+
+use axum::extract::State;
+use axum::response::Response;
+
+use crate::wire::{MoveReply, MoveRequest, PathReply, PathRequest};
+
+use super::extract::{Command, ContactId, Expected};
+use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
+use super::problem::Problem;
+use super::{App, reply};
+
+/// Move a contact
+///
+/// Makes one move. Moves of one contact are applied one at a time, in the order of their arrival.
+#[utoipa::path(
+    post, path = "/contacts/{id}/move", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
+    request_body(content = MoveRequest, examples(
+        ("sideways" = (summary = "To a tangential displacement", value = json!({"displacement": 1e-7}))),
+        ("by force" = (summary = "To a tangential force", value = json!({"force": 1.5}))),
+        ("oblique" = (summary = "Deeper and sideways at once, then the stresses",
+            value = json!({"displacement": 1e-7, "indentation": 1.2e-6, "stress": {"points": 50}}))),
+        ("back a little" = (summary = "By an increment", value = json!({"displacement": -2e-8, "relative": true}))),
+        ("lift off" = (summary = "Out of contact, where nothing is remembered", value = json!({"indentation": -1e-6})))
+    )),
+    responses((status = 200, description = "The state after the move", body = MoveReply,
+        headers(("ETag" = String, description = "The new sequence in quotes"))))
+)]
+pub async fn apply(
+    State(app): State<App>,
+    ContactId(id): ContactId,
+    Expected(expected): Expected,
+    command: Command<MoveRequest>,
+) -> Result<Response, Problem> {
+    Ok(reply::of_change(app.sessions.advance(id, command.body, expected, command.key).await?))
+}
+
+/// Take a contact along a path
+///
+/// All of it or nothing: if a move of it cannot be made, none is.
+#[utoipa::path(
+    post, path = "/contacts/{id}/path", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
+    request_body(content = PathRequest, examples(
+        ("displacements" = (summary = "To and fro", value = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))),
+        ("falling amplitude" = (summary = "Until almost no force is left, the last state alone",
+            value = json!({"path": {"falling_amplitude": {"reversals": 20, "amplitude": 2e-7}}, "steps": "last"}))),
+        ("moves" = (summary = "Lift off and touch again",
+            value = json!({"path": {"moves": [{"indentation": -1e-7}, {"indentation": 1e-6}, {"displacement": 1e-7}]}})))
+    )),
+    responses((status = 200, description = "The states along the path", body = PathReply,
+        headers(("ETag" = String, description = "The new sequence in quotes"))))
+)]
+pub async fn path(
+    State(app): State<App>,
+    ContactId(id): ContactId,
+    Expected(expected): Expected,
+    command: Command<PathRequest>,
+) -> Result<Response, Problem> {
+    Ok(reply::of_change(app.sessions.advance(id, command.body, expected, command.key).await?))
+}

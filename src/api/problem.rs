@@ -1,0 +1,250 @@
+//! Errors as clients see them: every refusal is a problem document (RFC 9457).
+//!
+//! Which to use when:
+//!
+//! - The body is not JSON: [`Kind::NotJson`]. It is JSON but wrong in itself, whatever the state of the server:
+//!   [`Kind::InvalidInput`], with a pointer to each fault. It is sound, but the mechanics has no answer to it: the kind of
+//!   that error. All but the first are 422, as the syntax is not to blame.
+//! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
+//! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
+//!   else [`Kind::Conflict`].
+//! - Nothing wrong with the request, but no capacity: [`Kind::Overloaded`], with `Retry-After`.
+//! - A fault of this program: [`Kind::Internal`]. Its cause goes to the log, and the client gets the request's identifier.
+//!
+//! The errors of the lower floors know no status codes; the `From` implementations here are the one place that gives them.
+
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+
+use crate::mechanics;
+use crate::sessions::SessionError;
+use crate::simulation::{Failure, PoolError};
+use crate::wire::{Fault, ProblemDocument, Rejection};
+
+use super::limits;
+
+/// The media type of a problem document.
+pub const MEDIA_TYPE: &str = "application/problem+json";
+
+/// The kinds of problems, each with its status and code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The body is not JSON.
+    NotJson,
+    /// No such path.
+    NotFound,
+    /// No such session.
+    ContactNotFound,
+    /// The path has no such method.
+    MethodNotAllowed,
+    /// The state of the session forbids it.
+    Conflict,
+    /// The session is not at the sequence given in `If-Match`.
+    StaleSequence,
+    /// The body is too large.
+    TooLarge,
+    /// The body is not declared as JSON.
+    UnsupportedMediaType,
+    /// Something in the request is missing, unknown, of the wrong type, or out of range.
+    InvalidInput,
+    /// No state carries the tangential force asked for.
+    ForceExceedsFriction,
+    /// The solver cannot follow the move.
+    UnsupportedMove,
+    /// The request takes longer than a server computes for one.
+    TooMuchWork,
+    /// The idempotency key belongs to another request.
+    IdempotencyKeyReused,
+    /// No capacity at present.
+    Overloaded,
+    /// A fault of this program.
+    Internal,
+}
+
+impl Kind {
+    /// All kinds, for the documentation.
+    pub const ALL: [Kind; 15] = [
+        Kind::NotJson,
+        Kind::NotFound,
+        Kind::ContactNotFound,
+        Kind::MethodNotAllowed,
+        Kind::Conflict,
+        Kind::StaleSequence,
+        Kind::TooLarge,
+        Kind::UnsupportedMediaType,
+        Kind::InvalidInput,
+        Kind::ForceExceedsFriction,
+        Kind::UnsupportedMove,
+        Kind::TooMuchWork,
+        Kind::IdempotencyKeyReused,
+        Kind::Overloaded,
+        Kind::Internal,
+    ];
+
+    /// Status, code and title.
+    #[must_use]
+    pub fn parts(self) -> (StatusCode, &'static str, &'static str) {
+        match self {
+            Kind::NotJson => (StatusCode::BAD_REQUEST, "not_json", "The body is not JSON"),
+            Kind::NotFound => (StatusCode::NOT_FOUND, "not_found", "There is nothing at this path"),
+            Kind::ContactNotFound => (StatusCode::NOT_FOUND, "contact_not_found", "There is no such contact"),
+            Kind::MethodNotAllowed => {
+                (StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", "This path has no such method")
+            }
+            Kind::Conflict => (StatusCode::CONFLICT, "conflict", "The state of the contact forbids this"),
+            Kind::StaleSequence => (StatusCode::PRECONDITION_FAILED, "stale_sequence", "The contact has moved on"),
+            Kind::TooLarge => (StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The body is too large"),
+            Kind::UnsupportedMediaType => {
+                (StatusCode::UNSUPPORTED_MEDIA_TYPE, "unsupported_media_type", "The body must be application/json")
+            }
+            Kind::InvalidInput => (StatusCode::UNPROCESSABLE_ENTITY, "invalid_input", "The request is invalid"),
+            Kind::ForceExceedsFriction => (
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "force_exceeds_friction",
+                "The tangential force is not below the friction limit",
+            ),
+            Kind::UnsupportedMove => {
+                (StatusCode::UNPROCESSABLE_ENTITY, "unsupported_move", "The solver cannot follow this move")
+            }
+            Kind::TooMuchWork => (StatusCode::UNPROCESSABLE_ENTITY, "too_much_work", "The request takes too long"),
+            Kind::IdempotencyKeyReused => (
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "idempotency_key_reused",
+                "The idempotency key belongs to another request",
+            ),
+            Kind::Overloaded => (StatusCode::SERVICE_UNAVAILABLE, "overloaded", "The server is busy"),
+            Kind::Internal => (StatusCode::INTERNAL_SERVER_ERROR, "internal", "The server has failed"),
+        }
+    }
+}
+
+/// A refusal on its way to the client.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    kind: Kind,
+    detail: String,
+    errors: Vec<Fault>,
+    /// What the log is told and the client is not.
+    cause: Option<String>,
+}
+
+impl Problem {
+    /// A problem of a kind, with what happened this time.
+    #[must_use]
+    pub fn new(kind: Kind, detail: impl Into<String>) -> Problem {
+        Problem { kind, detail: detail.into(), errors: Vec::new(), cause: None }
+    }
+
+    /// A problem with one place in the request.
+    #[must_use]
+    pub fn at(kind: Kind, pointer: impl Into<String>, detail: impl Into<String>) -> Problem {
+        let (pointer, detail) = (pointer.into(), detail.into());
+        let errors = vec![Fault { pointer, detail: detail.clone() }];
+        Problem { kind, detail, errors, cause: None }
+    }
+
+    /// A fault of this program; the cause is for the log.
+    #[must_use]
+    pub fn internal(cause: impl Into<String>) -> Problem {
+        let detail = "this is not your fault; the operator finds the cause in the log under the request_id";
+        Problem { cause: Some(cause.into()), ..Problem::new(Kind::Internal, detail) }
+    }
+
+    /// The same problem, with a cause for the log.
+    #[must_use]
+    pub fn because(self, cause: String) -> Problem {
+        Problem { cause: Some(cause), ..self }
+    }
+
+    /// What the log is told and the client is not.
+    #[must_use]
+    pub fn cause(&self) -> Option<&str> {
+        self.cause.as_deref()
+    }
+
+    /// The code.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        self.kind.parts().1
+    }
+
+    /// The document that the client gets.
+    #[must_use]
+    pub fn document(self, request_id: &str) -> ProblemDocument {
+        let (status, code, title) = self.kind.parts();
+        ProblemDocument {
+            kind: format!("/problems/{code}"),
+            title: title.to_owned(),
+            status: status.as_u16(),
+            detail: self.detail,
+            code: code.to_owned(),
+            errors: self.errors,
+            request_id: request_id.to_owned(),
+        }
+    }
+}
+
+impl IntoResponse for Problem {
+    /// The status alone: the document waits in the extensions for `observe`, which knows the request's identifier.
+    fn into_response(self) -> Response {
+        let mut response = self.kind.parts().0.into_response();
+        if self.kind == Kind::Overloaded {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER.as_secs()));
+        }
+        response.extensions_mut().insert(self);
+        response
+    }
+}
+
+impl From<Rejection> for Problem {
+    fn from(rejection: Rejection) -> Self {
+        let detail = rejection.to_string();
+        match rejection {
+            Rejection::NotJson(_) => Problem::new(Kind::NotJson, detail),
+            Rejection::Invalid(errors) => Problem { errors, ..Problem::new(Kind::InvalidInput, detail) },
+        }
+    }
+}
+
+impl From<Failure> for Problem {
+    fn from(failure: Failure) -> Self {
+        let detail = failure.to_string();
+        match failure {
+            Failure::Refused { pointer, error } => {
+                let kind = match &error {
+                    mechanics::Error::OutOfRange { .. } => Kind::InvalidInput,
+                    mechanics::Error::ForceExceedsFriction { .. } => Kind::ForceExceedsFriction,
+                    mechanics::Error::Unsupported { .. } => Kind::UnsupportedMove,
+                };
+                Problem::at(kind, pointer, error.to_string())
+            }
+            Failure::MemoryFull { pointer, .. } => Problem::at(Kind::Conflict, pointer, detail),
+            Failure::TooLong { pointer } => Problem::at(Kind::TooMuchWork, pointer, detail),
+            Failure::Stopped => Problem::new(Kind::Overloaded, detail),
+        }
+    }
+}
+
+impl From<PoolError> for Problem {
+    fn from(error: PoolError) -> Self {
+        match error {
+            PoolError::Busy => Problem::new(Kind::Overloaded, error.to_string()),
+            PoolError::Panicked => Problem::internal(error.to_string()),
+        }
+    }
+}
+
+impl From<SessionError> for Problem {
+    fn from(error: SessionError) -> Self {
+        let detail = error.to_string();
+        match error {
+            SessionError::NotFound(_) => Problem::new(Kind::ContactNotFound, detail),
+            SessionError::Stale { .. } => Problem::new(Kind::StaleSequence, detail),
+            SessionError::Overtaken { .. } => Problem::new(Kind::Conflict, detail),
+            SessionError::KeyReused => Problem::new(Kind::IdempotencyKeyReused, detail),
+            SessionError::Failure(failure) => failure.into(),
+            SessionError::Pool(error) => error.into(),
+            SessionError::Store(_) | SessionError::Broken(_) => Problem::internal(detail),
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Query parameters, taken one by one; what nobody takes is refused by name.
+
+use std::str::FromStr;
+
+use axum::extract::{FromRequestParts, Query};
+use axum::http::request::Parts;
+
+use crate::wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
+
+use super::App;
+use super::limits;
+use super::problem::Problem;
+
+/// The parameters of a request, and what is wrong with them so far.
+pub struct Params {
+    given: Vec<(String, String)>,
+    known: Vec<&'static str>,
+    faults: Faults,
+}
+
+impl FromRequestParts<App> for Params {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let given = match Query::<Vec<(String, String)>>::from_request_parts(parts, app).await {
+            Ok(Query(given)) => given,
+            Err(error) => {
+                let fault = Fault { pointer: String::new(), detail: error.body_text() };
+                return Err(Rejection::Invalid(vec![fault]).into());
+            }
+        };
+        Ok(Params { given, known: Vec::new(), faults: Faults::default() })
+    }
+}
+
+impl Params {
+    /// The parameter of this name, read by `parse`; `expected` says what it must be.
+    fn take<T>(&mut self, name: &'static str, expected: &str, parse: impl Fn(&str) -> Option<T>) -> Option<T> {
+        self.known.push(name);
+        let position = self.given.iter().position(|(key, _)| key == name)?;
+        let (_, text) = self.given.remove(position);
+        let value = parse(&text);
+        if value.is_none() {
+            let shown: String = text.chars().take(40).collect();
+            self.faults.add(At::Root.member(name), format_args!("`{shown}` is not {expected}"));
+        }
+        value
+    }
+
+    fn number<T: FromStr>(&mut self, name: &'static str, expected: &str) -> Option<T> {
+        self.take(name, expected, |text| text.parse().ok())
+    }
+
+    /// What has been taken, if nothing is wrong and nothing is left.
+    fn finish<T>(mut self, value: Option<T>) -> Result<T, Problem> {
+        let known = self.known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let known = if known.is_empty() { "none".to_owned() } else { known };
+        for (name, _) in self.given {
+            let again = self.known.iter().any(|known| *known == name);
+            let detail = if again { "given twice".to_owned() } else { format!("unknown parameter, expected {known}") };
+            let shown: String = name.chars().take(40).collect();
+            self.faults.add(At::Root.member(&shown), detail);
+        }
+        Ok(self.faults.done(value)?)
+    }
+
+    /// For calls that take no parameters.
+    ///
+    /// # Errors
+    /// A [`Problem`] if there is one all the same.
+    pub fn none(self) -> Result<(), Problem> {
+        self.finish(Some(()))
+    }
+
+    /// Where a page begins and how long it is.
+    ///
+    /// # Errors
+    /// A [`Problem`] with every fault of the parameters.
+    pub fn page<T: FromStr>(mut self, expected: &str) -> Result<(Option<T>, usize), Problem> {
+        let after = self.number("after", expected);
+        let limit = self.number("limit", "a whole number, not negative").unwrap_or(limits::DEFAULT_PAGE);
+        self.faults.count(At::Root.member("limit"), limit, &limits::PAGE);
+        self.finish(Some((after, limit)))
+    }
+
+    /// Which stresses are asked for, and whether their extrema are.
+    ///
+    /// # Errors
+    /// A [`Problem`] with every fault of the parameters.
+    pub fn stress(mut self) -> Result<(Sampling, bool), Problem> {
+        let field = |name: &str| Field::ALL.into_iter().find(|field| field.name() == name);
+        let points = self.number("points", "a whole number, not negative");
+        let radii = self.take("radii", "numbers with commas between them", |text| {
+            text.split(',').map(|number| number.trim().parse().ok()).collect()
+        });
+        let fields =
+            self.take("fields", "a list of fields, with commas between them, out of `pressure`, `shear`", |text| {
+                text.split(',').map(|name| field(name.trim())).collect()
+            });
+        let residual = self.number("residual", "true or false").unwrap_or(false);
+        if !self.faults.is_empty() {
+            return self.finish(None);
+        }
+        let sampling = StressRequest { points, radii, fields }.check(At::Root, &mut self.faults);
+        self.finish(sampling.map(|sampling| (sampling, residual)))
+    }
+}

@@ -1,0 +1,42 @@
+//! Replies that are ready-made JSON.
+
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+
+use crate::store::Reply;
+
+use super::problem::Problem;
+
+/// 200 with a JSON body.
+pub fn json(body: Vec<u8>) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], body).into_response()
+}
+
+/// 200 with a JSON body that belongs to a sequence of its session.
+pub fn at_sequence(sequence: u64, body: Vec<u8>) -> Response {
+    let mut response = json(body);
+    if let Ok(tag) = HeaderValue::from_str(&format!("\"{sequence}\"")) {
+        response.headers_mut().insert(header::ETAG, tag);
+    }
+    response
+}
+
+/// The reply to a change: 201 with the place of what it made, or 200.
+pub fn of_change(reply: Reply) -> Response {
+    let mut response = at_sequence(reply.sequence, reply.body);
+    if let Some(id) = reply.created {
+        *response.status_mut() = StatusCode::CREATED;
+        if let Ok(place) = HeaderValue::from_str(&format!("/contacts/{id}")) {
+            response.headers_mut().insert(header::LOCATION, place);
+        }
+    }
+    response
+}
+
+/// A value as JSON.
+///
+/// # Errors
+/// [`Problem::internal`] if it cannot be written, which no value of ours does.
+pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
+    serde_json::to_vec(value).map_err(|error| Problem::internal(format!("a reply cannot be written: {error}")))
+}

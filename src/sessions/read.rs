@@ -1,0 +1,92 @@
+//! Looking at sessions. A read changes nothing, and waits for no more than the move under way.
+
+use uuid::Uuid;
+
+use crate::simulation::{self, Stop, cost, stresses};
+use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, SessionSummary, StressReply};
+
+use super::{SessionError, Sessions, written};
+
+impl Sessions {
+    /// A session with its state.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`], or a failure of the store.
+    pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
+        let mut guard = self.lock(id).await;
+        let live = self.present(id, &mut guard).await?;
+        Ok(SessionReply {
+            id,
+            label: live.session.label.clone(),
+            sequence: live.session.sequence,
+            contact: live.about.figures.clone(),
+            state: live.contact.state().into(),
+            created_at: live.session.created_at,
+            updated_at: live.session.updated_at,
+        })
+    }
+
+    /// The stresses of a session, as JSON, with the sequence that they belong to.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`], or a failure of the store or of the pool.
+    pub async fn stress(&self, id: Uuid, sampling: Sampling, residual: bool) -> Result<(u64, Vec<u8>), SessionError> {
+        let (stop, _guard) = Stop::guarded();
+        // The lock is held for a copy alone, so that the session can move on meanwhile.
+        let (contact, sequence) = {
+            let mut guard = self.lock(id).await;
+            let live = self.present(id, &mut guard).await?;
+            (live.contact.clone(), live.session.sequence)
+        };
+        let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
+        let work = move || {
+            let stress = stresses(&contact, &sampling, &stop)?;
+            written(&StressReply {
+                radius: stress.radius,
+                pressure: stress.pressure,
+                shear: stress.shear,
+                residual: residual.then(|| simulation::residual(&contact)).transpose()?,
+            })
+        };
+        Ok((sequence, self.pool.run(cost, work).await??))
+    }
+
+    /// A page of sessions, oldest first.
+    ///
+    /// # Errors
+    /// A failure of the store.
+    pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
+        // One more than asked for tells whether there is a next page.
+        let mut found = self.store.list(after, limit + 1).await.map_err(SessionError::Store)?;
+        let more = found.len() > limit;
+        found.truncate(limit);
+        let next = found.last().filter(|_| more).map(|session| session.id);
+        let items = found.into_iter().map(|session| SessionSummary {
+            id: session.id,
+            label: session.label,
+            sequence: session.sequence,
+            created_at: session.created_at,
+            updated_at: session.updated_at,
+        });
+        Ok(SessionPage { items: items.collect(), next })
+    }
+
+    /// A page of a session's past, oldest first.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`], or a failure of the store.
+    pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+        let found = self.store.history(id, after, limit + 1).await;
+        let mut found = found.map_err(|error| self.failed(id, error))?;
+        let more = found.len() > limit;
+        found.truncate(limit);
+        let next = found.last().filter(|_| more).map(|record| record.sequence);
+        let items = found.into_iter().map(|record| HistoryItem {
+            sequence: record.sequence,
+            step: record.step,
+            state: record.state,
+            at: record.at,
+        });
+        Ok(HistoryPage { items: items.collect(), next })
+    }
+}

@@ -1,0 +1,72 @@
+//! What work costs, and what is cheap enough to do where one stands.
+//!
+//! Handing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
+//! calls. Work below [`INLINE`] is therefore done on the thread that serves the connection, where it delays others by no
+//! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few.
+
+use crate::wire::simulate::Simulation;
+use crate::wire::{Solver, limits};
+
+/// Estimated nanoseconds of work.
+pub type Nanoseconds = u64;
+
+/// The line: work estimated below it runs inline.
+pub const INLINE: Nanoseconds = 50_000;
+
+/// A body longer than this (bytes) is parsed on the pool.
+pub const INLINE_BODY: usize = 64 * 1024;
+
+/// One move of the exact solver, with its state, and the state written as JSON.
+const MOVE: u64 = 1_500;
+/// One curved move, which is followed in many small steps.
+const CURVED: u64 = 3_000_000;
+/// One piece of memory seen from one radius.
+const PIECE: u64 = 15;
+/// One radius, whatever the memory, and its numbers written as JSON.
+const RADIUS: u64 = 200;
+/// One spring in one move, or seen from one radius.
+const SPRING: u64 = 3;
+
+/// What `moves` moves, `curved` of them curved, then stresses at `radii` radii, then perhaps the extrema cost with the exact solver. `depth` is
+/// the memory before the moves; each adds at most one piece to it.
+#[must_use]
+pub fn estimated_cost(moves: usize, curved: usize, depth: usize, radii: usize, residual: bool) -> Nanoseconds {
+    let (moves, pieces, radii) = (moves as u64, (depth + moves) as u64 + 1, radii as u64);
+    // The search for extrema looks at each piece, and from there at all others.
+    let searched = if residual { pieces.saturating_mul(4) } else { 0 };
+    (moves * MOVE)
+        .saturating_add(curved as u64 * CURVED)
+        .saturating_add(radii * RADIUS)
+        .saturating_add((radii + searched).saturating_mul(pieces * PIECE))
+}
+
+/// What a simulation costs.
+#[must_use]
+pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
+    let moves = simulation.plan.length();
+    let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
+    let exact = estimated_cost(moves, simulation.plan.curved(), 0, radii, simulation.residual);
+    match simulation.solver {
+        None | Some(Solver::Exact) => exact,
+        Some(Solver::Springs(springs)) => {
+            let search = if simulation.residual { limits::SPRING_SEARCH } else { 0 };
+            let passes = (moves + radii + search) as u64;
+            exact.saturating_add((springs.count as u64).saturating_mul(passes * SPRING))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{INLINE, estimated_cost};
+
+    #[test]
+    fn a_move_runs_inline_and_a_long_path_does_not() {
+        assert!(estimated_cost(1, 0, 1_000, 0, false) < INLINE);
+        assert!(estimated_cost(21, 0, 0, 20, false) < INLINE);
+        assert!(estimated_cost(1_000, 0, 0, 0, false) > INLINE);
+        assert!(estimated_cost(1, 1, 0, 0, false) > INLINE);
+        assert!(estimated_cost(0, 0, 1_000, 200, false) > INLINE);
+        assert!(estimated_cost(usize::MAX / 4_000, 0, 0, usize::MAX / 4_000, true) > INLINE);
+    }
+}

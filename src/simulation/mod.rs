@@ -1,0 +1,59 @@
+//! Running what has been parsed: a checked request against the mechanics.
+//!
+//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor storage.
+//! Long loops look at a [`Stop`] between moves and between radii. [`cost`] says what work is worth a thread of its own,
+//! and [`Pool`] gives it one.
+
+pub mod cost;
+mod pool;
+mod run;
+mod solver;
+mod stop;
+mod warnings;
+
+pub use pool::{LONGEST_WAIT, Pool, PoolError};
+pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
+pub use solver::Solver;
+pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
+pub use warnings::warnings;
+
+use crate::mechanics;
+use crate::wire::limits;
+
+/// Why a run came to no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// The mechanics has no answer to the request.
+    #[error("{}: {error}", if pointer.is_empty() { "the request" } else { pointer.as_str() })]
+    Refused {
+        /// JSON pointer to what it has no answer to.
+        pointer: String,
+        /// Why.
+        error: mechanics::Error,
+    },
+    /// The contact would have to remember more than is allowed.
+    #[error("the contact would have to remember {depth} pieces of its path: allowed are {}", limits::MEMORY_DEPTH)]
+    MemoryFull {
+        /// JSON pointer to the move that would be too much.
+        pointer: String,
+        /// What it would have to remember.
+        depth: usize,
+    },
+    /// The work is more than a server does for one request.
+    #[error("this takes longer than the {} s that are allowed", LONGEST_WORK.as_secs())]
+    TooLong {
+        /// JSON pointer to what asks for the work, if it is known.
+        pointer: String,
+    },
+    /// Nobody is waiting for the result any longer.
+    #[error("stopped, as nobody waits for the result any longer")]
+    Stopped,
+}
+
+/// The member of the wire documents that an error is about, if it is about one.
+fn quantity(error: &mechanics::Error) -> Option<&'static str> {
+    match error {
+        mechanics::Error::OutOfRange { quantity, .. } => Some(quantity),
+        mechanics::Error::ForceExceedsFriction { .. } | mechanics::Error::Unsupported { .. } => None,
+    }
+}

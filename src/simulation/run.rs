@@ -1,0 +1,161 @@
+//! From a checked request to a reply.
+
+use std::time::{Duration, Instant};
+
+use crate::mechanics::{Contact, Estimate, Setup, Springs, springs};
+use crate::wire::reply::{Accuracy, State, finite};
+use crate::wire::simulate::Simulation;
+use crate::wire::{self, ContactDefinition, Move, Plan, Residual, Sampling, SimulateReply, Steps, Stress, limits};
+
+use super::{Failure, LONGEST_WORK, Solver, Stop, cost, quantity, warnings};
+
+/// Measures the time spent computing.
+#[derive(Clone, Copy, Debug)]
+pub struct Timer(Instant);
+
+impl Timer {
+    /// Starts now.
+    #[must_use]
+    pub fn start() -> Timer {
+        Timer(Instant::now())
+    }
+}
+
+/// Runs a simulation.
+///
+/// # Errors
+/// [`Failure`] if the mechanics has no answer to it, or nobody waits for one.
+pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, Failure> {
+    let timer = Timer::start();
+    match simulation.solver {
+        None => {
+            let reason = match simulation.plan.curved() {
+                0 => "every move of this path has an exact solution, which is also the cheapest",
+                _ => "the only one that follows moves straight in a force under changing load, to the tolerance",
+            };
+            run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, reason, stop)
+        }
+        Some(wire::Solver::Exact) => {
+            run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, "as asked for", stop)
+        }
+        Some(wire::Solver::Springs(wire::Springs { count })) => {
+            let setup = &simulation.setup;
+            let start = contact(setup.clone(), "/contact")?;
+            let moves = simulation.plan.moves(start.figures().gross_slip_displacement).map(|step| step.step());
+            let reach = springs::reach(setup, &moves.collect::<Vec<_>>());
+            let reach = reach.map_err(|error| Failure::Refused { pointer: "/path".to_owned(), error })?;
+            let springs = Springs::new(setup.clone(), count, reach).map_err(refused_at("/contact"))?;
+            run(springs, simulation, timer, "as asked for", stop)
+        }
+    }
+}
+
+fn run<S: Solver>(
+    mut solver: S,
+    simulation: &Simulation,
+    timer: Timer,
+    reason: &str,
+    stop: &Stop,
+) -> Result<SimulateReply, Failure> {
+    let figures = solver.figures();
+    let mut largest = figures.contact_radius;
+    let mut steps = Vec::with_capacity(if simulation.steps == Steps::All { simulation.plan.length() } else { 1 });
+    follow(&mut solver, &simulation.plan, simulation.tolerance, stop, |_, state| {
+        largest = largest.max(state.contact_radius);
+        if simulation.steps == Steps::Last {
+            steps.clear();
+        }
+        steps.push(state);
+    })?;
+    let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
+    let residual = simulation.residual.then(|| residual(&solver)).transpose()?;
+    Ok(SimulateReply {
+        contact: figures.into(),
+        steps,
+        stress,
+        residual,
+        accuracy: accuracy(&solver, timer, reason),
+        warnings: warnings(&simulation.definition.profile, &simulation.setup.elasticity, largest),
+    })
+}
+
+/// The exact contact of a definition that stands at `base` in the body.
+///
+/// # Errors
+/// [`Failure::Refused`] if the preload cannot be reached.
+pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
+    Contact::new(setup).map_err(refused_at(base))
+}
+
+fn refused_at(base: &str) -> impl Fn(crate::mechanics::Error) -> Failure {
+    move |error| {
+        let place = quantity(&error).map_or("", ContactDefinition::place_of);
+        Failure::Refused { pointer: format!("{base}{place}"), error }
+    }
+}
+
+/// Makes the moves of a plan one after the other, and hands each with its state to `each`.
+///
+/// # Errors
+/// [`Failure`] at the first move without an answer, with a pointer to it; the moves before it have been made.
+pub fn follow<S: Solver>(
+    solver: &mut S,
+    plan: &Plan,
+    tolerance: f64,
+    stop: &Stop,
+    mut each: impl FnMut(Move, State),
+) -> Result<(), Failure> {
+    let gross_slip = solver.figures().gross_slip_displacement;
+    for (index, step) in plan.moves(gross_slip).enumerate() {
+        stop.check()?;
+        solver.apply(&step.step(), tolerance).map_err(|error| {
+            let named = quantity(&error).filter(|name| step.names(name));
+            Failure::Refused { pointer: plan.place_of(index, named), error }
+        })?;
+        let depth = solver.depth();
+        if depth > limits::MEMORY_DEPTH {
+            return Err(Failure::MemoryFull { pointer: plan.place_of(index, None), depth });
+        }
+        each(step, solver.state().into());
+    }
+    Ok(())
+}
+
+/// The stresses asked for, and no others.
+///
+/// # Errors
+/// [`Failure::Stopped`] if nobody waits for them.
+pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
+    let radius = sampling.radii(solver.state().contact_radius);
+    let along = |field: &dyn Fn(f64) -> f64| -> Result<Vec<Option<f64>>, Failure> {
+        radius.iter().map(|radius| stop.check().map(|()| finite(field(*radius)))).collect()
+    };
+    let pressure = sampling.fields.pressure.then(|| along(&|radius| solver.pressure(radius))).transpose()?;
+    let shear = sampling.fields.shear.then(|| along(&|radius| solver.shear(radius))).transpose()?;
+    Ok(Stress { radius, pressure, shear })
+}
+
+/// The extrema of the shear stress.
+///
+/// # Errors
+/// [`Failure::TooLong`] if the memory is so deep that they would take longer than is allowed: the search for them does
+/// not look at a [`Stop`].
+pub fn residual<S: Solver>(solver: &S) -> Result<Residual, Failure> {
+    let cost = Duration::from_nanos(cost::estimated_cost(0, 0, solver.depth(), 0, true));
+    if cost > LONGEST_WORK {
+        return Err(Failure::TooLong { pointer: "/residual".to_owned() });
+    }
+    Ok(solver.residual().into())
+}
+
+/// Which solver answered, how well, and how long it took.
+pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
+    let Estimate { force_error, stress_error } = solver.accuracy();
+    Accuracy {
+        solver: S::KIND,
+        reason: reason.to_owned(),
+        force_error,
+        stress_error,
+        compute_time: timer.0.elapsed().as_secs_f64(),
+    }
+}

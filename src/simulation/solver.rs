@@ -1,0 +1,103 @@
+//! What the two solvers have in common.
+
+use crate::mechanics::{Contact, Error, Estimate, Figures, Move, Residual, Springs, State};
+use crate::wire::SolverKind;
+
+/// A contact that can be moved and looked at.
+pub trait Solver {
+    /// Its name in replies.
+    const KIND: SolverKind;
+
+    /// The figures of the normal load at hand: the present one or, for springs, which stand for one simulation, that of
+    /// the definition.
+    fn figures(&self) -> Figures;
+    /// Makes a move; a refused one changes nothing. The tolerance is for what is not exact.
+    ///
+    /// # Errors
+    /// What the mechanics has no answer to.
+    fn apply(&mut self, step: &Move, tolerance: f64) -> Result<(), Error>;
+    /// The state after the last move.
+    fn state(&self) -> State;
+    /// Pieces held in memory.
+    fn depth(&self) -> usize;
+    /// Normal pressure at a radius (m), Pa.
+    fn pressure(&self, radius: f64) -> f64;
+    /// Shear stress at a radius (m), Pa.
+    fn shear(&self, radius: f64) -> f64;
+    /// The extrema of the shear stress.
+    fn residual(&self) -> Residual;
+    /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
+    fn accuracy(&self) -> Estimate;
+}
+
+impl Solver for Contact {
+    const KIND: SolverKind = SolverKind::Exact;
+
+    fn figures(&self) -> Figures {
+        self.figures()
+    }
+
+    fn apply(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
+        self.apply_within(step, tolerance)
+    }
+
+    fn state(&self) -> State {
+        self.state()
+    }
+
+    fn depth(&self) -> usize {
+        self.memory_depth()
+    }
+
+    fn pressure(&self, radius: f64) -> f64 {
+        self.pressure(radius)
+    }
+
+    fn shear(&self, radius: f64) -> f64 {
+        self.shear(radius)
+    }
+
+    fn residual(&self) -> Residual {
+        self.residual()
+    }
+
+    fn accuracy(&self) -> Estimate {
+        self.accuracy()
+    }
+}
+
+impl Solver for Springs {
+    const KIND: SolverKind = SolverKind::Springs;
+
+    fn figures(&self) -> Figures {
+        self.initial_figures()
+    }
+
+    fn apply(&mut self, step: &Move, _tolerance: f64) -> Result<(), Error> {
+        self.apply(step)
+    }
+
+    fn state(&self) -> State {
+        self.state()
+    }
+
+    fn depth(&self) -> usize {
+        0
+    }
+
+    fn pressure(&self, radius: f64) -> f64 {
+        self.pressure(radius)
+    }
+
+    fn shear(&self, radius: f64) -> f64 {
+        self.shear(radius)
+    }
+
+    fn residual(&self) -> Residual {
+        self.residual()
+    }
+
+    fn accuracy(&self) -> Estimate {
+        self.accuracy()
+    }
+}

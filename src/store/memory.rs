@@ -1,0 +1,217 @@
+//! Everything in the process: fast, and gone when it ends.
+
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use futures::FutureExt as _;
+use uuid::Uuid;
+
+use super::{Answer, RECEIPT_LIFETIME, Receipt, Record, Session, Store, StoreError};
+
+/// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
+const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
+/// What a receipt takes besides its body and key, roughly.
+const RECEIPT_OVERHEAD: usize = 256;
+
+/// Sessions in a map.
+#[derive(Default)]
+pub struct MemoryStore {
+    // A std mutex: it is held for a lookup, a push or a page of copies, never across an await.
+    inner: Mutex<Inner>,
+}
+
+#[derive(Default)]
+struct Inner {
+    sessions: BTreeMap<Uuid, Stored>,
+    receipts: Receipts,
+}
+
+struct Stored {
+    session: Session,
+    // Forks share the past until one of them moves on.
+    past: Arc<Vec<Record>>,
+}
+
+#[derive(Default)]
+struct Receipts {
+    by_key: HashMap<String, Receipt>,
+    // In the order of arrival, which is that of expiry.
+    arrivals: VecDeque<(Instant, String)>,
+    bytes: usize,
+}
+
+impl MemoryStore {
+    /// An empty store.
+    #[must_use]
+    pub fn new() -> MemoryStore {
+        MemoryStore::default()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        // Nothing that can panic stands between the first and the last change of a call, so that a poisoned map is whole.
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored, StoreError> {
+        let stored = self.sessions.get_mut(&id).ok_or(StoreError::NotFound)?;
+        if stored.session.sequence == expected {
+            Ok(stored)
+        } else {
+            Err(StoreError::Stale { found: stored.session.sequence })
+        }
+    }
+}
+
+impl Receipts {
+    fn free(&mut self, receipt: Option<&Receipt>) -> Result<(), StoreError> {
+        self.sweep();
+        match receipt {
+            Some(receipt) if self.by_key.contains_key(&receipt.request.key) => Err(StoreError::KeyTaken),
+            _ => Ok(()),
+        }
+    }
+
+    fn keep(&mut self, receipt: Option<Receipt>) {
+        if let Some(receipt) = receipt {
+            self.bytes += size(&receipt);
+            self.arrivals.push_back((Instant::now(), receipt.request.key.clone()));
+            self.by_key.insert(receipt.request.key.clone(), receipt);
+            self.sweep();
+        }
+    }
+
+    fn sweep(&mut self) {
+        while let Some((arrival, key)) = self.arrivals.front() {
+            if arrival.elapsed() < RECEIPT_LIFETIME && self.bytes <= RECEIPT_BYTES {
+                break;
+            }
+            if let Some(receipt) = self.by_key.remove(key) {
+                self.bytes -= size(&receipt);
+            }
+            self.arrivals.pop_front();
+        }
+    }
+}
+
+fn size(receipt: &Receipt) -> usize {
+    RECEIPT_OVERHEAD + receipt.reply.body.len() + 2 * receipt.request.key.len()
+}
+
+fn answer<'a, T: Send + 'a>(result: Result<T, StoreError>) -> Answer<'a, T> {
+    std::future::ready(result).boxed()
+}
+
+impl Store for MemoryStore {
+    fn ready(&self) -> Answer<'_, ()> {
+        answer(Ok(()))
+    }
+
+    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        let mut inner = self.lock();
+        answer(inner.receipts.free(receipt.as_ref()).map(|()| {
+            inner.sessions.insert(session.id, Stored { session, past: Arc::default() });
+            inner.receipts.keep(receipt);
+        }))
+    }
+
+    fn find(&self, id: Uuid) -> Answer<'_, Session> {
+        answer(self.lock().sessions.get(&id).map(|stored| stored.session.clone()).ok_or(StoreError::NotFound))
+    }
+
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
+        use std::ops::Bound::{Excluded, Unbounded};
+        let inner = self.lock();
+        let beyond = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
+        answer(Ok(beyond.take(limit).map(|(_, stored)| stored.session.clone()).collect()))
+    }
+
+    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        let append = |inner: &mut Inner| {
+            inner.receipts.free(receipt.as_ref())?;
+            let stored = inner.at(id, expected)?;
+            if let Some(last) = records.last() {
+                stored.session.sequence = last.sequence;
+                stored.session.updated_at = last.at;
+            }
+            Arc::make_mut(&mut stored.past).extend(records);
+            inner.receipts.keep(receipt);
+            Ok(())
+        };
+        answer(append(&mut self.lock()))
+    }
+
+    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
+        // Copied under the lock: a shared past would have to be copied whole by the next append.
+        let inner = self.lock();
+        let page = inner.sessions.get(&id).map(|stored| {
+            // Numbers count from 1, so that the number of the last one seen is the index of the next.
+            let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.past.len());
+            stored.past[start..].iter().take(limit).copied().collect()
+        });
+        answer(page.ok_or(StoreError::NotFound))
+    }
+
+    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        let fork = |inner: &mut Inner| {
+            inner.receipts.free(receipt.as_ref())?;
+            let past = Arc::clone(&inner.at(id, copy.sequence)?.past);
+            inner.sessions.insert(copy.id, Stored { session: copy, past });
+            inner.receipts.keep(receipt);
+            Ok(())
+        };
+        answer(fork(&mut self.lock()))
+    }
+
+    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
+        let mut inner = self.lock();
+        let deleted = inner.at(id, expected).map(|_| ()).map(|()| inner.sessions.remove(&id));
+        drop(inner);
+        answer(deleted.map(drop))
+    }
+
+    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
+        let mut inner = self.lock();
+        inner.receipts.sweep();
+        answer(Ok(inner.receipts.by_key.get(key).cloned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MemoryStore, RECEIPT_BYTES, Receipts};
+    use crate::store::{Receipt, Reply, RequestKey, Store as _, StoreError};
+    use uuid::Uuid;
+
+    fn receipt(key: &str, bytes: usize) -> Receipt {
+        let request = RequestKey { key: key.to_owned(), fingerprint: [0; 32] };
+        Receipt { request, reply: Reply { created: None, sequence: 1, body: vec![0; bytes] } }
+    }
+
+    #[test]
+    fn old_receipts_make_room_for_new_ones() {
+        let mut receipts = Receipts::default();
+        for key in ["a", "b", "c"] {
+            receipts.keep(Some(receipt(key, RECEIPT_BYTES / 3)));
+        }
+        assert!(!receipts.by_key.contains_key("a"));
+        assert!(receipts.free(Some(&receipt("c", 0))).is_err() && receipts.bytes <= RECEIPT_BYTES);
+        assert_eq!(receipts.arrivals.len(), receipts.by_key.len());
+    }
+
+    #[tokio::test]
+    async fn what_is_not_there_cannot_be_changed() {
+        let (store, id) = (MemoryStore::new(), Uuid::now_v7());
+        assert!(matches!(store.append(id, 0, Vec::new(), None).await, Err(StoreError::NotFound)));
+        assert!(matches!(store.delete(id, 0).await, Err(StoreError::NotFound)));
+        assert!(matches!(store.history(id, 0, 1).await, Err(StoreError::NotFound)));
+    }
+
+    #[test]
+    fn timestamps_and_identifiers_agree_on_the_order() {
+        let ids: Vec<Uuid> = (0..1000).map(|_| Uuid::now_v7()).collect();
+        assert!(ids.is_sorted());
+    }
+}

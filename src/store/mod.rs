@@ -1,0 +1,134 @@
+//! What must survive: definitions, the moves made since, and the replies that a retry is owed.
+//!
+//! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
+//! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end.
+
+pub mod memory;
+
+use std::sync::Arc;
+
+use futures::future::BoxFuture;
+use jiff::Timestamp;
+use uuid::Uuid;
+
+use crate::wire::{ContactDefinition, Move, State};
+
+pub use memory::MemoryStore;
+
+/// How long a reply is kept for retries with the same idempotency key.
+pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
+
+/// A session as it is stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    /// Its identifier; time-ordered, so that the order of identifiers is that of creation.
+    pub id: Uuid,
+    /// Its label.
+    pub label: Option<String>,
+    /// The contact as it was defined.
+    pub definition: Arc<ContactDefinition>,
+    /// How many moves it has behind it.
+    pub sequence: u64,
+    /// When it was made.
+    pub created_at: Timestamp,
+    /// When it last moved.
+    pub updated_at: Timestamp,
+}
+
+/// A move as it is stored, with what came of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Its number, counted from 1 without a gap.
+    pub sequence: u64,
+    /// The move as it was given: replaying it gives the same state to the last bit.
+    pub step: Move,
+    /// The tolerance that it was followed to where it is not exact; part of what a replay needs.
+    pub tolerance: f64,
+    /// The state after it, for the history alone.
+    pub state: State,
+    /// When it was applied.
+    pub at: Timestamp,
+}
+
+/// A request with an idempotency key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RequestKey {
+    /// The key that the client chose.
+    pub key: String,
+    /// SHA-256 of method, path and body.
+    pub fingerprint: [u8; 32],
+}
+
+/// The reply to a request that changed something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reply {
+    /// The session that it made, if it made one.
+    pub created: Option<Uuid>,
+    /// The sequence of the session after it.
+    pub sequence: u64,
+    /// The JSON that was sent.
+    pub body: Vec<u8>,
+}
+
+/// A reply that is kept for retries.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Receipt {
+    /// The request that it answers.
+    pub request: RequestKey,
+    /// The reply.
+    pub reply: Reply,
+}
+
+/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after [`StoreError::Failed`].
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// There is no such session.
+    #[error("there is no such session")]
+    NotFound,
+    /// The session has another sequence than expected.
+    #[error("the session is at sequence {found}")]
+    Stale {
+        /// Its sequence.
+        found: u64,
+    },
+    /// Another request has used the idempotency key meanwhile.
+    #[error("the idempotency key has been used")]
+    KeyTaken,
+    /// The storage itself failed; whether the change was made is unknown.
+    #[error("the storage failed: {0}")]
+    Failed(String),
+}
+
+/// What a call to a store comes to.
+pub type Answer<'a, T> = BoxFuture<'a, Result<T, StoreError>>;
+
+/// A place to keep sessions.
+pub trait Store: Send + Sync + 'static {
+    /// Whether it can serve.
+    fn ready(&self) -> Answer<'_, ()>;
+
+    /// Stores a new session without a past, and the receipt with it.
+    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()>;
+
+    /// The session.
+    fn find(&self, id: Uuid) -> Answer<'_, Session>;
+
+    /// At most `limit` sessions with identifiers beyond `after`, in order.
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>>;
+
+    /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
+    /// records are numbered from `expected + 1`.
+    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()>;
+
+    /// At most `limit` moves of a session with numbers beyond `after`, in order.
+    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>>;
+
+    /// Stores `copy`, with the past of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
+    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()>;
+
+    /// Deletes a session that is at sequence `expected`, and its past.
+    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()>;
+
+    /// The receipt for an idempotency key, if the key has been used within [`RECEIPT_LIFETIME`].
+    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>>;
+}

@@ -1,0 +1,137 @@
+//! Collecting what is wrong with a document, each fault with a pointer to its place.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use crate::mechanics::{DEFAULT_TOLERANCE, range::Range};
+
+use super::limits;
+use super::parse::Rejection;
+
+/// One fault of a request.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Fault {
+    /// JSON pointer (RFC 6901) into the body, or `/` and the name of a query parameter.
+    #[schema(example = "/contact/profile/radius")]
+    pub pointer: String,
+    /// What is wrong there, and what is allowed.
+    #[schema(example = "-1 is out of range: allowed is 1e-15 to 1e9 m")]
+    pub detail: String,
+}
+
+/// A place in the document. It borrows its parent, so that walking a sound document writes no pointer at all.
+#[derive(Clone, Copy, Debug)]
+pub enum At<'a> {
+    /// The whole document.
+    Root,
+    /// A place written out already.
+    Pointer(&'a str),
+    /// A member of an object.
+    Member(&'a At<'a>, &'a str),
+    /// An element of an array.
+    Index(&'a At<'a>, usize),
+}
+
+impl<'a> At<'a> {
+    /// The member `name` of the object at this place.
+    #[must_use]
+    pub fn member(&'a self, name: &'a str) -> At<'a> {
+        At::Member(self, name)
+    }
+
+    /// The element `index` of the array at this place.
+    #[must_use]
+    pub fn index(&'a self, index: usize) -> At<'a> {
+        At::Index(self, index)
+    }
+}
+
+impl fmt::Display for At<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            At::Root => Ok(()),
+            At::Pointer(written) => f.write_str(written),
+            At::Member(parent, name) => write!(f, "{parent}/{}", escaped(name)),
+            At::Index(parent, index) => write!(f, "{parent}/{index}"),
+        }
+    }
+}
+
+/// A member's name as RFC 6901 writes it.
+#[must_use]
+pub fn escaped(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
+}
+
+/// The faults found so far.
+#[derive(Debug, Default)]
+pub struct Faults {
+    found: Vec<Fault>,
+}
+
+impl Faults {
+    /// Notes a fault; beyond [`limits::FAULTS`] they are no longer listed.
+    pub fn add(&mut self, at: At<'_>, detail: impl fmt::Display) {
+        if self.found.len() < limits::FAULTS {
+            self.found.push(Fault { pointer: at.to_string(), detail: detail.to_string() });
+        }
+    }
+
+    /// Holds a number against the range of its quantity.
+    pub fn number(&mut self, at: At<'_>, value: f64, range: &Range) {
+        if !range.contains(value) {
+            self.add(at, format_args!("{value:?} is out of range: allowed is {range}"));
+        }
+    }
+
+    /// Holds a count against its limits.
+    pub fn count(&mut self, at: At<'_>, value: usize, allowed: &RangeInclusive<usize>) {
+        if !allowed.contains(&value) {
+            let (least, most) = (allowed.start(), allowed.end());
+            self.add(at, format_args!("{value} is out of range: allowed is {least} to {most}"));
+        }
+    }
+
+    /// Holds the length of an array against its limits; says whether it fits.
+    pub fn length(&mut self, at: At<'_>, length: usize, allowed: &RangeInclusive<usize>) -> bool {
+        let fits = allowed.contains(&length);
+        if !fits {
+            let (least, most) = (allowed.start(), allowed.end());
+            self.add(at, format_args!("{length} elements: allowed are {least} to {most}"));
+        }
+        fits
+    }
+
+    /// Holds a label against its length.
+    pub fn label(&mut self, at: At<'_>, label: Option<&str>) {
+        if label.is_some_and(|text| text.chars().count() > limits::LABEL_LENGTH) {
+            self.add(at, format_args!("too long: allowed are {} characters", limits::LABEL_LENGTH));
+        }
+    }
+
+    /// The tolerance asked for, held against its range, or else the usual one.
+    pub fn tolerance(&mut self, at: At<'_>, tolerance: Option<f64>) -> f64 {
+        if let Some(value) = tolerance.filter(|value| !limits::TOLERANCE.contains(value)) {
+            let (least, most) = (limits::TOLERANCE.start(), limits::TOLERANCE.end());
+            self.add(at, format_args!("{value:?} is out of range: allowed is {least:e} to {most:e}"));
+        }
+        tolerance.unwrap_or(DEFAULT_TOLERANCE)
+    }
+
+    /// Whether nothing has been found.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.found.is_empty()
+    }
+
+    /// The value if nothing was found, else the faults.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] with every fault noted.
+    pub fn done<T>(self, value: Option<T>) -> Result<T, Rejection> {
+        match value {
+            Some(value) if self.found.is_empty() => Ok(value),
+            _ => Err(Rejection::Invalid(self.found)),
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! How much one request may ask for. Each limit is one constant, used by the checks, by the OpenAPI document and by
+//! the error that names it.
+
+use std::ops::RangeInclusive;
+
+/// Moves in one path.
+pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
+/// Reversals of a falling amplitude; each is one move, and one more ends the path at nought.
+pub const REVERSALS: RangeInclusive<usize> = 1..=99_999;
+/// Points of a uniform stress request, both ends included.
+pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
+/// Radii of a stress request that lists them.
+pub const STRESS_RADII: RangeInclusive<usize> = 1..=10_000;
+/// Radii at which the search for extrema looks at the springs.
+pub const SPRING_SEARCH: usize = 2_000;
+/// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
+/// does not have.
+pub const SPRING_STEPS: usize = 2_000_000_000;
+/// Characters of a label.
+pub const LABEL_LENGTH: usize = 200;
+/// Pieces of memory that a contact may hold. A move adds one at the most, unless it is curved, when it adds many.
+pub const MEMORY_DEPTH: usize = 200_000;
+/// Relative tolerance for what is not exact.
+pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
+/// Faults that one reply lists; a body can hold a great many.
+pub const FAULTS: usize = 100;

@@ -1,0 +1,35 @@
+//! The JSON that goes in and out, and its checked conversion into the types of [`crate::mechanics`].
+//!
+//! A request passes two gates. [`parse()`] turns bytes into the typed document: what is not JSON, names an unknown
+//! member or has a wrong type stops there. [`Document::check`] then holds every number against its range and collects all
+//! faults at once. Both name the place by a JSON pointer. What has passed is trusted from there on.
+//!
+//! Choices are objects with one key, or carry a `type`; there is no untagged union, so that an error can always say
+//! which member is meant. Numbers that are not finite leave as `null`.
+
+pub mod check;
+pub mod definition;
+pub mod limits;
+mod one_key;
+pub mod parse;
+pub mod path;
+pub mod problem;
+pub mod profile;
+pub mod reply;
+pub mod session;
+pub mod simulate;
+pub mod stress;
+
+pub use check::{At, Fault, Faults};
+pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
+pub use parse::{Document, Rejection, parse, read};
+pub use path::{FallingAmplitude, Move, Path, Plan};
+pub use problem::ProblemDocument;
+pub use profile::{Profile, SphereProfile};
+pub use reply::{Accuracy, Figures, Peak, Regime, Residual, SolverKind, State, Warning};
+pub use session::{
+    CreateRequest, ForkRequest, HistoryItem, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
+    SessionPage, SessionReply, SessionSummary, StressReply,
+};
+pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
+pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};

@@ -1,0 +1,234 @@
+//! Sessions: one move at a time, all or nothing, repeatable, and the same after a replay to the last bit.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{Server, ball, create, problem};
+use futures::future::join_all;
+use reqwest::{Method, StatusCode};
+use serde_json::{Value, json};
+use stickslip::client::Options;
+use stickslip::store::MemoryStore;
+use stickslip::wire::{ForkRequest, Move, Path, PathRequest, Steps};
+
+fn along(moves: Vec<Move>) -> PathRequest {
+    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::All, tolerance: None }
+}
+
+/// Slip to and fro, deeper and less deep, by displacement and by force.
+fn wandering(count: usize) -> Vec<Move> {
+    let turn = |index: usize| (index as f64 * 2.399).sin();
+    let step = |index: usize| match index % 4 {
+        0 => Move::displacement(2e-7 * turn(index)),
+        1 => Move { indentation: Some(4.7e-7 * (1.0 + 0.4 * turn(index))), ..Move::displacement(1e-7 * turn(index)) },
+        2 => Move { normal_force: Some(8.0 + 3.0 * turn(index)), ..Move::default() },
+        _ => Move::force(0.8 * turn(index)),
+    };
+    (0..count).map(step).collect()
+}
+
+#[tokio::test]
+async fn moves_of_one_session_are_counted_without_a_gap() {
+    let server = Server::start().await;
+    let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
+    let step = Move { relative: true, ..Move::displacement(1e-9) }.into();
+    let options = Options::default();
+    let replies = join_all((0..100).map(|_| server.client.apply(id, &step, &options))).await;
+    let mut sequences: Vec<u64> = replies.into_iter().map(|reply| reply.unwrap().sequence).collect();
+    sequences.sort_unstable();
+    assert_eq!(sequences, (1..=100).collect::<Vec<u64>>());
+    let state = server.client.contact(id).await.unwrap().state;
+    assert!((state.displacement - 1e-7).abs() < 1e-20, "{state:?}");
+}
+
+#[tokio::test]
+async fn a_path_is_all_or_nothing() {
+    let server = Server::start().await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    client.apply(id, &Move::displacement(1e-7).into(), &options).await.unwrap();
+    let before = client.contact(id).await.unwrap();
+
+    let refused =
+        client.path(id, &along(vec![Move::displacement(0.0), Move::force(99.0)]), &options).await.unwrap_err();
+    let refused = refused.problem().unwrap();
+    assert_eq!(
+        (refused.code.as_str(), refused.errors[0].pointer.as_str()),
+        ("force_exceeds_friction", "/path/moves/1")
+    );
+    client.apply(id, &Move::force(99.0).into(), &options).await.unwrap_err();
+    assert_eq!(client.contact(id).await.unwrap(), before);
+    assert_eq!(client.history(id, None, None).await.unwrap().items.len(), 1);
+
+    let reply = client.path(id, &along(vec![Move::displacement(0.0), Move::force(1.0)]), &options).await.unwrap();
+    assert_eq!(reply.sequence, 3);
+}
+
+#[tokio::test]
+async fn a_session_that_left_the_cache_is_replayed_to_the_last_bit() {
+    let server = Server::with(Arc::new(MemoryStore::new()), 1).await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    let reply = client.path(id, &along(wandering(400)), &options).await.unwrap();
+    let before = client.contact(id).await.unwrap();
+    assert_eq!(before.state, reply.steps[399]);
+    // Another session takes the only place.
+    let other = client.create(&create(), &options).await.unwrap().id;
+    client.contact(other).await.unwrap();
+    assert_eq!(client.contact(id).await.unwrap(), before);
+    let history = client.history(id, Some(399), None).await.unwrap();
+    assert_eq!((history.items[0].state, history.next), (before.state, None));
+}
+
+#[tokio::test]
+async fn a_path_gives_what_its_moves_give_one_by_one() {
+    let server = Server::start().await;
+    let (client, options) = (&server.client, Options::default());
+    let whole = client.create(&create(), &options).await.unwrap().id;
+    let single = client.create(&create(), &options).await.unwrap().id;
+    let moves = wandering(60);
+    let path = client.path(whole, &along(moves.clone()), &options).await.unwrap();
+    for (step, state) in moves.iter().zip(&path.steps) {
+        let reply = client.apply(single, &(*step).into(), &options).await.unwrap();
+        assert_eq!(&reply.state, state);
+    }
+}
+
+#[tokio::test]
+async fn a_fork_has_the_same_past_and_its_own_future() {
+    let server = Server::start().await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    client.path(id, &along(wandering(10)), &options).await.unwrap();
+    let fork = client.fork(id, &ForkRequest::default(), &options).await.unwrap();
+    let pasts = (client.history(id, None, None).await.unwrap(), client.history(fork.id, None, None).await.unwrap());
+    assert_eq!(pasts.0, pasts.1);
+    client.apply(fork.id, &Move::displacement(-1e-7).into(), &options).await.unwrap();
+    assert_eq!(client.contact(id).await.unwrap().sequence, 10);
+    assert_eq!(client.contact(fork.id).await.unwrap().sequence, 11);
+    client.delete(id, &options).await.unwrap();
+    assert_eq!(client.history(fork.id, None, None).await.unwrap().items.len(), 11);
+}
+
+#[tokio::test]
+async fn a_stale_sequence_is_refused_and_changes_nothing() {
+    let server = Server::start().await;
+    let (client, plain) = (&server.client, Options::default());
+    let id = client.create(&create(), &plain).await.unwrap().id;
+    let at = |sequence| Options { if_match: Some(sequence), ..Options::default() };
+    client.apply(id, &Move::displacement(1e-7).into(), &at(0)).await.unwrap();
+    for refused in [
+        client.apply(id, &Move::displacement(0.0).into(), &at(0)).await.map(drop),
+        client.path(id, &along(vec![Move::displacement(0.0)]), &at(2)).await.map(drop),
+        client.delete(id, &at(0)).await,
+    ] {
+        let refused = refused.unwrap_err();
+        assert_eq!(
+            refused.problem().map(|problem| (problem.status, problem.code.as_str())),
+            Some((412, "stale_sequence"))
+        );
+    }
+    assert_eq!(client.contact(id).await.unwrap().sequence, 1);
+    let any = server.send(Method::DELETE, &format!("/contacts/{id}"), None, &[("if-match", "*")]).await;
+    assert_eq!(any.status(), StatusCode::NO_CONTENT);
+}
+
+#[tokio::test]
+async fn a_retry_gets_the_first_reply_again() {
+    let server = Server::start().await;
+    let id = server.contact().await;
+    let (contact, ball) = (format!("/contacts/{id}"), ball().to_string());
+    let (moved, path, fork) = (format!("{contact}/move"), format!("{contact}/path"), format!("{contact}/fork"));
+    for (key, target, body) in [
+        ("one", "/contacts", &*ball),
+        ("two", &*moved, r#"{"displacement": 1e-7}"#),
+        ("three", &*path, r#"{"path": {"displacement": [2e-8, 3e-8]}}"#),
+        ("four", &*fork, "{}"),
+    ] {
+        let headers = [("idempotency-key", key)];
+        let first = server.send(Method::POST, target, Some(body), &headers).await;
+        assert!(first.status().is_success(), "{target}");
+        let again = server.send(Method::POST, target, Some(body), &headers).await;
+        assert_eq!(first.status(), again.status());
+        for name in ["etag", "location"] {
+            assert_eq!(first.headers().get(name), again.headers().get(name));
+        }
+        assert_eq!(first.bytes().await.unwrap(), again.bytes().await.unwrap(), "{target}");
+
+        let other = server.send(Method::POST, &moved, Some(r#"{"displacement": 5e-8}"#), &headers).await;
+        let other = problem(other).await;
+        assert_eq!((other.status, other.code.as_str()), (422, "idempotency_key_reused"));
+    }
+    let shown: Value = server.get(&contact).await.json().await.unwrap();
+    assert_eq!(shown["sequence"], 3);
+    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 3);
+
+    // The retry is owed its reply even when the contact is gone.
+    server.send(Method::DELETE, &contact, None, &[]).await;
+    let late =
+        server.send(Method::POST, &moved, Some(r#"{"displacement": 1e-7}"#), &[("idempotency-key", "two")]).await;
+    assert_eq!(late.status(), StatusCode::OK);
+}
+
+#[tokio::test]
+async fn twins_that_arrive_together_are_applied_once() {
+    let server = Server::start().await;
+    let id = server.contact().await;
+    let moved = format!("/contacts/{id}/move");
+    let headers = [("idempotency-key", "twin"), ("if-match", "\"0\"")];
+    let body = json!({"displacement": 1e-9, "relative": true}).to_string();
+    let twins = join_all((0..20).map(|_| server.send(Method::POST, &moved, Some(&body), &headers))).await;
+    let mut bodies = Vec::new();
+    for twin in twins {
+        assert_eq!(twin.status(), StatusCode::OK);
+        bodies.push(twin.bytes().await.unwrap());
+    }
+    bodies.dedup();
+    assert_eq!(bodies.len(), 1);
+    assert_eq!(server.client.contact(id.parse().unwrap()).await.unwrap().sequence, 1);
+
+    let ball = ball().to_string();
+    let key = [("idempotency-key", "born-together")];
+    let twins = join_all((0..20).map(|_| server.send(Method::POST, "/contacts", Some(&ball), &key))).await;
+    for twin in twins {
+        let status = twin.status();
+        assert_eq!(status, StatusCode::CREATED, "{}", twin.text().await.unwrap());
+    }
+    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 2);
+}
+
+#[tokio::test]
+async fn a_client_that_hangs_up_leaves_a_sound_session() {
+    let server = Server::start().await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    let long = along(wandering(20_000));
+    for patience in [1, 5, 20, 60] {
+        let call = client.path(id, &long, &options);
+        let _ = tokio::time::timeout(std::time::Duration::from_millis(patience), call).await;
+    }
+    let moved = client.apply(id, &Move::displacement(1e-7).into(), &options).await.unwrap();
+    // Each path was applied as a whole or not at all, and the store agrees with the cache.
+    assert_eq!((moved.sequence - 1) % 20_000, 0);
+    let history = client.history(id, Some(moved.sequence - 1), None).await.unwrap();
+    assert_eq!((history.items[0].state, history.next), (moved.state, None));
+}
+
+#[tokio::test]
+async fn a_client_that_hangs_up_frees_the_solver() {
+    let server = Server::start().await;
+    let wide = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}},
+        "steps": "last", "solver": {"springs": {"count": 1_000_000}}});
+    let narrow = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 2000}}, "steps": "last"});
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let abandoned = (0..cores).map(|_| async {
+        let patience = std::time::Duration::from_millis(200);
+        assert!(tokio::time::timeout(patience, server.post("/simulate", &wide)).await.is_err(), "too quick to abandon");
+    });
+    join_all(abandoned).await;
+    // Every thread was at work for many seconds; now they are free again.
+    let begin = std::time::Instant::now();
+    assert_eq!(server.post("/simulate", &narrow).await.status(), StatusCode::OK);
+    assert!(begin.elapsed() < std::time::Duration::from_secs(2), "{:?}", begin.elapsed());
+}

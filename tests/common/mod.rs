@@ -1,0 +1,91 @@
+//! A real server on a free port, and requests to send to it.
+
+#![allow(dead_code, reason = "each test binary uses a part of it")]
+
+use std::sync::Arc;
+
+use reqwest::{Method, Response};
+use serde_json::{Value, json};
+use stickslip::api::{self, App};
+use stickslip::client::Client;
+use stickslip::sessions::{CAPACITY, Sessions};
+use stickslip::simulation::Pool;
+use stickslip::store::{MemoryStore, Store};
+use stickslip::wire::{CreateRequest, ProblemDocument};
+use tokio::net::TcpListener;
+
+/// A server; it ends with the runtime of its test.
+pub struct Server {
+    pub client: Client,
+    pub base: String,
+    pub http: reqwest::Client,
+}
+
+impl Server {
+    pub async fn start() -> Server {
+        Server::with(Arc::new(MemoryStore::new()), CAPACITY).await
+    }
+
+    /// A server over a store, with so many states at hand.
+    pub async fn with(store: Arc<dyn Store>, capacity: usize) -> Server {
+        let pool = Pool::of_the_machine();
+        let sessions = Sessions::new(store, pool.clone(), capacity);
+        let router = api::router(App { sessions, pool });
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let base = format!("http://{}", listener.local_addr().unwrap());
+        tokio::spawn(api::serve(listener, router, std::future::pending()));
+        Server { client: Client::new(&base), base, http: reqwest::Client::new() }
+    }
+
+    /// Any request; a body goes as JSON.
+    pub async fn send(&self, method: Method, path: &str, body: Option<&str>, headers: &[(&str, &str)]) -> Response {
+        let mut call = self.http.request(method, format!("{}{path}", self.base));
+        if let Some(body) = body {
+            call = call.header("content-type", "application/json").body(body.to_owned());
+        }
+        for (name, value) in headers {
+            call = call.header(*name, *value);
+        }
+        call.send().await.unwrap()
+    }
+
+    pub async fn post(&self, path: &str, body: &Value) -> Response {
+        self.send(Method::POST, path, Some(&body.to_string()), &[]).await
+    }
+
+    pub async fn get(&self, path: &str) -> Response {
+        self.send(Method::GET, path, None, &[]).await
+    }
+
+    /// A new contact's identifier.
+    pub async fn contact(&self) -> String {
+        let reply: Value = self.post("/contacts", &ball()).await.json().await.unwrap();
+        reply["id"].as_str().unwrap().to_owned()
+    }
+}
+
+/// The contact of the examples.
+pub fn ball() -> Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
+    })
+}
+
+/// The same as a typed request.
+pub fn create() -> CreateRequest {
+    serde_json::from_value(ball()).unwrap()
+}
+
+/// The problem document of a refusal; checks what holds for all of them.
+pub async fn problem(response: Response) -> ProblemDocument {
+    let status = response.status().as_u16();
+    assert_eq!(response.headers()["content-type"], "application/problem+json", "status {status}");
+    let id = response.headers()["x-request-id"].to_str().unwrap().to_owned();
+    let problem: ProblemDocument = response.json().await.unwrap();
+    assert_eq!((problem.status, &problem.request_id), (status, &id));
+    assert_eq!(problem.kind, format!("/problems/{}", problem.code));
+    problem
+}
