@@ -121,10 +121,14 @@ impl Contact {
     /// Whether the derivative keeps one sign in the interval inside each kink, known without a search: where all bends from
     /// there on alternate and do not grow, and the kernel falls, the sum is an alternating one led by its first term.
     fn settled_from(&self, bends: &[f64]) -> Vec<bool> {
-        let mut settled = vec![self.profile.kernel_falls(); bends.len()];
-        for index in (0..bends.len().saturating_sub(1)).rev() {
-            let (bend, next) = (bends[index], bends[index + 1]);
-            settled[index] = settled[index + 1] && bend * next < 0.0 && bend.abs() >= next.abs();
+        let mut settled = vec![false; bends.len()];
+        for index in (0..bends.len()).rev() {
+            let bend = bends[index];
+            settled[index] = match bends.get(index + 1) {
+                Some(next) => settled[index + 1] && bend * next < 0.0 && bend.abs() >= next.abs(),
+                // A straight end carries nothing on: there is no first term to lead.
+                None => bend.abs() > 0.0 && self.profile.kernel_falls(),
+            };
         }
         settled
     }
