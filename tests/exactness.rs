@@ -132,7 +132,7 @@ fn nanometres_and_kilometres_give_the_same_figures() {
             state.stick_radius / a,
             state.elastic_energy / ball.energy_unit(),
             state.dissipated_energy / ball.energy_unit(),
-            contact.residual().max / ball.stress_limit(a),
+            contact.residual().max.unwrap() / ball.stress_limit(a),
         ];
         let radii = [0.0, 0.13, 0.37, 0.61, 0.83, 0.97];
         figures.extend(radii.map(|r| contact.shear(r * state.contact_radius) / ball.stress_limit(a)));

@@ -66,7 +66,7 @@ fn work_of_the_force_is_stored_or_lost_and_friction_never_gives_any_back() {
                 probe.apply(&PLAIN.towards(at(from, to, part))).unwrap();
                 probe.force()
             };
-            let work = (to.1 - from.1) * PLAIN.full_slip() * over_the_move(&force, 1e-15 * unit / PLAIN.full_slip());
+            let work = (to.1 - from.1) * PLAIN.full_slip() * over_the_move(&force, 1e-17 * unit / PLAIN.full_slip());
             let before = contact.state();
             contact.apply(&PLAIN.towards(to)).unwrap();
             let after = contact.state();
@@ -124,6 +124,38 @@ fn the_mirror_image_of_a_path_gives_the_mirror_image_of_its_state() {
 }
 
 #[test]
+fn how_far_it_has_slid_before_changes_nothing() {
+    // Once all of it has slipped, a contact a million u_max further on is the same contact. Both are exact on this grid.
+    const FAR: f64 = 1_048_576.0;
+    let forces = Worst::new("force a million u_max further on / mu F_N", 1e-14);
+    let stresses = Worst::new("shear stress a million u_max further on / mu p_max", 1e-12);
+    let small = (0.0..1.0_f64, 1..9_usize, -30.0..-10.0_f64, any::<bool>());
+    forall(300, (paths::oblique_steps(20), small), |(steps, (ratio, every, power, up))| {
+        let path = paths::on_grid(&paths::waypoints(&steps), 31);
+        let (mut near, mut far) = (UNIT.contact(), UNIT.contact());
+        near.apply(&UNIT.towards((1.0, 4.0))).unwrap();
+        far.apply(&UNIT.towards((1.0, FAR + 4.0))).unwrap();
+        for (index, &(depth, slide)) in path.iter().enumerate() {
+            let mut waypoints = vec![(depth, slide)];
+            if index % every == 0 && depth > 0.0 {
+                // A rise so small that a position so far out is hardly known to it.
+                let rise = power.exp2();
+                waypoints.push((depth + rise, slide + if up { ratio * rise } else { 0.0 }));
+            }
+            for (depth, slide) in paths::on_grid(&waypoints, 31) {
+                near.apply(&UNIT.towards((depth, slide))).unwrap();
+                far.apply(&UNIT.towards((depth, FAR + slide))).unwrap();
+            }
+        }
+        let (force, stress, _) = units(&UNIT, &path);
+        forces.close(far.force(), near.force(), force);
+        for r in [0.03, 0.31, 0.55, 0.79, 0.93].map(|r| r * near.state().contact_radius) {
+            stresses.close(far.shear(r), near.shear(r), stress);
+        }
+    });
+}
+
+#[test]
 fn results_scale_with_lengths_moduli_and_friction() {
     let forces = Worst::new("force and energies of a scaled contact", 1e-12);
     let stresses = Worst::new("shear stress of a scaled contact", 1e-10);
@@ -160,7 +192,7 @@ fn splitting_a_straight_move_changes_nothing() {
         let parts = 1 << halvings;
         // On the unit contact and on a grid every part of the move ends exactly on the straight line; elsewhere the parts
         // are rounded, and a load that rises along them may leave their corners behind.
-        let exact = paths::on_grid(&paths::waypoints(&steps));
+        let exact = paths::on_grid(&paths::waypoints(&steps), 20);
         for (ball, path, parts) in [(UNIT, exact, parts), (PLAIN, paths::waypoints(&steps), 2 * halvings + 1)] {
             let contact = walk(&ball, &path);
             let mut split = ball.contact();
@@ -278,8 +310,13 @@ fn standing_out(samples: &[f64], height: f64) -> Vec<usize> {
 #[test]
 fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
     let (found, told) = (Cell::new(0), Cell::new(0));
-    let paths_of_both_kinds = prop_oneof![paths::slides(30).boxed(), paths::oblique_steps(30).boxed()];
-    forall(300, paths_of_both_kinds, |steps| {
+    // Between the kinks of arbitrary slopes that rises leave, there may be two extrema.
+    let of_all_kinds = prop_oneof![
+        2 => paths::slides(30).boxed(),
+        2 => paths::oblique_steps(30).boxed(),
+        3 => paths::rises(8).boxed(),
+    ];
+    forall(500, of_all_kinds, |steps| {
         let path = paths::waypoints(&steps);
         let mut points = Points::new(path[0]);
         path.iter().skip(1).for_each(|&waypoint| points.go(waypoint));
@@ -306,17 +343,22 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
             let after = residual.peaks.get(index + 1).map_or(edge, |peak| peak.radius);
             // Kinks closer than radii can tell share one.
             assert!(before <= peak.radius && peak.radius <= after, "peaks are in order");
+            assert!(Some(peak.shear.abs()) <= residual.max);
+            told.set(told.get() + 1);
+            if (peak.radius - before).min(after - peak.radius) < 1e-9 * edge {
+                // Too thin a ring to look into.
+                continue;
+            }
             // To the next peak on either side the stress is monotone.
             let inner = contact.shear(0.5 * (before + peak.radius)) - peak.shear;
             let outer = contact.shear(0.5 * (peak.radius + after)) - peak.shear;
             let noise = 1e-14 * unit;
             assert!(inner * outer > 0.0 || inner.abs().min(outer.abs()) < noise, "no extremum at {:e}", peak.radius);
-            assert!(peak.shear.abs() <= residual.max);
-            told.set(told.get() + 1);
         }
         let largest = samples.iter().fold(contact.shear(0.0).abs(), |largest: f64, sample| largest.max(sample.abs()));
-        assert!(largest <= residual.max + 1e-14 * unit, "{largest:e} exceeds {:e}", residual.max);
-        assert!(largest >= residual.max - 1e-6 * unit, "{:e} is nowhere: {largest:e}", residual.max);
+        let max = residual.max.unwrap();
+        assert!(largest <= max + 1e-14 * unit, "{largest:e} exceeds {max:e}");
+        assert!(largest >= max - 1e-6 * unit, "{max:e} is nowhere: {largest:e}");
     });
     assert!(found.get() > 200 && told.get() > 200, "{} found, {} told", found.get(), told.get());
 }

@@ -109,7 +109,7 @@ pub struct StressQuery {
     /// Radii, m, with commas between them.
     #[param(nullable = false)]
     radii: Option<String>,
-    /// Which fields, with commas between them, out of `pressure` and `shear`; left out, both.
+    /// Which fields, with commas between them, out of `pressure`, `shear`, `slip` and `displacement`; left out, the first two.
     #[param(nullable = false)]
     fields: Option<String>,
     /// Whether the extrema of the shear stress are wanted too.

@@ -49,6 +49,10 @@ pub enum Kind {
     InvalidInput,
     /// No state carries the tangential force asked for.
     ForceExceedsFriction,
+    /// The contact outgrows the profile.
+    BeyondProfile,
+    /// The contact area would be a ring.
+    ProfileNotConvexEnough,
     /// The solver cannot follow the move.
     UnsupportedMove,
     /// The request takes longer than a server computes for one.
@@ -63,7 +67,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 15] = [
+    pub const ALL: [Kind; 17] = [
         Kind::NotJson,
         Kind::NotFound,
         Kind::ContactNotFound,
@@ -74,6 +78,8 @@ impl Kind {
         Kind::UnsupportedMediaType,
         Kind::InvalidInput,
         Kind::ForceExceedsFriction,
+        Kind::BeyondProfile,
+        Kind::ProfileNotConvexEnough,
         Kind::UnsupportedMove,
         Kind::TooMuchWork,
         Kind::IdempotencyKeyReused,
@@ -102,6 +108,14 @@ impl Kind {
                 StatusCode::UNPROCESSABLE_ENTITY,
                 "force_exceeds_friction",
                 "The tangential force is not below the friction limit",
+            ),
+            Kind::BeyondProfile => {
+                (StatusCode::UNPROCESSABLE_ENTITY, "beyond_profile", "The contact outgrows the profile")
+            }
+            Kind::ProfileNotConvexEnough => (
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "profile_not_convex_enough",
+                "The contact area would not be a full circle",
             ),
             Kind::UnsupportedMove => {
                 (StatusCode::UNPROCESSABLE_ENTITY, "unsupported_move", "The solver cannot follow this move")
@@ -212,7 +226,9 @@ impl From<Failure> for Problem {
         match failure {
             Failure::Refused { pointer, error } => {
                 let kind = match &error {
-                    mechanics::Error::OutOfRange { .. } => Kind::InvalidInput,
+                    mechanics::Error::OutOfRange { .. } | mechanics::Error::Table { .. } => Kind::InvalidInput,
+                    mechanics::Error::BeyondProfile { .. } => Kind::BeyondProfile,
+                    mechanics::Error::NotConvexEnough { .. } => Kind::ProfileNotConvexEnough,
                     mechanics::Error::ForceExceedsFriction { .. } => Kind::ForceExceedsFriction,
                     mechanics::Error::Unsupported { .. } => Kind::UnsupportedMove,
                 };

@@ -93,10 +93,11 @@ impl Params {
         let radii = self.take("radii", "numbers with commas between them", |text| {
             text.split(',').map(|number| number.trim().parse().ok()).collect()
         });
-        let fields =
-            self.take("fields", "a list of fields, with commas between them, out of `pressure`, `shear`", |text| {
-                text.split(',').map(|name| field(name.trim())).collect()
-            });
+        let fields = self.take(
+            "fields",
+            "a list of fields, with commas between them, out of `pressure`, `shear`, `slip`, `displacement`",
+            |text| text.split(',').map(|name| field(name.trim())).collect(),
+        );
         let residual = self.number("residual", "true or false").unwrap_or(false);
         if !self.faults.is_empty() {
             return self.finish(None);

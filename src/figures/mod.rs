@@ -183,7 +183,7 @@ fn reduction() -> Result<Chart, Error> {
         let unit = history.stress_unit();
         let residual = history.contact.residual();
         let x = reversals as f64;
-        largest.push((x, residual.max / unit));
+        largest.extend(residual.max.map(|value| (x, value / unit)));
         smallest.extend(residual.min.map(|value| (x, value / unit)));
         mean.extend(residual.mean.map(|value| (x, value / unit)));
     }

@@ -135,18 +135,20 @@ impl Contact {
     /// The virgin contact of a definition: displacement and tangential force are nought.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for friction or preload outside [`range`].
+    /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
+    /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for.
     pub fn new(setup: Setup) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup;
-        range::FRICTION.check(friction)?;
+        range::check_friction(friction)?;
         let indentation = match preload {
             Preload::NormalForce(force) => {
                 normal::indentation(&profile, &elasticity, range::NORMAL_FORCE.check(force)?)
             }
             Preload::Indentation(depth) => range::PRELOAD_INDENTATION.check(depth)?,
-            Preload::ContactRadius(radius) => profile.level(range::CONTACT_RADIUS.check(radius)?),
+            Preload::ContactRadius(radius) => normal::indentation_at(&profile, range::CONTACT_RADIUS.check(radius)?)?,
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
+        profile.check_radius(profile.radius(indentation))?;
         let memory = Memory::new(&profile, Double::from(indentation));
         let normal_force = match preload {
             Preload::NormalForce(force) => force,
@@ -212,16 +214,25 @@ impl Contact {
             Some(Normal::Indentation(depth)) => {
                 let base = if step.relative { here } else { Double::ZERO };
                 let to = base + Double::from(depth);
-                range::INDENTATION.check(to.value())?;
+                self.check_indentation(to.value())?;
                 Approach::Indentation { from: here, to }
             }
             Some(Normal::NormalForce(force)) => {
                 let from = self.normal_force();
                 let to = range::NORMAL_FORCE.check(if step.relative { from + force } else { force })?;
-                range::INDENTATION.check(normal::indentation(&self.profile, &self.elasticity, to))?;
+                self.check_indentation(self.indentation_for(to).value())?;
                 Approach::Force { from, to }
             }
         })
+    }
+
+    /// Whether the profile has a contact of this indentation, m.
+    fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
+        range::INDENTATION.check(indentation)?;
+        if indentation > 0.0 {
+            self.profile.check_radius(self.profile.radius(indentation))?;
+        }
+        Ok(())
     }
 
     fn tangent(&self, step: &Move) -> Result<Tangent, Error> {
@@ -381,7 +392,6 @@ impl Contact {
 }
 
 fn figures(profile: &Profile, elasticity: &Elasticity, friction: f64, edge: &Point, normal_force: f64) -> Figures {
-    let max_pressure = normal::pressure(profile, elasticity, edge, &At::radius(0.0));
     let indentation = edge.level.value();
     Figures {
         e_star: elasticity.e_star(),
@@ -389,7 +399,7 @@ fn figures(profile: &Profile, elasticity: &Elasticity, friction: f64, edge: &Poi
         indentation,
         contact_radius: edge.radius,
         normal_force,
-        max_pressure: max_pressure.is_finite().then_some(max_pressure),
+        max_pressure: normal::max_pressure(profile, elasticity, edge),
         gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
         gross_slip_force: friction * normal_force,
     }

@@ -17,6 +17,28 @@ pub enum Error {
         /// The range, in words.
         allowed: String,
     },
+    /// The contact would outgrow what is known of the profile: a table's last radius, the radius of the exact sphere.
+    #[error("a contact radius of {} m is not below {} m, where the profile ends", short(*radius), short(*limit))]
+    BeyondProfile {
+        /// The contact radius needed, m; the limit itself if none would do.
+        radius: f64,
+        /// Where the profile ends, m.
+        limit: f64,
+    },
+    /// g falls beyond some radius: the contact would be a ring.
+    #[error("the profile is not convex enough for a contact without a gap: g falls at the radius {} m", short(*radius))]
+    NotConvexEnough {
+        /// The first radius at which g falls, m.
+        radius: f64,
+    },
+    /// A table that is not one.
+    #[error("the table is not usable: {what} at index {index}")]
+    Table {
+        /// What is wrong.
+        what: &'static str,
+        /// The first point at which it is.
+        index: usize,
+    },
     /// No quasi-static state carries this tangential force: the contact would slide away.
     #[error(
         "friction holds no more than mu F_N = {} N, which the tangential force would meet {:.3} % of the way to {} N",

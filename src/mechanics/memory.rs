@@ -211,7 +211,7 @@ impl Memory {
         // A straight path in two steps is one path: the top piece is drawn out as long as it still meets the edge.
         let straight_on = self.pieces.last().is_some_and(|top| {
             let off = (top.line.at(d1) + self.shift()).abs();
-            off.value() <= round_off(d1, w1)
+            off.value() <= round_off(d1, self.shift())
         });
         if straight_on {
             self.close(profile);
@@ -236,7 +236,7 @@ impl Memory {
             self.edge = edge_at(profile, d1);
             self.position = w1;
             let trial = self.pieces.last().map_or(Double::ZERO, |top| top.line.at(d1)) + self.shift();
-            if trial.abs().value() <= round_off(d1, w1) {
+            if trial.abs().value() <= round_off(d1, self.shift()) {
                 // A rise taken back the same way.
                 self.close(profile);
                 return Passage { work };
@@ -330,9 +330,10 @@ fn sums(profile: &Profile, line: &Line, below: Sums, ring: &Ring) -> Sums {
     }
 }
 
-/// What a displacement w may be off at the edge by the rounding of the numbers that a path is given in.
-fn round_off(indentation: Double, position: Double) -> f64 {
-    SAME * (indentation.value() + position.value().abs())
+/// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far it
+/// has slid before does not count.
+fn round_off(indentation: Double, shift: Double) -> f64 {
+    SAME * (indentation.value() + shift.value().abs())
 }
 
 /// The edge of a contact at `indentation`; with a gap there is none, and its radius is nought.

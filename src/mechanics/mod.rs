@@ -46,6 +46,7 @@ pub mod range;
 mod release;
 mod route;
 pub mod springs;
+mod surface;
 mod traction;
 
 pub use contact::{Contact, Estimate, Move, Normal, Regime, Setup, State, Tangential};

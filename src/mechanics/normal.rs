@@ -4,7 +4,12 @@
 //! (Popov & Hess 2015; the last form takes in a vertical edge as well).
 
 use super::elasticity::Elasticity;
+use super::error::Error;
 use super::profile::{At, Point, Profile, Ring};
+use super::range::short;
+
+/// Radii at which the largest pressure is looked for first.
+const PRESSURE_SCAN: usize = 64;
 
 /// What presses the bodies together at the start. Zero is a contact just touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +66,28 @@ pub(super) fn indentation(profile: &Profile, elasticity: &Elasticity, normal_for
     profile.indentation_for(normal_force / (2.0 * elasticity.e_star()))
 }
 
+/// Indentation, m, at which the contact has this radius, m.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a radius that is not that of one load alone: below a flat end, or from a vertical edge on.
+pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Error> {
+    let allowed = |allowed: String| Error::OutOfRange { quantity: "contact_radius", value: radius, allowed };
+    profile.check_radius(radius)?;
+    let flat = profile.radius(0.0);
+    if radius < flat {
+        return Err(allowed(format!("from the radius of the flat end, {} m, on", short(flat))));
+    }
+    if let Some(rim) = profile.rim_radius()
+        && radius >= rim
+    {
+        return Err(allowed(format!(
+            "below the radius of the punch, {} m, where it says nothing of the load",
+            short(rim)
+        )));
+    }
+    Ok(profile.level(radius))
+}
+
 /// Pressure, Pa, at radius r; nought outside the contact.
 pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point, at: &At) -> f64 {
     let ring = whole(profile, edge);
@@ -68,6 +95,28 @@ pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point,
         return 0.0;
     }
     elasticity.e_star() / std::f64::consts::PI * profile.kernel(at, &ring)
+}
+
+/// The largest pressure, Pa; `None` where it is infinite.
+pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
+    let at = |radius: f64| pressure(profile, elasticity, edge, &At::radius(radius));
+    let inside = |radius: &f64| *radius <= edge.radius;
+    let spikes = profile.singular_radii().into_iter().filter(inside).chain([edge.radius]);
+    if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {
+        return None;
+    }
+    if profile.kernel_falls() {
+        return Some(at(0.0));
+    }
+    // The largest of a scan, then thirds about it: a profile that is steep outside has its maximum off the centre.
+    let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
+    let best = (0..PRESSURE_SCAN).max_by(|&a, &b| at(radius(a)).total_cmp(&at(radius(b)))).unwrap_or(0);
+    let (mut low, mut high) = (radius(best.saturating_sub(1)), radius(best + 1));
+    for _ in 0..60 {
+        let third = (high - low) / 3.0;
+        if at(low + third) >= at(high - third) { high -= third } else { low += third }
+    }
+    Some(at(0.5 * (low + high)).max(at(radius(best))))
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.

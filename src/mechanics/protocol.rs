@@ -1,4 +1,15 @@
 //! Paths that lower the residual shear stress.
+//!
+//! Each reversal leaves a kink of the shear stress at the radius where its slip began. Kraft & Pohrt (2016) let the amplitude
+//! fall linearly, which gives equal peaks on a sphere alone. For any profile the peaks are equal where the steps of the
+//! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
+//! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
+
+use super::contact::Contact;
+use super::profile::Profile;
+
+/// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
+pub const DEFAULT_CUTOFF: f64 = 0.1;
 
 /// The linearly falling amplitude of Kraft & Pohrt (2016), eq. 20: the displacements
 /// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is nought.
@@ -7,7 +18,92 @@
 pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item = f64> {
     (0..=reversals).map(move |index| {
         let left = (reversals - index) as f64;
-        let size = amplitude * (left / reversals.max(1) as f64);
-        if index % 2 == 0 { size } else { 0.0 - size }
+        alternating(index, amplitude * (left / reversals.max(1) as f64))
     })
+}
+
+/// `size` with the sign of the move `index`, the first of which goes forward.
+fn alternating(index: usize, size: f64) -> f64 {
+    if index.is_multiple_of(2) { size } else { 0.0 - size }
+}
+
+/// A path of equal peaks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EqualPeaks {
+    /// The displacements, m: `reversals` + 1 of them, the last nought.
+    pub displacements: Vec<f64>,
+    /// The radius, m, from which on the peaks are equal; nought if all are.
+    pub cutoff_radius: f64,
+}
+
+/// The law of equal peaks for the profile and the present load of `contact`, from gross slip to rest.
+///
+/// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made equal
+/// from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge. Profiles that
+/// need none have none unless it is given.
+#[must_use]
+pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
+    let figures = contact.figures();
+    let edge = figures.contact_radius;
+    let singular = contact.profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max);
+    let cutoff = match (cutoff_radius, singular) {
+        (Some(given), singular) => given.clamp(singular.unwrap_or(0.0), edge),
+        (None, Some(singular)) => singular + DEFAULT_CUTOFF * (edge - singular),
+        (None, None) => 0.0,
+    };
+    let spread = Spread::new(&contact.profile, cutoff, edge);
+    let full = figures.gross_slip_displacement;
+    let size = |index: usize| {
+        let part = index as f64 / reversals.max(1) as f64;
+        match spread.radius(part) {
+            // The first stroke slips as a whole, so that nothing before it matters.
+            _ if index == 0 => full,
+            _ if index == reversals => 0.0,
+            Some(radius) => full * (1.0 - contact.profile.level(radius) / figures.indentation).max(0.0),
+            None => full * (1.0 - part),
+        }
+    };
+    let displacements = (0..=reversals).map(|index| alternating(index, size(index))).collect();
+    EqualPeaks { displacements, cutoff_radius: cutoff }
+}
+
+/// s(x) between two radii, tabulated.
+struct Spread {
+    radii: Vec<f64>,
+    sums: Vec<f64>,
+}
+
+impl Spread {
+    /// Panels, finer towards the inner end, where s is steepest.
+    const PANELS: usize = 2048;
+
+    fn new(profile: &Profile, inner: f64, outer: f64) -> Spread {
+        let radii: Vec<f64> = (0..=Self::PANELS)
+            .map(|index| inner + (outer - inner) * (index as f64 / Self::PANELS as f64).powi(3))
+            .collect();
+        let density = |x: f64| profile.slope(x).powi(2) / x;
+        let mut sums = vec![0.0];
+        let mut sum = 0.0;
+        for pair in radii.windows(2) {
+            // Two-point Gauss: no value at the ends, where the density may be infinite.
+            let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
+            let away = half / 3.0_f64.sqrt();
+            sum += half * (density(middle - away) + density(middle + away));
+            sums.push(sum);
+        }
+        Spread { radii, sums }
+    }
+
+    /// The radius at a fraction of s, straight within a panel; `None` for a flat, which has no s and no peaks.
+    fn radius(&self, fraction: f64) -> Option<f64> {
+        let whole = self.sums[Self::PANELS];
+        if !(whole > 0.0 && whole.is_finite()) {
+            return None;
+        }
+        let wanted = fraction * whole;
+        let panel = self.sums.partition_point(|&sum| sum < wanted).clamp(1, Self::PANELS);
+        let (low, high) = (self.sums[panel - 1], self.sums[panel]);
+        let part = if high > low { (wanted - low) / (high - low) } else { 0.0 };
+        Some(self.radii[panel - 1] + part * (self.radii[panel] - self.radii[panel - 1]))
+    }
 }

@@ -19,6 +19,26 @@ pub struct Range {
 
 /// Any radius of a body or a contact.
 pub const RADIUS: Range = Range { quantity: "radius", unit: "m", min: 1e-15, max: 1e9 };
+/// Radius of a flat end.
+pub const FLAT_RADIUS: Range = Range { quantity: "flat_radius", unit: "m", min: 1e-15, max: 1e9 };
+/// Curvature radius of a rounded edge.
+pub const EDGE_RADIUS: Range = Range { quantity: "edge_radius", unit: "m", min: 1e-15, max: 1e9 };
+/// Radius up to which the tip of a cone is rounded.
+pub const TIP_RADIUS: Range = Range { quantity: "tip_radius", unit: "m", min: 1e-15, max: 1e9 };
+/// Slope dz/dr of a cone.
+pub const SLOPE: Range = Range { quantity: "slope", unit: "", min: 1e-9, max: 1e9 };
+/// Exponent of a power law.
+pub const EXPONENT: Range = Range { quantity: "exponent", unit: "", min: 0.1, max: 1000.0 };
+/// Coefficient of a power law; its unit, m^(1 - n), hangs on the exponent.
+pub const COEFFICIENT: Range = Range { quantity: "coefficient", unit: "m^(1-n)", min: 1e-280, max: 1e280 };
+/// How many points a tabulated profile may have.
+pub const TABLE_POINTS: Range = Range { quantity: "points of the table", unit: "", min: 3.0, max: 10_000.0 };
+/// A radius in a table.
+pub const TABLE_RADIUS: Range = Range { quantity: "r", unit: "m", min: 0.0, max: 1e9 };
+/// A height in a table.
+pub const TABLE_HEIGHT: Range = Range { quantity: "z", unit: "m", min: -1e9, max: 1e9 };
+/// How many profiles a sum may have, sums within it counted by their parts.
+pub const PARTS: Range = Range { quantity: "number of parts", unit: "", min: 1.0, max: 16.0 };
 /// Young's modulus of a body.
 pub const YOUNGS_MODULUS: Range = Range { quantity: "youngs_modulus", unit: "Pa", min: 1e-3, max: 1e18 };
 /// Poisson's ratio of a body; auxetic bodies are allowed.
@@ -29,6 +49,8 @@ pub const E_STAR: Range = Range { quantity: "e_star", unit: "Pa", min: 1e-3, max
 pub const G_STAR: Range = Range { quantity: "g_star", unit: "Pa", min: 1e-3, max: 1e18 };
 /// Coulomb's coefficient of friction; nought means no tangential force at all.
 pub const FRICTION: Range = Range { quantity: "friction", unit: "", min: 0.0, max: 100.0 };
+/// The smallest coefficient of friction beside nought: below it, displacements over that of gross slip outgrow all numbers.
+pub const LEAST_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
 pub const NORMAL_FORCE: Range = Range { quantity: "normal_force", unit: "N", min: 0.0, max: 1e18 };
 /// The contact radius that a preload may ask for; nought is a contact just touching.
@@ -62,6 +84,18 @@ impl Range {
             Err(Error::OutOfRange { quantity: self.quantity, value, allowed: self.to_string() })
         }
     }
+}
+
+/// Gives a coefficient of friction back: nought, or from [`LEAST_FRICTION`] on.
+///
+/// # Errors
+/// [`Error::OutOfRange`] otherwise.
+pub fn check_friction(friction: f64) -> Result<f64, Error> {
+    if friction > 0.0 && friction < LEAST_FRICTION {
+        let allowed = format!("0, or {} to {}", short(LEAST_FRICTION), short(FRICTION.max));
+        return Err(Error::OutOfRange { quantity: FRICTION.quantity, value: friction, allowed });
+    }
+    FRICTION.check(friction)
 }
 
 impl fmt::Display for Range {

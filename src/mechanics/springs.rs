@@ -20,6 +20,7 @@ const COMPARED: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Springs {
     profile: Profile,
+    virgin: Contact,
     initial: Figures,
     friction: f64,
     spacing: f64,
@@ -83,6 +84,7 @@ impl Springs {
             .collect();
         Ok(Springs {
             profile,
+            virgin: contact,
             initial,
             friction,
             spacing,
@@ -100,6 +102,12 @@ impl Springs {
     #[must_use]
     pub fn initial_figures(&self) -> Figures {
         self.initial
+    }
+
+    /// The exact contact that the foundation stands for, before its first move.
+    #[must_use]
+    pub fn virgin(&self) -> &Contact {
+        &self.virgin
     }
 
     /// Bound on a spring's displacement over its normal displacement, mu E*/G*.
@@ -326,6 +334,28 @@ impl Springs {
         sum / std::f64::consts::PI
     }
 
+    /// Tangential displacement of the surface, m, at a radius, m: each spring moves its own cell.
+    #[must_use]
+    pub fn surface_displacement(&self, radius: f64) -> f64 {
+        let half = 0.5 * self.spacing;
+        let Some(centre) = self.in_contact().next() else { return 0.0 };
+        if radius <= half {
+            return centre.carried;
+        }
+        let angle = |x: f64| (x / radius).clamp(0.0, 1.0).asin();
+        let edge = self.contact_radius();
+        let share = |spring: &Spring| angle((spring.radius + half).min(edge)) - angle(spring.radius - half);
+        let sum: f64 = self.in_contact().map(|spring| spring.carried * share(spring)).sum();
+        std::f64::consts::FRAC_2_PI * sum
+    }
+
+    /// Slip under the indenter, m, at a radius, m; none outside the contact.
+    #[must_use]
+    pub fn slip(&self, radius: f64) -> Option<f64> {
+        let touched = self.indentation > 0.0 && radius <= self.contact_radius();
+        touched.then(|| self.displacement - self.surface_displacement(radius))
+    }
+
     /// The extrema of the shear stress, as far as the springs resolve them.
     #[must_use]
     pub fn residual(&self) -> Residual {
@@ -341,6 +371,6 @@ impl Springs {
             .filter(|near| (near[1].shear - near[0].shear) * (near[2].shear - near[1].shear) < 0.0)
             .map(|near| near[1])
             .collect();
-        Residual::of(self.shear(0.0), peaks)
+        Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).is_finite())
     }
 }

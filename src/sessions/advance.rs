@@ -3,6 +3,7 @@
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use crate::mechanics::protocol::equal_peaks;
 use crate::simulation::{Stop, Timer, accuracy, cost, follow, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
@@ -121,6 +122,8 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
+    let law = |reversals, cutoff_radius| equal_peaks(&live.contact, reversals, cutoff_radius);
+    let protocol = advance.plan.protocol(&law);
     follow(&mut live.contact, &advance.plan, tolerance, stop, |step, state| {
         sequence += 1;
         records.push(Record { sequence, step, tolerance, state, at: now });
@@ -136,10 +139,13 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
             let state = live.contact.state().into();
             written(&MoveReply { id, sequence, state, stress, accuracy })?
         }
-        (_, Steps::All) => written(&PathReply { id, sequence, steps: states.collect(), stress, accuracy })?,
+        (_, Steps::All) => {
+            let steps = states.collect();
+            written(&PathReply { id, sequence, steps, stress, protocol, accuracy })?
+        }
         (_, Steps::Last) => {
             let steps = vec![live.contact.state().into()];
-            written(&PathReply { id, sequence, steps, stress, accuracy })?
+            written(&PathReply { id, sequence, steps, stress, protocol, accuracy })?
         }
     };
     Ok(Done { records, reply: Reply { created: None, sequence, body } })

@@ -17,7 +17,7 @@ use tokio::sync::OwnedMutexGuard;
 use uuid::Uuid;
 
 use crate::mechanics::{Contact, Setup};
-use crate::simulation::{self, Pool, PoolError, cost, warnings};
+use crate::simulation::{self, Pool, PoolError, Seen, cost, warnings};
 use crate::store::{Reply, RequestKey, Session, Store, StoreError};
 use crate::wire::session::Creation;
 use crate::wire::{At, ContactDefinition, Faults, Figures, NewSession, Warning};
@@ -255,7 +255,8 @@ fn start(definition: &ContactDefinition, setup: Setup) -> Result<(Contact, Arc<A
     let elasticity = setup.elasticity;
     let contact = simulation::contact(setup, "")?;
     let figures: Figures = contact.figures().into();
-    let warnings = warnings(&definition.profile, &elasticity, figures.contact_radius);
+    let seen = Seen { contact_radius: figures.contact_radius, e_star: figures.e_star, missed: None };
+    let warnings = warnings(&definition.profile, &elasticity, &seen);
     Ok((contact, Arc::new(About { figures, warnings })))
 }
 

@@ -45,7 +45,9 @@ impl Sessions {
                 radius: stress.radius,
                 pressure: stress.pressure,
                 shear: stress.shear,
-                residual: residual.then(|| simulation::residual(&contact)).transpose()?,
+                slip: stress.slip,
+                displacement: stress.displacement,
+                residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
             })
         };
         Ok((sequence, self.pool.run(cost, work).await??))

@@ -15,7 +15,7 @@ pub use pool::{LONGEST_WAIT, Pool, PoolError};
 pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
-pub use warnings::warnings;
+pub use warnings::{Seen, warnings};
 
 use crate::mechanics;
 use crate::wire::limits;
@@ -54,6 +54,10 @@ pub enum Failure {
 fn quantity(error: &mechanics::Error) -> Option<&'static str> {
     match error {
         mechanics::Error::OutOfRange { quantity, .. } => Some(quantity),
-        mechanics::Error::ForceExceedsFriction { .. } | mechanics::Error::Unsupported { .. } => None,
+        mechanics::Error::BeyondProfile { .. }
+        | mechanics::Error::NotConvexEnough { .. }
+        | mechanics::Error::Table { .. }
+        | mechanics::Error::ForceExceedsFriction { .. }
+        | mechanics::Error::Unsupported { .. } => None,
     }
 }

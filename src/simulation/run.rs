@@ -2,12 +2,18 @@
 
 use std::time::{Duration, Instant};
 
+use crate::mechanics::protocol::equal_peaks;
 use crate::mechanics::{Contact, Estimate, Setup, Springs, springs};
 use crate::wire::reply::{Accuracy, State, finite};
 use crate::wire::simulate::Simulation;
-use crate::wire::{self, ContactDefinition, Move, Plan, Residual, Sampling, SimulateReply, Steps, Stress, limits};
+use crate::wire::{
+    self, ContactDefinition, Move, Plan, Residual, Sampling, SimulateReply, SolverKind, Steps, Stress, limits,
+};
 
-use super::{Failure, LONGEST_WORK, Solver, Stop, cost, quantity, warnings};
+use super::{
+    Failure, LONGEST_WORK, Solver, Stop, cost, quantity,
+    warnings::{Seen, warnings},
+};
 
 /// Measures the time spent computing.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +47,8 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
         Some(wire::Solver::Springs(wire::Springs { count })) => {
             let setup = &simulation.setup;
             let start = contact(setup.clone(), "/contact")?;
-            let moves = simulation.plan.moves(start.figures().gross_slip_displacement).map(|step| step.step());
+            let law = |reversals, cutoff_radius| equal_peaks(&start, reversals, cutoff_radius);
+            let moves = simulation.plan.moves(start.figures().gross_slip_displacement, &law).map(|step| step.step());
             let reach = springs::reach(setup, &moves.collect::<Vec<_>>());
             let reach = reach.map_err(|error| Failure::Refused { pointer: "/path".to_owned(), error })?;
             let springs = Springs::new(setup.clone(), count, reach).map_err(refused_at("/contact"))?;
@@ -58,6 +65,7 @@ fn run<S: Solver>(
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
     let figures = solver.figures();
+    let protocol = simulation.plan.protocol(&|reversals, cutoff_radius| solver.equal_peaks(reversals, cutoff_radius));
     let mut largest = figures.contact_radius;
     let mut steps = Vec::with_capacity(if simulation.steps == Steps::All { simulation.plan.length() } else { 1 });
     follow(&mut solver, &simulation.plan, simulation.tolerance, stop, |_, state| {
@@ -68,14 +76,22 @@ fn run<S: Solver>(
         steps.push(state);
     })?;
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
-    let residual = simulation.residual.then(|| residual(&solver)).transpose()?;
+    let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
+    let accuracy = accuracy(&solver, timer, reason);
+    let missed = (accuracy.force_error > simulation.tolerance).then_some(accuracy.force_error);
+    let seen = Seen {
+        contact_radius: largest,
+        e_star: figures.e_star,
+        missed: missed.filter(|_| S::KIND == SolverKind::Exact),
+    };
     Ok(SimulateReply {
         contact: figures.into(),
         steps,
         stress,
         residual,
-        accuracy: accuracy(&solver, timer, reason),
-        warnings: warnings(&simulation.definition.profile, &simulation.setup.elasticity, largest),
+        protocol,
+        warnings: warnings(&simulation.definition.profile, &simulation.setup.elasticity, &seen),
+        accuracy,
     })
 }
 
@@ -106,7 +122,8 @@ pub fn follow<S: Solver>(
     mut each: impl FnMut(Move, State),
 ) -> Result<(), Failure> {
     let gross_slip = solver.figures().gross_slip_displacement;
-    for (index, step) in plan.moves(gross_slip).enumerate() {
+    let moves = plan.moves(gross_slip, &|reversals, cutoff_radius| solver.equal_peaks(reversals, cutoff_radius));
+    for (index, step) in moves.enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance).map_err(|error| {
             let named = quantity(&error).filter(|name| step.names(name));
@@ -132,20 +149,26 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
     };
     let pressure = sampling.fields.pressure.then(|| along(&|radius| solver.pressure(radius))).transpose()?;
     let shear = sampling.fields.shear.then(|| along(&|radius| solver.shear(radius))).transpose()?;
-    Ok(Stress { radius, pressure, shear })
+    let slip = |radius| solver.slip(radius).unwrap_or(f64::NAN);
+    let slip = sampling.fields.slip.then(|| along(&slip)).transpose()?;
+    let displacement = |radius| solver.surface_displacement(radius);
+    let displacement = sampling.fields.displacement.then(|| along(&displacement)).transpose()?;
+    Ok(Stress { radius, pressure, shear, slip, displacement })
 }
 
 /// The extrema of the shear stress.
 ///
 /// # Errors
-/// [`Failure::TooLong`] if the memory is so deep that they would take longer than is allowed: the search for them does
-/// not look at a [`Stop`].
-pub fn residual<S: Solver>(solver: &S) -> Result<Residual, Failure> {
+/// [`Failure`] if the memory is so deep that they would take longer than is allowed, or nobody waits for them.
+pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     let cost = Duration::from_nanos(cost::estimated_cost(0, 0, solver.depth(), 0, true));
     if cost > LONGEST_WORK {
         return Err(Failure::TooLong { pointer: "/residual".to_owned() });
     }
-    Ok(solver.residual().into())
+    match solver.residual(&|| stop.check().is_ok()) {
+        Some(residual) => Ok(residual.into()),
+        None => Err(stop.check().err().unwrap_or(Failure::Stopped)),
+    }
 }
 
 /// Which solver answered, how well, and how long it took.

@@ -1,5 +1,6 @@
 //! What the two solvers have in common.
 
+use crate::mechanics::protocol::{EqualPeaks, equal_peaks};
 use crate::mechanics::{Contact, Error, Estimate, Figures, Move, Residual, Springs, State};
 use crate::wire::SolverKind;
 
@@ -24,8 +25,14 @@ pub trait Solver {
     fn pressure(&self, radius: f64) -> f64;
     /// Shear stress at a radius (m), Pa.
     fn shear(&self, radius: f64) -> f64;
-    /// The extrema of the shear stress.
-    fn residual(&self) -> Residual;
+    /// Slip under the indenter at a radius (m), m; none outside the contact.
+    fn slip(&self, radius: f64) -> Option<f64>;
+    /// Tangential displacement of the surface at a radius (m), m.
+    fn surface_displacement(&self, radius: f64) -> f64;
+    /// The law of equal peaks for the profile and the load at hand.
+    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks;
+    /// The extrema of the shear stress, if `go_on` has not ended the search for them.
+    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
     fn accuracy(&self) -> Estimate;
 }
@@ -57,8 +64,20 @@ impl Solver for Contact {
         self.shear(radius)
     }
 
-    fn residual(&self) -> Residual {
-        self.residual()
+    fn slip(&self, radius: f64) -> Option<f64> {
+        self.slip(radius)
+    }
+
+    fn surface_displacement(&self, radius: f64) -> f64 {
+        self.surface_displacement(radius)
+    }
+
+    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
+        equal_peaks(self, reversals, cutoff_radius)
+    }
+
+    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
+        self.residual_while(go_on)
     }
 
     fn accuracy(&self) -> Estimate {
@@ -93,8 +112,20 @@ impl Solver for Springs {
         self.shear(radius)
     }
 
-    fn residual(&self) -> Residual {
-        self.residual()
+    fn slip(&self, radius: f64) -> Option<f64> {
+        self.slip(radius)
+    }
+
+    fn surface_displacement(&self, radius: f64) -> f64 {
+        self.surface_displacement(radius)
+    }
+
+    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
+        equal_peaks(self.virgin(), reversals, cutoff_radius)
+    }
+
+    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
+        go_on().then(|| self.residual())
     }
 
     fn accuracy(&self) -> Estimate {

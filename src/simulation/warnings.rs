@@ -1,4 +1,4 @@
-//! What to know about a result that is nevertheless given.
+//! What to know about a result that is nevertheless given. Each code has its paragraph in `docs/warnings.md`.
 
 use crate::mechanics::Elasticity;
 use crate::wire::{Profile, Warning};
@@ -7,27 +7,68 @@ use crate::wire::{Profile, Warning};
 const BETA: f64 = 1e-12;
 /// The ratio of contact radius to radius of curvature up to which a half-space stands for the body.
 const LARGE_CONTACT: f64 = 0.3;
+/// A contact radius (m), and a reduced modulus (Pa) with a curvature radius (m), that metres and pascals rarely give.
+const HUGE_CONTACT: f64 = 0.1;
+const SOFT: f64 = 1e7;
+const HUGE_CURVATURE: f64 = 1.0;
 
-/// The warnings for a pair of bodies, and the largest contact radius (m) that is known.
+/// What a run has shown that may call for a warning.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// The largest contact radius, m.
+    pub contact_radius: f64,
+    /// The reduced modulus E*, Pa.
+    pub e_star: f64,
+    /// The estimated error of the force, if it is beyond the tolerance.
+    pub missed: Option<f64>,
+}
+
+/// The warnings for a pair of bodies, and what is known of the run.
 #[must_use]
-pub fn warnings(profile: &Profile, elasticity: &Elasticity, contact_radius: f64) -> Vec<Warning> {
+pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<Warning> {
     let mut warnings = Vec::new();
+    let mut warn = |code: &str, message: String| warnings.push(Warning { code: code.to_owned(), message });
     if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA) {
-        warnings.push(Warning {
-            code: "dundurs_beta".to_owned(),
-            message: format!(
+        warn(
+            "dundurs_beta",
+            format!(
                 "the bodies are unlike (Dundurs' beta = {beta:.4}): pressing them together also shears them, which is neglected"
             ),
-        });
+        );
     }
-    let ratio = profile.curvature_radius().map_or(0.0, |curvature| contact_radius / curvature);
+    if let Some(nu) = elasticity.largest_poisson_ratio().filter(|nu| *nu > 0.0) {
+        warn(
+            "slip_direction",
+            format!(
+                "with a Poisson's ratio of {nu} the true slip is not quite parallel to the motion, as it is taken to be"
+            ),
+        );
+    }
+    let curvature = profile.curvature_radius();
+    let ratio = curvature.map_or(0.0, |curvature| seen.contact_radius / curvature);
     if ratio > LARGE_CONTACT {
-        warnings.push(Warning {
-            code: "large_contact".to_owned(),
-            message: format!(
+        warn(
+            "large_contact",
+            format!(
                 "the contact radius is {ratio:.3} of the radius of curvature: beyond {LARGE_CONTACT} a body is no longer a half-space"
             ),
-        });
+        );
+    }
+    let soft_and_huge = seen.e_star < SOFT && curvature.is_some_and(|curvature| curvature >= HUGE_CURVATURE);
+    if seen.contact_radius > HUGE_CONTACT || soft_and_huge {
+        warn(
+            "units",
+            format!(
+                "a contact radius of {} m with E* = {} Pa: are lengths in m and moduli in Pa?",
+                seen.contact_radius, seen.e_star
+            ),
+        );
+    }
+    if let Some(error) = seen.missed {
+        warn(
+            "tolerance_not_met",
+            format!("the force may be off by {error:.1e} of mu F_N, more than the tolerance asked for"),
+        );
     }
     warnings
 }

@@ -24,3 +24,5 @@ pub const MEMORY_DEPTH: usize = 200_000;
 pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
 /// Faults that one reply lists; a body can hold a great many.
 pub const FAULTS: usize = 100;
+/// Profiles in one sum.
+pub const SUM_PARTS: RangeInclusive<usize> = 1..=16;

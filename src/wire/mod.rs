@@ -23,10 +23,10 @@ pub mod stress;
 pub use check::{At, Fault, Faults};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use parse::{Document, Rejection, parse, read};
-pub use path::{FallingAmplitude, Move, Path, Plan};
+pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
 pub use problem::ProblemDocument;
 pub use profile::{Profile, SphereProfile};
-pub use reply::{Accuracy, Figures, Peak, Regime, Residual, SolverKind, State, Warning};
+pub use reply::{Accuracy, Figures, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
     CreateRequest, ForkRequest, HistoryItem, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
     SessionPage, SessionReply, SessionSummary, StressReply,

@@ -8,6 +8,7 @@ use crate::mechanics::{self, Normal, Tangential, protocol, range, range::Range};
 use super::check::{At, Faults};
 use super::limits;
 use super::one_key::{given, one_key};
+use super::reply::Protocol;
 
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
@@ -50,10 +51,30 @@ pub enum Path {
     Force(Vec<f64>),
     /// To and fro with an amplitude that falls linearly to nought (eq. 20 of the paper).
     FallingAmplitude(FallingAmplitude),
+    /// To and fro from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the profile at hand.
+    EqualPeaks(EqualPeaks),
 }
 one_key!(Path {
-    "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude
+    "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude,
+    "equal_peaks" => EqualPeaks
 });
+
+/// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement nought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"reversals": 20}))]
+pub struct EqualPeaks {
+    /// Number of reversals N_R; the path has one move more.
+    pub reversals: usize,
+    /// Radius from which on the peaks are equal, m. The law needs one where the slope of the profile jumps (the tip of a
+    /// cone, the rim of a flat); left out, it is there a tenth of the way from that radius to the edge, else nought.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub cutoff_radius: Option<f64>,
+}
+
+/// The law of equal peaks of a contact: displacements for a number of reversals and perhaps a cut-off radius, m.
+pub type Law<'a> = &'a dyn Fn(usize, Option<f64>) -> protocol::EqualPeaks;
 
 /// A tangential oscillation that dies away; it ends at displacement nought.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -79,6 +100,8 @@ pub enum Plan {
     Force(Vec<f64>),
     /// Falling amplitude.
     FallingAmplitude(FallingAmplitude),
+    /// Equal peaks.
+    EqualPeaks(EqualPeaks),
     /// A single move that is the body itself.
     Single(Move),
 }
@@ -179,6 +202,14 @@ impl Path {
                 }
                 Plan::FallingAmplitude(fall)
             }
+            Path::EqualPeaks(peaks) => {
+                let at = at.member("equal_peaks");
+                faults.count(at.member("reversals"), peaks.reversals, &limits::REVERSALS);
+                if let Some(radius) = peaks.cutoff_radius {
+                    faults.number(at.member("cutoff_radius"), radius, &range::CONTACT_RADIUS);
+                }
+                Plan::EqualPeaks(peaks)
+            }
         }
     }
 }
@@ -197,6 +228,7 @@ impl Plan {
             Plan::Moves(moves) => moves.len(),
             Plan::Displacement(targets) | Plan::Force(targets) => targets.len(),
             Plan::FallingAmplitude(fall) => fall.reversals + 1,
+            Plan::EqualPeaks(peaks) => peaks.reversals + 1,
             Plan::Single(_) => 1,
         }
     }
@@ -207,12 +239,21 @@ impl Plan {
         match self {
             Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
             Plan::Single(step) => usize::from(step.is_curved()),
-            Plan::Displacement(_) | Plan::Force(_) | Plan::FallingAmplitude(_) => 0,
+            Plan::Displacement(_) | Plan::Force(_) | Plan::FallingAmplitude(_) | Plan::EqualPeaks(_) => 0,
         }
     }
 
-    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them.
-    pub fn moves(&self, gross_slip: f64) -> Box<dyn Iterator<Item = Move> + Send + '_> {
+    /// The amplitudes that the law of equal peaks gives, if the path follows it.
+    #[must_use]
+    pub fn protocol(&self, law: Law<'_>) -> Option<Protocol> {
+        let Plan::EqualPeaks(peaks) = self else { return None };
+        let protocol::EqualPeaks { displacements, cutoff_radius } = law(peaks.reversals, peaks.cutoff_radius);
+        Some(Protocol { displacement: displacements, cutoff_radius })
+    }
+
+    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and `law` its law
+    /// of equal peaks.
+    pub fn moves(&self, gross_slip: f64, law: Law<'_>) -> Box<dyn Iterator<Item = Move> + Send + '_> {
         match self {
             Plan::Moves(moves) => Box::new(moves.iter().copied()),
             Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
@@ -220,6 +261,10 @@ impl Plan {
             Plan::FallingAmplitude(fall) => {
                 let amplitude = fall.amplitude.unwrap_or(gross_slip);
                 Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
+            }
+            Plan::EqualPeaks(_) => {
+                let displacements = self.protocol(law).map_or_else(Vec::new, |protocol| protocol.displacement);
+                Box::new(displacements.into_iter().map(Move::displacement))
             }
             Plan::Single(step) => Box::new(std::iter::once(*step)),
         }
@@ -234,6 +279,7 @@ impl Plan {
             Plan::Displacement(_) => format!("/path/displacement/{index}"),
             Plan::Force(_) => format!("/path/force/{index}"),
             Plan::FallingAmplitude(_) => "/path/falling_amplitude".to_owned(),
+            Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
             Plan::Single(_) => quantity,
         }
     }

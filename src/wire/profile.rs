@@ -1,23 +1,46 @@
 //! The profile: which shape touches the flat.
 //!
-//! A new family is a variant of [`Profile`] with its document, a name in `Kind`, its members in `Members`, and an arm
+//! A new family is a variant of [`Profile`] with its document, a name in [`Kind`], its members in [`Members`], and an arm
 //! in the two matches.
 
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 use utoipa::ToSchema;
 
-use crate::mechanics::{self, range};
+use crate::mechanics::profile::{
+    Cone, ExactSphere, FlatPunch, PowerLaw, Profile as Shape, RoundedCone, RoundedPunch, Sphere, Sum, TruncatedCone,
+    TruncatedSphere,
+};
+use crate::mechanics::{Error, range, range::Range};
 
 use super::check::{At, Faults};
+use super::limits;
 use super::one_key::given;
 
 /// The shape of the indenter before it is loaded, chosen by `type`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(tag = "type", rename_all = "snake_case")]
-#[schema(example = json!({"type": "sphere", "radius": 0.01}))]
+#[schema(example = json!({"type": "sphere", "radius": 0.01}), no_recursion)]
 pub enum Profile {
     /// Hertz's parabola z = r²/(2R), the shape that is meant by a sphere in contact mechanics.
     Sphere(SphereProfile),
+    /// The sphere itself, z = R − √(R² − r²).
+    ExactSphere(ExactSphereProfile),
+    /// A cone, z = slope · r. Pressure and shear stress are infinite at its tip.
+    Cone(ConeProfile),
+    /// A power of the radius, z = coefficient · r^exponent.
+    PowerLaw(PowerLawProfile),
+    /// A cylinder with a sharp edge, where pressure and shear stress are infinite.
+    FlatPunch(FlatPunchProfile),
+    /// A cone with a flat end. Pressure and shear stress are infinite at the rim of the flat.
+    TruncatedCone(TruncatedConeProfile),
+    /// A worn sphere: a parabola with a flat end, at whose rim pressure and shear stress are infinite.
+    TruncatedSphere(TruncatedSphereProfile),
+    /// A flat end with a rounded edge, z = (r − flat_radius)²/(2 · edge_radius) outside the flat.
+    RoundedPunch(RoundedPunchProfile),
+    /// A cone whose tip is a parabola up to `tip_radius`.
+    RoundedCone(RoundedConeProfile),
+    /// Several profiles added up, z = Σ zᵢ.
+    Sum(SumProfile),
 }
 
 /// A sphere in Hertz's approximation.
@@ -27,31 +50,194 @@ pub struct SphereProfile {
     pub radius: f64,
 }
 
+/// A sphere without approximation.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct ExactSphereProfile {
+    /// Radius R, m; the contact radius stays below it.
+    pub radius: f64,
+}
+
+/// A cone.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct ConeProfile {
+    /// Slope dz/dr, a pure number.
+    pub slope: f64,
+}
+
+/// A power law.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct PowerLawProfile {
+    /// Exponent n, a pure number.
+    pub exponent: f64,
+    /// Coefficient, m^(1−n).
+    pub coefficient: f64,
+}
+
+/// A flat punch.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct FlatPunchProfile {
+    /// Radius of the punch, m.
+    pub radius: f64,
+}
+
+/// A truncated cone.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct TruncatedConeProfile {
+    /// Slope dz/dr outside the flat, a pure number.
+    pub slope: f64,
+    /// Radius of the flat end, m.
+    pub flat_radius: f64,
+}
+
+/// A truncated sphere.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct TruncatedSphereProfile {
+    /// Radius of curvature R, m.
+    pub radius: f64,
+    /// Radius of the flat end, m.
+    pub flat_radius: f64,
+}
+
+/// A flat punch with a rounded edge.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct RoundedPunchProfile {
+    /// Radius of the flat end, m.
+    pub flat_radius: f64,
+    /// Radius of curvature of the edge, m.
+    pub edge_radius: f64,
+}
+
+/// A cone with a rounded tip.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct RoundedConeProfile {
+    /// Slope dz/dr of the cone, a pure number.
+    pub slope: f64,
+    /// Radius up to which the tip is a parabola, m.
+    pub tip_radius: f64,
+}
+
+/// A sum of profiles.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct SumProfile {
+    /// The profiles that are added up.
+    pub parts: Vec<Profile>,
+}
+
 impl Profile {
     /// The checked profile; its faults are noted at `at`.
-    pub fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<mechanics::profile::Profile> {
-        match self {
-            Profile::Sphere(sphere) => {
-                faults.number(at.member("radius"), sphere.radius, &range::RADIUS);
-                mechanics::profile::Sphere::new(sphere.radius).ok().map(mechanics::profile::Profile::Sphere)
+    pub fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+        let mut number = |name: &str, value: f64, range: &Range| faults.number(at.member(name), value, range);
+        let shape = match self {
+            Profile::Sphere(SphereProfile { radius }) => {
+                number("radius", *radius, &range::RADIUS);
+                Sphere::new(*radius).map(Shape::Sphere)
             }
-        }
+            Profile::ExactSphere(ExactSphereProfile { radius }) => {
+                number("radius", *radius, &range::RADIUS);
+                ExactSphere::new(*radius).map(Shape::ExactSphere)
+            }
+            Profile::Cone(ConeProfile { slope }) => {
+                number("slope", *slope, &range::SLOPE);
+                Cone::new(*slope).map(Shape::Cone)
+            }
+            Profile::PowerLaw(PowerLawProfile { exponent, coefficient }) => {
+                number("exponent", *exponent, &range::EXPONENT);
+                number("coefficient", *coefficient, &range::COEFFICIENT);
+                PowerLaw::new(*exponent, *coefficient).map(Shape::PowerLaw)
+            }
+            Profile::FlatPunch(FlatPunchProfile { radius }) => {
+                number("radius", *radius, &range::RADIUS);
+                FlatPunch::new(*radius).map(Shape::FlatPunch)
+            }
+            Profile::TruncatedCone(TruncatedConeProfile { slope, flat_radius }) => {
+                number("slope", *slope, &range::SLOPE);
+                number("flat_radius", *flat_radius, &range::FLAT_RADIUS);
+                TruncatedCone::new(*slope, *flat_radius).map(Shape::TruncatedCone)
+            }
+            Profile::TruncatedSphere(TruncatedSphereProfile { radius, flat_radius }) => {
+                number("radius", *radius, &range::RADIUS);
+                number("flat_radius", *flat_radius, &range::FLAT_RADIUS);
+                TruncatedSphere::new(*radius, *flat_radius).map(Shape::TruncatedSphere)
+            }
+            Profile::RoundedPunch(RoundedPunchProfile { flat_radius, edge_radius }) => {
+                number("flat_radius", *flat_radius, &range::FLAT_RADIUS);
+                number("edge_radius", *edge_radius, &range::EDGE_RADIUS);
+                RoundedPunch::new(*flat_radius, *edge_radius).map(Shape::RoundedPunch)
+            }
+            Profile::RoundedCone(RoundedConeProfile { slope, tip_radius }) => {
+                number("slope", *slope, &range::SLOPE);
+                number("tip_radius", *tip_radius, &range::TIP_RADIUS);
+                RoundedCone::new(*slope, *tip_radius).map(Shape::RoundedCone)
+            }
+            Profile::Sum(SumProfile { parts }) => return check_sum(parts, at, faults),
+        };
+        noted(shape, at, faults)
     }
 
     /// The radius of curvature against which a contact radius is small or large, m, where the shape has one.
     #[must_use]
     pub fn curvature_radius(&self) -> Option<f64> {
         match self {
-            Profile::Sphere(sphere) => Some(sphere.radius),
+            Profile::Sphere(SphereProfile { radius })
+            | Profile::ExactSphere(ExactSphereProfile { radius })
+            | Profile::TruncatedSphere(TruncatedSphereProfile { radius, .. }) => Some(*radius),
+            Profile::RoundedPunch(RoundedPunchProfile { edge_radius, .. }) => Some(*edge_radius),
+            Profile::Sum(SumProfile { parts }) => parts.iter().filter_map(Profile::curvature_radius).reduce(f64::min),
+            _ => None,
         }
     }
 }
 
+fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+    let place = at.member("parts");
+    if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
+        return None;
+    }
+    let shapes: Vec<_> = parts.iter().enumerate().map(|(index, part)| part.check(place.index(index), faults)).collect();
+    let shapes: Option<Vec<Shape>> = shapes.into_iter().collect();
+    noted(Sum::new(shapes?).map(Shape::Sum), at, faults)
+}
+
+/// The shape, or a note of what is wrong with numbers that are each in their range.
+fn noted(shape: Result<Shape, Error>, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+    if let Err(error) = &shape
+        && faults.is_empty()
+    {
+        faults.add(at, error);
+    }
+    shape.ok()
+}
+
 /// The names of the families.
-#[derive(Deserialize)]
+#[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Kind {
     Sphere,
+    ExactSphere,
+    Cone,
+    PowerLaw,
+    FlatPunch,
+    TruncatedCone,
+    TruncatedSphere,
+    RoundedPunch,
+    RoundedCone,
+    Sum,
+}
+
+impl Kind {
+    /// The members beside `type`, all of which are needed.
+    fn members(self) -> &'static [&'static str] {
+        match self {
+            Kind::Sphere | Kind::ExactSphere | Kind::FlatPunch => &["radius"],
+            Kind::Cone => &["slope"],
+            Kind::PowerLaw => &["exponent", "coefficient"],
+            Kind::TruncatedCone => &["slope", "flat_radius"],
+            Kind::TruncatedSphere => &["radius", "flat_radius"],
+            Kind::RoundedPunch => &["flat_radius", "edge_radius"],
+            Kind::RoundedCone => &["slope", "tip_radius"],
+            Kind::Sum => &["parts"],
+        }
+    }
 }
 
 /// The members of all families side by side. Reading them flat keeps the path of a fault, which serde's tagged enums lose
@@ -63,16 +249,77 @@ struct Members {
     kind: Kind,
     #[serde(default, deserialize_with = "given")]
     radius: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    slope: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    exponent: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    coefficient: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    flat_radius: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    edge_radius: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    tip_radius: Option<f64>,
+    #[serde(default, deserialize_with = "given")]
+    parts: Option<Vec<Profile>>,
+}
+
+impl Members {
+    /// Refuses what belongs to another family.
+    fn belong<E: serde::de::Error>(&self) -> Result<(), E> {
+        let given = [
+            ("radius", self.radius.is_some()),
+            ("slope", self.slope.is_some()),
+            ("exponent", self.exponent.is_some()),
+            ("coefficient", self.coefficient.is_some()),
+            ("flat_radius", self.flat_radius.is_some()),
+            ("edge_radius", self.edge_radius.is_some()),
+            ("tip_radius", self.tip_radius.is_some()),
+            ("parts", self.parts.is_some()),
+        ];
+        let known = self.kind.members();
+        match given.iter().find(|(name, is_there)| *is_there && !known.contains(name)) {
+            Some((stranger, _)) => Err(E::unknown_field(stranger, known)),
+            None => Ok(()),
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for Profile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let members = Members::deserialize(deserializer)?;
-        match members.kind {
-            Kind::Sphere => {
-                let radius = members.radius.ok_or_else(|| D::Error::missing_field("radius"))?;
-                Ok(Profile::Sphere(SphereProfile { radius }))
+        members.belong()?;
+        let Members { kind, radius, slope, exponent, coefficient, flat_radius, edge_radius, tip_radius, parts } =
+            members;
+        let needed = |value: Option<f64>, name| value.ok_or_else(|| D::Error::missing_field(name));
+        let radius = || needed(radius, "radius");
+        let slope = || needed(slope, "slope");
+        let flat_radius = || needed(flat_radius, "flat_radius");
+        Ok(match kind {
+            Kind::Sphere => Profile::Sphere(SphereProfile { radius: radius()? }),
+            Kind::ExactSphere => Profile::ExactSphere(ExactSphereProfile { radius: radius()? }),
+            Kind::Cone => Profile::Cone(ConeProfile { slope: slope()? }),
+            Kind::PowerLaw => Profile::PowerLaw(PowerLawProfile {
+                exponent: needed(exponent, "exponent")?,
+                coefficient: needed(coefficient, "coefficient")?,
+            }),
+            Kind::FlatPunch => Profile::FlatPunch(FlatPunchProfile { radius: radius()? }),
+            Kind::TruncatedCone => {
+                Profile::TruncatedCone(TruncatedConeProfile { slope: slope()?, flat_radius: flat_radius()? })
             }
-        }
+            Kind::TruncatedSphere => {
+                Profile::TruncatedSphere(TruncatedSphereProfile { radius: radius()?, flat_radius: flat_radius()? })
+            }
+            Kind::RoundedPunch => Profile::RoundedPunch(RoundedPunchProfile {
+                flat_radius: flat_radius()?,
+                edge_radius: needed(edge_radius, "edge_radius")?,
+            }),
+            Kind::RoundedCone => Profile::RoundedCone(RoundedConeProfile {
+                slope: slope()?,
+                tip_radius: needed(tip_radius, "tip_radius")?,
+            }),
+            Kind::Sum => Profile::Sum(SumProfile { parts: parts.ok_or_else(|| D::Error::missing_field("parts"))? }),
+        })
     }
 }

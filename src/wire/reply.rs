@@ -114,11 +114,20 @@ pub enum SolverKind {
     Springs,
 }
 
+/// The path that the law of equal peaks has given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Protocol {
+    /// Displacements, m; usable as a path of their own.
+    pub displacement: Vec<f64>,
+    /// Radius from which on the peaks are equal, m.
+    pub cutoff_radius: f64,
+}
+
 /// Something to know about a result that is nevertheless given.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning {
-    /// A name for programs: `dundurs_beta`, `large_contact`.
+    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `tolerance_not_met`, `units`.
     pub code: String,
     /// An explanation for people.
     pub message: String,
@@ -173,7 +182,7 @@ impl From<mechanics::Residual> for Residual {
         Residual {
             centre: residual.centre.and_then(finite),
             peaks: residual.peaks.into_iter().map(peak).collect(),
-            max: finite(residual.max),
+            max: residual.max.and_then(finite),
             min: residual.min.and_then(finite),
             mean: residual.mean.and_then(finite),
         }

@@ -13,7 +13,7 @@ use super::one_key::given;
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
 use super::profile::Profile;
-use super::reply::{Accuracy, Figures, Residual, State, Warning};
+use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
 use super::simulate::Steps;
 use super::stress::{Sampling, Stress, StressRequest};
 
@@ -197,6 +197,10 @@ pub struct PathReply {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub stress: Option<Stress>,
+    /// The path, if it follows the law of equal peaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
 }
@@ -214,6 +218,14 @@ pub struct StressReply {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub shear: Option<Vec<Option<f64>>>,
+    /// Slip, m; `null` outside the contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub slip: Option<Vec<Option<f64>>>,
+    /// Tangential displacement of the surface, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement: Option<Vec<Option<f64>>>,
     /// The extrema of the shear stress, if asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

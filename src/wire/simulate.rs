@@ -11,7 +11,7 @@ use super::limits;
 use super::one_key::{given, one_key};
 use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
-use super::reply::{Accuracy, Figures, Residual, State, Warning};
+use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// A contact, and the path it is to follow; nothing of it is kept. Only what is asked for is computed.
@@ -100,6 +100,10 @@ pub struct SimulateReply {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub residual: Option<Residual>,
+    /// The path, if it follows the law of equal peaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
     /// What to know about the result.

@@ -36,11 +36,15 @@ pub enum Field {
     Pressure,
     /// Shear stress τ(r), Pa; a positive displacement of the indenter gives a positive stress.
     Shear,
+    /// Slip U − u(r) under the indenter since the preload, m; none outside the contact.
+    Slip,
+    /// Tangential displacement u(r) of the surface, m, inside the contact and outside.
+    Displacement,
 }
 
 impl Field {
     /// All fields.
-    pub const ALL: [Field; 2] = [Field::Pressure, Field::Shear];
+    pub const ALL: [Field; 4] = [Field::Pressure, Field::Shear, Field::Slip, Field::Displacement];
 
     /// Its name.
     #[must_use]
@@ -48,6 +52,8 @@ impl Field {
         match self {
             Field::Pressure => "pressure",
             Field::Shear => "shear",
+            Field::Slip => "slip",
+            Field::Displacement => "displacement",
         }
     }
 }
@@ -65,6 +71,14 @@ pub struct Stress {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub shear: Option<Vec<Option<f64>>>,
+    /// Slip, m; `null` outside the contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub slip: Option<Vec<Option<f64>>>,
+    /// Tangential displacement of the surface, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement: Option<Vec<Option<f64>>>,
 }
 
 /// A checked stress request.
@@ -92,18 +106,28 @@ pub struct Fields {
     pub pressure: bool,
     /// The shear stress.
     pub shear: bool,
+    /// The slip.
+    pub slip: bool,
+    /// The displacement of the surface.
+    pub displacement: bool,
 }
 
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
     pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
         let fields = match self.fields.as_deref() {
-            None => Fields { pressure: true, shear: true },
+            None => Fields { pressure: true, shear: true, slip: false, displacement: false },
             Some(named) => {
                 if named.is_empty() {
-                    faults.add(at.member("fields"), "empty: name at least one of `pressure`, `shear`");
+                    let all = Field::ALL.map(Field::name).join("`, `");
+                    faults.add(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
                 }
-                Fields { pressure: named.contains(&Field::Pressure), shear: named.contains(&Field::Shear) }
+                Fields {
+                    pressure: named.contains(&Field::Pressure),
+                    shear: named.contains(&Field::Shear),
+                    slip: named.contains(&Field::Slip),
+                    displacement: named.contains(&Field::Displacement),
+                }
             }
         };
         let points = match (self.points, self.radii) {

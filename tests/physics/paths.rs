@@ -60,6 +60,12 @@ pub fn oblique_steps(longest: usize) -> impl Strategy<Value = Vec<Step>> {
     prop::collection::vec(any_step(), 1..longest)
 }
 
+/// A rising load that never slips: a stack of pieces with any slopes, of any width.
+pub fn rises(longest: usize) -> impl Strategy<Value = Vec<Step>> {
+    let rise = (-4.0..-0.3_f64, -1.0..1.0_f64).prop_map(|(power, ratio)| Step::Grow(10_f64.powf(power), ratio));
+    prop::collection::vec(rise, 2..longest)
+}
+
 /// The waypoints (d, U) of the steps, the start (1, 0) first.
 pub fn waypoints(steps: &[Step]) -> Vec<(f64, f64)> {
     let mut path = vec![(1.0, 0.0)];
@@ -83,8 +89,8 @@ pub fn waypoints(steps: &[Step]) -> Vec<(f64, f64)> {
     path
 }
 
-/// The waypoints on a grid of 2^-20, so that halves and quarters of a move between them are exact.
-pub fn on_grid(path: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let grid = f64::from(1_u32 << 20);
+/// The waypoints on a grid of 2^-bits: on one of 2^-20, halves and quarters of a move between them are exact.
+pub fn on_grid(path: &[(f64, f64)], bits: u32) -> Vec<(f64, f64)> {
+    let grid = f64::from(bits).exp2();
     path.iter().map(|&(depth, slide)| ((depth * grid).round() / grid, (slide * grid).round() / grid)).collect()
 }

@@ -5,17 +5,81 @@
 //! radius. All that follows — normal contact, memory, stresses — reads a profile through rings between two levels, so no
 //! other module knows which family it deals with.
 
+mod angle;
+mod chart;
+mod cone;
+mod exact_sphere;
+mod flat_punch;
+mod gauss;
+mod power_law;
+mod roots;
+mod rounded_cone;
+mod rounded_punch;
+mod shape;
+mod span;
 mod sphere;
+mod sum;
+mod truncated_cone;
+mod truncated_sphere;
+mod zone;
 
+pub use cone::Cone;
+pub use exact_sphere::ExactSphere;
+pub use flat_punch::FlatPunch;
+pub use power_law::PowerLaw;
+pub use rounded_cone::RoundedCone;
+pub use rounded_punch::RoundedPunch;
 pub use sphere::Sphere;
+pub use sum::Sum;
+pub use truncated_cone::TruncatedCone;
+pub use truncated_sphere::TruncatedSphere;
 
 use super::double::Double;
+use super::error::Error;
+use shape::Shape;
+use span::Span;
 
 /// A closed set of families: one variant a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
     /// Hertz's parabola.
     Sphere(Sphere),
+    /// The sphere itself.
+    ExactSphere(ExactSphere),
+    /// Cone.
+    Cone(Cone),
+    /// Height as a power of the radius.
+    PowerLaw(PowerLaw),
+    /// Cylinder with a sharp edge.
+    FlatPunch(FlatPunch),
+    /// Cone with a flat end.
+    TruncatedCone(TruncatedCone),
+    /// Paraboloid with a flat end.
+    TruncatedSphere(TruncatedSphere),
+    /// Cylinder with a rounded edge.
+    RoundedPunch(RoundedPunch),
+    /// Cone with a rounded tip.
+    RoundedCone(RoundedCone),
+    /// Several profiles added up.
+    Sum(Sum),
+}
+
+/// Evaluates an expression for whichever family it is.
+macro_rules! each {
+    ($profile:expr, $shape:ident => $value:expr) => {
+        match $profile {
+            Profile::Sphere($shape) => $value,
+            Profile::ExactSphere($shape) => $value,
+            Profile::Cone($shape) => $value,
+            Profile::PowerLaw($shape) => $value,
+            Profile::FlatPunch($shape) => $value,
+            Profile::TruncatedCone($shape) => $value,
+            Profile::TruncatedSphere($shape) => $value,
+            Profile::RoundedPunch($shape) => $value,
+            Profile::RoundedCone($shape) => $value,
+            Profile::Sum($shape) => $value,
+        }
+    };
 }
 
 /// A level, with the radius that belongs to it.
@@ -86,66 +150,211 @@ impl Profile {
     /// g(x), m, for a radius x >= 0, m.
     #[must_use]
     pub fn level(&self, radius: f64) -> f64 {
-        match self {
-            Profile::Sphere(sphere) => sphere.level(radius),
-        }
+        Shape::level(self, radius)
     }
 
-    /// X(y), m, for a level y >= 0, m; X(0) is the radius of a flat core.
+    /// g'(x) (pure number), infinite where f' jumps.
+    #[must_use]
+    pub fn slope(&self, radius: f64) -> f64 {
+        Shape::slope(self, radius)
+    }
+
+    /// X(y), m, for a level y >= 0, m; X(0) is the radius of a flat core. Beyond the end of the profile it stays at
+    /// [`Profile::limit_radius`].
     #[must_use]
     pub fn radius(&self, level: f64) -> f64 {
-        match self {
-            Profile::Sphere(sphere) => sphere.radius(level),
-        }
+        Shape::radius(self, level)
     }
 
     /// The level with its radius and that radius's square.
     #[must_use]
     pub fn point(&self, level: Double) -> Point {
-        match self {
-            Profile::Sphere(sphere) => sphere.point(level),
-        }
+        let square = Shape::square(self, level);
+        Point { level, radius: square.value().sqrt(), square }
     }
 
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
     #[must_use]
     pub fn moments(&self, ring: &Ring) -> Moments {
-        match self {
-            Profile::Sphere(sphere) => sphere.moments(ring),
-        }
+        each!(self, shape => {
+            let span = shape.span(ring);
+            Moments::stack(shape.moments(&span), Moments::default(), span.edge)
+        })
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share of a
     /// stress. For a smooth profile this is K(r, x_outer) - K(r, max(r, x_inner)), K(r, c) = int_r^c g'(x)/sqrt(x^2 - r^2) dx.
+    /// Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.
     #[must_use]
     pub fn kernel(&self, at: &At, ring: &Ring) -> f64 {
-        match self {
-            Profile::Sphere(sphere) => sphere.kernel(at, ring),
-        }
+        each!(self, shape => {
+            let span = shape.span(ring);
+            let face = shape.kernel(at, &span);
+            if span.edge > 0.0 { face + edge(at, &span) } else { face }
+        })
     }
 
     /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner radius.
     #[must_use]
     pub fn kernel_slope(&self, at: &At, ring: &Ring) -> f64 {
-        match self {
-            Profile::Sphere(sphere) => sphere.kernel_slope(at, ring),
-        }
+        each!(self, shape => {
+            let span = shape.span(ring);
+            let face = shape.kernel_slope(at, &span);
+            if span.edge > 0.0 { face + edge_slope(at, &span) } else { face }
+        })
+    }
+
+    /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the displacement
+    /// of the surface at r.
+    #[must_use]
+    pub fn lift(&self, at: &At, ring: &Ring) -> f64 {
+        each!(self, shape => {
+            let span = shape.span(ring);
+            let face = shape.lift(at, &span);
+            if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
+        })
+    }
+
+    /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core, belongs
+    /// to no ring: there it is asin(min(1, X(0)/r)).
+    #[must_use]
+    pub fn arc(&self, at: &At, ring: &Ring) -> f64 {
+        each!(self, shape => shape.span(ring).arc(at))
     }
 
     /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of the
     /// shear stress skip what can hold none; `false` is always safe.
+    ///
+    /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
     #[must_use]
     pub fn kernel_falls(&self) -> bool {
         match self {
-            Profile::Sphere(_) => true,
+            Profile::Sphere(_) | Profile::Cone(_) | Profile::RoundedCone(_) => true,
+            Profile::PowerLaw(power) => power.power() <= 2.0,
+            Profile::Sum(sum) => sum.parts().iter().all(Profile::kernel_falls),
+            _ => false,
         }
     }
 
     /// The indentation d, m, at which int_0^d X(y) dy = F_N/(2 E*) = `load`, m^2.
     #[must_use]
     pub fn indentation_for(&self, load: f64) -> f64 {
+        Shape::indentation_for(self, load)
+    }
+
+    /// The radii, m, at which pressure and shear are infinite once the contact has grown over them: the tip of a cone, a rim
+    /// where the slope jumps. The vertical edge of a punch is not among them.
+    #[must_use]
+    pub fn singular_radii(&self) -> Vec<f64> {
         match self {
-            Profile::Sphere(sphere) => sphere.indentation_for(load),
+            Profile::Cone(_) => vec![0.0],
+            Profile::PowerLaw(power) if power.power() <= 1.0 => vec![0.0],
+            Profile::TruncatedCone(cone) => vec![cone.kink()],
+            Profile::TruncatedSphere(sphere) => vec![sphere.kink()],
+            Profile::Sum(sum) => {
+                let mut radii: Vec<f64> = sum.parts().iter().flat_map(Profile::singular_radii).collect();
+                radii.sort_by(f64::total_cmp);
+                radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
+                radii
+            }
+            _ => Vec::new(),
         }
+    }
+
+    /// The radius, m, that every contact must stay below: where the exact sphere is vertical. A punch's edge is no such limit.
+    #[must_use]
+    pub fn limit_radius(&self) -> Option<f64> {
+        match self {
+            Profile::ExactSphere(sphere) => Some(sphere.limit()),
+            Profile::Sum(sum) => sum.parts().iter().filter_map(Profile::limit_radius).reduce(f64::min),
+            _ => None,
+        }
+    }
+
+    /// The radius, m, of a vertical edge, which the contact keeps under every higher load.
+    #[must_use]
+    pub fn rim_radius(&self) -> Option<f64> {
+        Shape::rim(self).map(|(radius, _)| radius)
+    }
+
+    /// Gives a contact radius back.
+    ///
+    /// # Errors
+    /// [`Error::BeyondProfile`] if it is not below [`Profile::limit_radius`].
+    pub fn check_radius(&self, radius: f64) -> Result<f64, Error> {
+        match self.limit_radius() {
+            Some(limit) if radius >= limit => Err(Error::BeyondProfile { radius, limit }),
+            _ => Ok(radius),
+        }
+    }
+}
+
+/// What the levels at a vertical edge add to a kernel.
+fn edge(at: &At, span: &Span) -> f64 {
+    let square = (span.outer - at.square).value();
+    if square < 0.0 { 0.0 } else { span.edge / square.sqrt() }
+}
+
+/// What they add to its slope.
+fn edge_slope(at: &At, span: &Span) -> f64 {
+    let square = (span.outer - at.square).value();
+    if square < 0.0 { 0.0 } else { 0.5 * span.edge / square / square.sqrt() }
+}
+
+impl Shape for Profile {
+    fn level(&self, radius: f64) -> f64 {
+        each!(self, shape => Shape::level(shape, radius))
+    }
+
+    fn slope(&self, radius: f64) -> f64 {
+        each!(self, shape => Shape::slope(shape, radius))
+    }
+
+    fn radius(&self, level: f64) -> f64 {
+        each!(self, shape => Shape::radius(shape, level))
+    }
+
+    fn square(&self, level: Double) -> Double {
+        each!(self, shape => Shape::square(shape, level))
+    }
+
+    fn load(&self, radius: f64) -> f64 {
+        each!(self, shape => Shape::load(shape, radius))
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        each!(self, shape => Shape::indentation_for(shape, load))
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        each!(self, shape => Shape::rise(shape, span))
+    }
+
+    fn rim(&self) -> Option<(f64, f64)> {
+        each!(self, shape => Shape::rim(shape))
+    }
+
+    fn kink_below(&self, radius: f64) -> f64 {
+        each!(self, shape => Shape::kink_below(shape, radius))
+    }
+
+    fn analytic_tip(&self) -> bool {
+        each!(self, shape => Shape::analytic_tip(shape))
+    }
+
+    fn ceiling(&self) -> f64 {
+        each!(self, shape => Shape::ceiling(shape))
+    }
+
+    fn power(&self) -> f64 {
+        each!(self, shape => Shape::power(shape))
+    }
+
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        each!(self, shape => Shape::kernel(shape, at, span))
+    }
+
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        each!(self, shape => Shape::kernel_slope(shape, at, span))
     }
 }

@@ -3,10 +3,10 @@
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
-use super::super::double::Double;
 use super::super::error::Error;
 use super::super::range;
-use super::{At, Moments, Point, Ring};
+use super::shape::Shape;
+use super::{At, Double, Moments, Ring, Span};
 
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,26 +23,48 @@ impl Sphere {
         Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
     }
 
-    pub(super) fn level(self, radius: f64) -> f64 {
+    /// The same where R follows from other, checked numbers.
+    pub(super) fn of_curvature(radius: f64) -> Sphere {
+        Sphere { curvature_radius: radius }
+    }
+}
+
+impl Shape for Sphere {
+    fn level(&self, radius: f64) -> f64 {
         radius * radius / self.curvature_radius
     }
 
-    pub(super) fn radius(self, level: f64) -> f64 {
+    fn slope(&self, radius: f64) -> f64 {
+        2.0 * radius / self.curvature_radius
+    }
+
+    fn radius(&self, level: f64) -> f64 {
         (level * self.curvature_radius).sqrt()
     }
 
-    pub(super) fn point(self, level: Double) -> Point {
-        let square = level * self.curvature_radius;
-        Point { level, radius: square.value().sqrt(), square }
+    fn square(&self, level: Double) -> Double {
+        level * self.curvature_radius
     }
 
-    pub(super) fn moments(self, ring: &Ring) -> Moments {
-        let outer = ring.outer.radius;
-        let both = outer + ring.inner.radius;
-        if both <= 0.0 {
-            return Moments::default();
-        }
-        let width = self.curvature_radius * ring.depth / both;
+    fn load(&self, radius: f64) -> f64 {
+        2.0 * radius * radius * radius / (3.0 * self.curvature_radius)
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        let radius = (1.5 * load * self.curvature_radius).cbrt();
+        self.level(radius)
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        span.gap / self.curvature_radius
+    }
+
+    fn gap(&self, _ring: &Ring, depth: f64) -> f64 {
+        self.curvature_radius * depth
+    }
+
+    fn moments(&self, span: &Span) -> Moments {
+        let (outer, width) = (span.outer_radius, span.width());
         let area = width * width / self.curvature_radius;
         Moments {
             width,
@@ -53,46 +75,38 @@ impl Sphere {
         }
     }
 
-    pub(super) fn kernel(self, at: &At, ring: &Ring) -> f64 {
-        let outer = (ring.outer.square - at.square).value();
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
-            return 0.0;
-        }
-        let inner = (ring.inner.square - at.square).value();
-        if inner > 0.0 {
-            2.0 * ring.depth / (outer.sqrt() + inner.sqrt())
+            0.0
+        } else if inner > 0.0 {
+            2.0 * span.gap / ((outer.sqrt() + inner.sqrt()) * self.curvature_radius)
         } else {
             2.0 * outer.sqrt() / self.curvature_radius
         }
     }
 
-    pub(super) fn kernel_slope(self, at: &At, ring: &Ring) -> f64 {
-        let outer = (ring.outer.square - at.square).value();
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
-            return 0.0;
-        }
-        let inner = (ring.inner.square - at.square).value();
-        if inner > 0.0 {
+            0.0
+        } else if inner > 0.0 {
             let (outer, inner) = (outer.sqrt(), inner.sqrt());
-            ring.depth / (outer * inner * (outer + inner))
+            span.gap / (outer * inner * (outer + inner) * self.curvature_radius)
         } else {
             -1.0 / (self.curvature_radius * outer.sqrt())
         }
-    }
-
-    pub(super) fn indentation_for(self, load: f64) -> f64 {
-        let radius = (1.5 * load * self.curvature_radius).cbrt();
-        self.level(radius)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Double, Ring, Sphere};
+    use super::super::{Profile, Ring};
+    use super::{Double, Sphere};
 
     #[test]
     fn moments_of_a_thin_ring_keep_their_digits() {
-        let sphere = Sphere::new(2.0).unwrap();
+        let sphere = Profile::Sphere(Sphere::new(2.0).unwrap());
         let edge = Double::from(0.5);
         for depth in [0.5, 1e-3, 1e-8, 1e-14] {
             let ring = Ring::between(sphere.point(edge - Double::from(depth)), sphere.point(edge));

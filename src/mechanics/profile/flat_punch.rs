@@ -1,0 +1,65 @@
+//! Flat punch of radius b: X(y) = b for every level, so a ring has no width and its kernel is that of the vertical edge,
+//! depth/sqrt(b^2 - r^2) (Boussinesq 1885). The edge itself is looked after where profiles meet rings; here is the face.
+
+use super::super::error::Error;
+use super::super::range;
+use super::shape::Shape;
+use super::{At, Moments, Span};
+
+/// A cylinder pressed in with its flat end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatPunch {
+    radius: f64,
+}
+
+impl FlatPunch {
+    /// The punch of radius b, m.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    pub fn new(radius: f64) -> Result<FlatPunch, Error> {
+        Ok(FlatPunch { radius: range::RADIUS.check(radius)? })
+    }
+}
+
+impl Shape for FlatPunch {
+    fn level(&self, _radius: f64) -> f64 {
+        0.0
+    }
+
+    fn slope(&self, _radius: f64) -> f64 {
+        0.0
+    }
+
+    fn radius(&self, _level: f64) -> f64 {
+        self.radius
+    }
+
+    fn load(&self, _radius: f64) -> f64 {
+        0.0
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        load / self.radius
+    }
+
+    fn rise(&self, _span: &Span) -> f64 {
+        0.0
+    }
+
+    fn rim(&self) -> Option<(f64, f64)> {
+        Some((self.radius, 0.0))
+    }
+
+    fn moments(&self, _span: &Span) -> Moments {
+        Moments::default()
+    }
+
+    fn kernel(&self, _at: &At, _span: &Span) -> f64 {
+        0.0
+    }
+
+    fn kernel_slope(&self, _at: &At, _span: &Span) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,165 @@
+//! A profile made of several: g, its slope, its loads and its kernels add up, since g is linear in f.
+//!
+//! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there by a
+//! bracketed method. A flat punch among the parts ends the sum in its vertical edge.
+
+use super::super::error::Error;
+use super::super::range;
+use super::roots::increasing;
+use super::shape::Shape;
+use super::{At, Profile, Span};
+
+/// A sum of profiles, none of them a sum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sum {
+    parts: Vec<Profile>,
+    /// Radii at which one of the parts is not smooth, rising.
+    kinks: Vec<f64>,
+    rim: Option<(f64, f64)>,
+    ceiling: f64,
+    power: f64,
+    analytic_tip: bool,
+}
+
+impl Sum {
+    /// The sum of `parts`; sums among them are taken apart.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::PARTS`].
+    pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
+        let mut flat = Vec::with_capacity(parts.len());
+        for part in parts {
+            match part {
+                Profile::Sum(sum) => flat.extend(sum.parts),
+                other => flat.push(other),
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
+        range::PARTS.check(flat.len() as f64)?;
+        let mut kinks = Vec::new();
+        for part in &flat {
+            let mut kink = part.kink_below(f64::INFINITY);
+            while kink > 0.0 {
+                kinks.push(kink);
+                kink = part.kink_below(kink);
+            }
+        }
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        let mut sum = Sum {
+            rim: None,
+            ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
+            power: flat.iter().map(Shape::power).fold(1.0, f64::max),
+            analytic_tip: flat.iter().all(Shape::analytic_tip),
+            parts: flat,
+            kinks,
+        };
+        let rim = sum.parts.iter().filter_map(Shape::rim).map(|(radius, _)| radius).fold(f64::INFINITY, f64::min);
+        if rim < f64::INFINITY {
+            sum.rim = Some((rim, sum.level(rim)));
+        }
+        Ok(sum)
+    }
+
+    /// The parts, none of them a sum.
+    #[must_use]
+    pub fn parts(&self) -> &[Profile] {
+        &self.parts
+    }
+
+    fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
+        self.parts.iter().map(f).sum()
+    }
+
+    /// The radius at which an additive function has the value `target`; `radius` inverts it for a single part.
+    fn inverse(
+        &self,
+        target: f64,
+        radius: impl Fn(&Profile, f64) -> f64,
+        f: impl Fn(&Profile, f64) -> f64,
+        slope: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let least = |target: f64| self.parts.iter().map(|part| radius(part, target)).fold(f64::INFINITY, f64::min);
+        let high = least(target);
+        if target <= 0.0 {
+            return high;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
+        let low = least(target / self.parts.len() as f64);
+        let reach = high - low;
+        if reach <= 1e-15 * high {
+            return high;
+        }
+        // Measured from below, so that a flat core does not hide how far beyond it the root lies.
+        low + increasing(0.5 * reach, |step| {
+            let x = low + step.min(reach);
+            (self.total(|part| f(part, x)) - target, slope(x))
+        })
+        .min(reach)
+    }
+}
+
+impl Shape for Sum {
+    fn level(&self, radius: f64) -> f64 {
+        self.total(|part| part.level(radius))
+    }
+
+    fn slope(&self, radius: f64) -> f64 {
+        self.total(|part| part.slope(radius))
+    }
+
+    fn radius(&self, level: f64) -> f64 {
+        match self.rim {
+            Some((rim, top)) if level >= top => rim,
+            _ => self.inverse(level, Shape::radius, Shape::level, |x| Shape::slope(self, x)),
+        }
+    }
+
+    fn load(&self, radius: f64) -> f64 {
+        self.total(|part| part.load(radius))
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        if let Some((rim, top)) = self.rim {
+            let face = self.load(rim);
+            if load >= face {
+                return top + (load - face) / rim;
+            }
+        }
+        let radius = |part: &Profile, load: f64| part.radius(part.indentation_for(load));
+        self.level(self.inverse(load, radius, Shape::load, |x| x * Shape::slope(self, x)))
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        self.total(|part| part.rise(span))
+    }
+
+    fn rim(&self) -> Option<(f64, f64)> {
+        self.rim
+    }
+
+    fn kink_below(&self, radius: f64) -> f64 {
+        let above = self.kinks.partition_point(|&kink| kink < radius);
+        above.checked_sub(1).map_or(0.0, |index| self.kinks[index])
+    }
+
+    fn analytic_tip(&self) -> bool {
+        self.analytic_tip
+    }
+
+    fn ceiling(&self) -> f64 {
+        self.ceiling
+    }
+
+    fn power(&self) -> f64 {
+        self.power
+    }
+
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        self.total(|part| Shape::kernel(part, at, span))
+    }
+
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        self.total(|part| Shape::kernel_slope(part, at, span))
+    }
+}
