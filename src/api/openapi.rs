@@ -106,7 +106,7 @@ enum Limit {
 /// literal alone, and a limit is to be one constant.
 fn limited() -> Vec<(&'static str, &'static str, Limit)> {
     use Limit::{Count, Items, Length, Number, Numbers, Tolerance};
-    let (moves, radii) = (&limits::PATH_MOVES, &limits::STRESS_RADII);
+    let (moves, radii, points) = (&limits::PATH_MOVES, &limits::STRESS_RADII, &limits::TABLE_POINTS);
     let mut all = vec![
         ("SphereProfile", "radius", Number(range::RADIUS)),
         ("ExactSphereProfile", "radius", Number(range::RADIUS)),
@@ -122,6 +122,8 @@ fn limited() -> Vec<(&'static str, &'static str, Limit)> {
         ("RoundedPunchProfile", "edge_radius", Number(range::EDGE_RADIUS)),
         ("RoundedConeProfile", "slope", Number(range::SLOPE)),
         ("RoundedConeProfile", "tip_radius", Number(range::TIP_RADIUS)),
+        ("TabulatedProfile", "r", Numbers(*points.start(), *points.end(), range::TABLE_RADIUS)),
+        ("TabulatedProfile", "z", Numbers(*points.start(), *points.end(), range::TABLE_HEIGHT)),
         ("SumProfile", "parts", Items(*limits::SUM_PARTS.start(), *limits::SUM_PARTS.end())),
         ("EqualPeaks", "reversals", Count(*limits::REVERSALS.start(), *limits::REVERSALS.end())),
         ("EqualPeaks", "cutoff_radius", Number(range::CONTACT_RADIUS)),

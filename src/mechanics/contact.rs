@@ -1,5 +1,7 @@
 //! A contact with its history: what it is made of, how it moves, what state it is in.
 
+use std::sync::Arc;
+
 use super::double::Double;
 use super::elasticity::Elasticity;
 use super::error::Error;
@@ -108,7 +110,8 @@ pub struct State {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Contact {
-    pub(super) profile: Profile,
+    /// Shared by all copies: a table's is large.
+    pub(super) profile: Arc<Profile>,
     pub(super) elasticity: Elasticity,
     pub(super) friction: f64,
     pub(super) memory: Memory,
@@ -155,10 +158,13 @@ impl Contact {
             Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, memory.edge()),
         };
         let initial = figures(&profile, &elasticity, friction, memory.edge(), normal_force);
-        let scale = friction * elasticity.e_star() / elasticity.g_star();
-        let inverse_scale = if friction > 0.0 { Double::from(1.0).over(Double::from(scale)) } else { Double::ZERO };
+        let inverse_scale = if friction > 0.0 {
+            Double::from(elasticity.g_star()).over(Double::from(elasticity.e_star()) * friction)
+        } else {
+            Double::ZERO
+        };
         Ok(Contact {
-            profile,
+            profile: Arc::new(profile),
             elasticity,
             friction,
             memory,
@@ -272,6 +278,11 @@ impl Contact {
         displacement * self.inverse_scale
     }
 
+    /// U = m W, m.
+    pub(super) fn unscaled(&self, position: Double) -> Double {
+        if self.friction > 0.0 { position.over(self.inverse_scale) } else { Double::ZERO }
+    }
+
     pub(super) fn displacement(&self) -> Double {
         self.displacement
     }
@@ -314,6 +325,12 @@ impl Contact {
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
         normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &At::radius(radius))
+    }
+
+    /// The shape of the indenter.
+    #[must_use]
+    pub fn profile(&self) -> &Profile {
+        &self.profile
     }
 
     /// How many straight pieces the history has left.

@@ -27,7 +27,9 @@ impl Contact {
     /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the target.
     pub(super) fn position_for(&self, indentation: Double, normal_force: f64, target: f64) -> Double {
         let wanted = target / self.force_unit();
-        let room = (self.friction * normal_force - target.abs()) / self.force_unit();
+        // The product has digits that decide how little sticks just below the limit.
+        let room =
+            (Double::from(normal_force) * self.friction - Double::from(target.abs())).value() / self.force_unit();
         let edge = self.profile.point(indentation);
         let memory = &self.memory;
         let position = memory.position();

@@ -15,8 +15,12 @@ use super::double::Double;
 use super::profile::{Point, Profile, Ring};
 use super::release::{self, Slipping};
 
-/// Two turning points closer than this, relative to their distance from the edge, are one.
+/// A stuck core thinner than this, relative to the indentation, is gross slip: the displacement of gross slip is itself rounded.
+/// So is w at the edge.
 pub(super) const SAME: f64 = 2.0 * f64::EPSILON;
+/// Two turning points closer than this, relative to their distance from the edge, are one: met again, a level differs in
+/// its last digits.
+pub(super) const MET_AGAIN: f64 = 1e-28;
 
 /// A straight part of w - W over y: `offset + slope * y`.
 #[derive(Clone, Copy, Debug, PartialEq)]

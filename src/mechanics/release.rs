@@ -6,7 +6,7 @@
 //! the move. Works here are over 2 G* m^2, in m^3.
 
 use super::double::Double;
-use super::memory::{Line, Memory, Piece, SAME};
+use super::memory::{Line, MET_AGAIN, Memory, Piece, SAME};
 use super::profile::{Moments, Point, Profile, Ring};
 
 /// The slip that a move ends in: towards `sign`, with w = sign (indentation - y).
@@ -41,7 +41,9 @@ impl Slipping {
             (whole, rest) if rest.abs() <= 0.0 && (whole - 1.0).abs() <= 0.0 => -inner_excess,
             _ => -inner_excess.over(closing),
         };
-        if stuck.value() <= SAME * (self.indentation - piece.inner.level).value() {
+        let core = piece.inner.level.value() <= 0.0;
+        let same = if core { SAME } else { MET_AGAIN };
+        if stuck.value() <= same * (self.indentation - piece.inner.level).value() {
             return None;
         }
         let level = piece.inner.level + stuck;

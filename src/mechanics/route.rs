@@ -148,7 +148,7 @@ impl Contact {
         let displacement = match route.tangent {
             Tangent::Displacement { from, to } => doubles_between(from, to, part),
             Tangent::Force { from, to } => {
-                self.position_for(indentation, normal_force, between(from, to, part)) * self.scale()
+                self.unscaled(self.position_for(indentation, normal_force, between(from, to, part)))
             }
         };
         Stop { indentation, normal_force, displacement }

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::contact::Contact;
 use super::double::Double;
-use super::profile::{At, Point, Ring};
+use super::profile::{At, Point};
 
 impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least nought, inside the contact or outside.
@@ -16,7 +16,12 @@ impl Contact {
     pub fn surface_displacement(&self, radius: f64) -> f64 {
         let shift = self.memory.shift().value();
         let carried = self.spread(radius);
-        self.scale() * if radius > 0.0 { carried + shift * FRAC_2_PI * self.covered(radius) } else { carried + shift }
+        self.scale()
+            * if radius > 0.0 {
+                carried + shift * FRAC_2_PI * arc_to(self.memory.edge(), &At::radius(radius))
+            } else {
+                carried + shift
+            }
     }
 
     /// Slip U - u(r), m, since the virgin contact; `None` outside the contact. Where the contact grew later, a ring's value
@@ -31,12 +36,6 @@ impl Contact {
         })
     }
 
-    /// int_0^min(r, a) dx/sqrt(r^2 - x^2).
-    fn covered(&self, radius: f64) -> f64 {
-        let edge = self.memory.edge().radius;
-        if radius > edge { (edge / radius).asin() } else { std::f64::consts::FRAC_PI_2 }
-    }
-
     /// (2/pi) int_0^min(r, a) (w - W)/sqrt(r^2 - x^2) dx, as the pieces have it: w less its shift, m.
     fn spread(&self, radius: f64) -> f64 {
         let Some(core) = self.memory.pieces().first() else { return 0.0 };
@@ -45,10 +44,10 @@ impl Contact {
             return at_core;
         }
         let at = At::radius(radius);
-        let centre = Point { level: Double::ZERO, radius: 0.0, square: Double::ZERO };
         let mut sum = 0.0;
         if core.inner.radius > 0.0 {
-            sum += at_core * self.profile.arc(&at, &Ring::between(centre, core.inner));
+            // A flat core belongs to no ring.
+            sum += at_core * arc_to(&core.inner, &at);
         }
         for (ring, line) in self.memory.rings() {
             if ring.inner.radius < radius {
@@ -58,4 +57,10 @@ impl Contact {
         }
         FRAC_2_PI * sum
     }
+}
+
+/// int_0^min(r, x) dt/sqrt(r^2 - t^2) up to the radius x of a point, from the squares, which are exact where x is not.
+fn arc_to(point: &Point, at: &At) -> f64 {
+    let beyond = (at.square - point.square).value();
+    if beyond > 0.0 { point.radius.atan2(beyond.sqrt()) } else { std::f64::consts::FRAC_PI_2 }
 }

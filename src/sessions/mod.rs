@@ -255,7 +255,9 @@ fn start(definition: &ContactDefinition, setup: Setup) -> Result<(Contact, Arc<A
     let elasticity = setup.elasticity;
     let contact = simulation::contact(setup, "")?;
     let figures: Figures = contact.figures().into();
-    let seen = Seen { contact_radius: figures.contact_radius, e_star: figures.e_star, missed: None };
+    let Figures { contact_radius, e_star, indentation, .. } = figures;
+    let noise = contact.profile().noise(contact_radius);
+    let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
     let warnings = warnings(&definition.profile, &elasticity, &seen);
     Ok((contact, Arc::new(About { figures, warnings })))
 }

@@ -82,6 +82,8 @@ fn run<S: Solver>(
     let seen = Seen {
         contact_radius: largest,
         e_star: figures.e_star,
+        indentation: figures.indentation,
+        noise: simulation.setup.profile.noise(largest),
         missed: missed.filter(|_| S::KIND == SolverKind::Exact),
     };
     Ok(SimulateReply {

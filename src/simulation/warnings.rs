@@ -12,6 +12,9 @@ const HUGE_CONTACT: f64 = 0.1;
 const SOFT: f64 = 1e7;
 const HUGE_CURVATURE: f64 = 1.0;
 
+/// Noise of g over the indentation beyond which a table is called noisy.
+const NOISY: f64 = 1e-3;
+
 /// What a run has shown that may call for a warning.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
@@ -19,6 +22,10 @@ pub struct Seen {
     pub contact_radius: f64,
     /// The reduced modulus E*, Pa.
     pub e_star: f64,
+    /// The indentation at the preload, m.
+    pub indentation: f64,
+    /// The noise of g, m, from a table's heights, and how many times theirs that is.
+    pub noise: Option<(f64, f64)>,
     /// The estimated error of the force, if it is beyond the tolerance.
     pub missed: Option<f64>,
 }
@@ -61,6 +68,18 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<
             format!(
                 "a contact radius of {} m with E* = {} Pa: are lengths in m and moduli in Pa?",
                 seen.contact_radius, seen.e_star
+            ),
+        );
+    }
+    if let Some((noise, amplification)) =
+        seen.noise.filter(|(noise, _)| *noise > NOISY * seen.indentation.max(f64::MIN_POSITIVE))
+    {
+        warn(
+            "noisy_table",
+            format!(
+                "the table's heights seem to carry noise, which comes out {amplification:.0} times as large in the contact: \
+                 some {noise:.1e} m against an indentation of {} m; smooth them first",
+                seen.indentation
             ),
         );
     }

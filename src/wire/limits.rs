@@ -26,3 +26,5 @@ pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
 pub const FAULTS: usize = 100;
 /// Profiles in one sum.
 pub const SUM_PARTS: RangeInclusive<usize> = 1..=16;
+/// Points of a tabulated profile.
+pub const TABLE_POINTS: RangeInclusive<usize> = 3..=10_000;

@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 use utoipa::ToSchema;
 
 use crate::mechanics::profile::{
-    Cone, ExactSphere, FlatPunch, PowerLaw, Profile as Shape, RoundedCone, RoundedPunch, Sphere, Sum, TruncatedCone,
-    TruncatedSphere,
+    Cone, ExactSphere, FlatPunch, PowerLaw, Profile as Shape, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated,
+    TruncatedCone, TruncatedSphere,
 };
 use crate::mechanics::{Error, range, range::Range};
 
@@ -39,6 +39,8 @@ pub enum Profile {
     RoundedPunch(RoundedPunchProfile),
     /// A cone whose tip is a parabola up to `tip_radius`.
     RoundedCone(RoundedConeProfile),
+    /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and convexity.
+    Tabulated(TabulatedProfile),
     /// Several profiles added up, z = Σ zᵢ.
     Sum(SumProfile),
 }
@@ -116,6 +118,15 @@ pub struct RoundedConeProfile {
     pub tip_radius: f64,
 }
 
+/// A table of heights over radii, of equal lengths.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct TabulatedProfile {
+    /// Radii, m: from 0 on, increasing. The contact radius stays below the last.
+    pub r: Vec<f64>,
+    /// Heights z above the plane, m; an offset does not matter.
+    pub z: Vec<f64>,
+}
+
 /// A sum of profiles.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SumProfile {
@@ -169,6 +180,7 @@ impl Profile {
                 number("tip_radius", *tip_radius, &range::TIP_RADIUS);
                 RoundedCone::new(*slope, *tip_radius).map(Shape::RoundedCone)
             }
+            Profile::Tabulated(TabulatedProfile { r, z }) => return check_table(r, z, at, faults),
             Profile::Sum(SumProfile { parts }) => return check_sum(parts, at, faults),
         };
         noted(shape, at, faults)
@@ -186,6 +198,19 @@ impl Profile {
             _ => None,
         }
     }
+}
+
+fn check_table(r: &[f64], z: &[f64], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+    for (name, numbers, range) in [("r", r, &range::TABLE_RADIUS), ("z", z, &range::TABLE_HEIGHT)] {
+        let place = at.member(name);
+        if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
+            numbers.iter().enumerate().for_each(|(index, value)| faults.number(place.index(index), *value, range));
+        }
+    }
+    if !faults.is_empty() {
+        return None;
+    }
+    noted(Tabulated::new(r, z).map(Shape::Tabulated), at, faults)
 }
 
 fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
@@ -221,6 +246,7 @@ enum Kind {
     TruncatedSphere,
     RoundedPunch,
     RoundedCone,
+    Tabulated,
     Sum,
 }
 
@@ -235,6 +261,7 @@ impl Kind {
             Kind::TruncatedSphere => &["radius", "flat_radius"],
             Kind::RoundedPunch => &["flat_radius", "edge_radius"],
             Kind::RoundedCone => &["slope", "tip_radius"],
+            Kind::Tabulated => &["r", "z"],
             Kind::Sum => &["parts"],
         }
     }
@@ -262,6 +289,10 @@ struct Members {
     #[serde(default, deserialize_with = "given")]
     tip_radius: Option<f64>,
     #[serde(default, deserialize_with = "given")]
+    r: Option<Vec<f64>>,
+    #[serde(default, deserialize_with = "given")]
+    z: Option<Vec<f64>>,
+    #[serde(default, deserialize_with = "given")]
     parts: Option<Vec<Profile>>,
 }
 
@@ -276,6 +307,8 @@ impl Members {
             ("flat_radius", self.flat_radius.is_some()),
             ("edge_radius", self.edge_radius.is_some()),
             ("tip_radius", self.tip_radius.is_some()),
+            ("r", self.r.is_some()),
+            ("z", self.z.is_some()),
             ("parts", self.parts.is_some()),
         ];
         let known = self.kind.members();
@@ -290,7 +323,7 @@ impl<'de> Deserialize<'de> for Profile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let members = Members::deserialize(deserializer)?;
         members.belong()?;
-        let Members { kind, radius, slope, exponent, coefficient, flat_radius, edge_radius, tip_radius, parts } =
+        let Members { kind, radius, slope, exponent, coefficient, flat_radius, edge_radius, tip_radius, r, z, parts } =
             members;
         let needed = |value: Option<f64>, name| value.ok_or_else(|| D::Error::missing_field(name));
         let radius = || needed(radius, "radius");
@@ -318,6 +351,10 @@ impl<'de> Deserialize<'de> for Profile {
             Kind::RoundedCone => Profile::RoundedCone(RoundedConeProfile {
                 slope: slope()?,
                 tip_radius: needed(tip_radius, "tip_radius")?,
+            }),
+            Kind::Tabulated => Profile::Tabulated(TabulatedProfile {
+                r: r.ok_or_else(|| D::Error::missing_field("r"))?,
+                z: z.ok_or_else(|| D::Error::missing_field("z"))?,
             }),
             Kind::Sum => Profile::Sum(SumProfile { parts: parts.ok_or_else(|| D::Error::missing_field("parts"))? }),
         })

@@ -127,7 +127,7 @@ pub struct Protocol {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning {
-    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `tolerance_not_met`, `units`.
+    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`, `units`.
     pub code: String,
     /// An explanation for people.
     pub message: String,

@@ -28,7 +28,7 @@ pub(super) trait Chart {
     /// g(top) - g(t), m, to round-off of itself; `dt` = top - t.
     fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64;
 
-    /// A t at which g is not below `level`.
+    /// A t at which g less g(b) is not below `level`.
     fn start(&self, level: f64) -> f64;
 
     /// The t of a level.
@@ -49,6 +49,11 @@ pub(super) trait Chart {
     /// gamma(t) again, at `drop` below the outer end: for a steep gamma the difference says more than t.
     fn slope_below(&self, t: f64, _outer: f64, _drop: f64) -> f64 {
         self.slope_at(t)
+    }
+
+    /// t gamma' - gamma again, likewise.
+    fn bend_below(&self, t: f64, _outer: f64, _drop: f64) -> f64 {
+        self.bend_at(t)
     }
 
     /// gamma changes no faster than t to this power.
@@ -169,7 +174,7 @@ impl Path {
         }
         let steps = gap / (v_low + v_high) + gap / (low + high);
         // At r = b in a profile that is smooth there, what lies this near to b adds nothing.
-        let start = if low + v_low > 0.0 { low + v_low } else { 1e-10 * (high + v_high) };
+        let start = if low + v_low > 0.0 { low + v_low } else { 1e-17 * (high + v_high) };
         Some(Path { kappa, low, high, v_low, v_high, length: (steps / start).ln_1p() })
     }
 
@@ -182,10 +187,12 @@ impl Path {
             ceiling
         };
         along_strip(self.length, power.max(1.0).recip(), room, |s| {
-            let shrink = (-s).exp_m1();
-            let (here, other) = (end * (1.0 + shrink), self.kappa / (end * (1.0 + shrink)));
-            let drop = -0.5 * shrink * (end - other);
-            f((self.high - drop).max(self.low), (0.5 * (here - other)).max(self.v_low), drop)
+            let here = end * (-s).exp();
+            let other = self.kappa / here;
+            let drop = -0.5 * (-s).exp_m1() * (end - other);
+            // Far below the outer end the difference has lost its digits, and the sum of the two has not.
+            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
+            f(t.max(self.low), (0.5 * (here - other)).max(self.v_low), drop)
         })
     }
 }
@@ -210,7 +217,7 @@ pub(super) fn kernel_slope(chart: &impl Chart, at: &At, span: &Span) -> f64 {
     if low <= 0.0 && chart.jumps() {
         return f64::NEG_INFINITY;
     }
-    let bend = path.integrate(chart.power(), chart.ceiling(), |t, _, _| chart.bend_at(t) / (t * t));
+    let bend = path.integrate(chart.power(), chart.ceiling(), |t, _, drop| chart.bend_below(t, high, drop) / (t * t));
     let start = if v_low > 0.0 { chart.slope_at(low) / (low * v_low) } else { 0.0 };
     0.5 * (bend + start - chart.slope_at(high) / (high * v_high))
 }

@@ -35,6 +35,16 @@ pub(super) struct Panel {
 }
 
 impl Panel {
+    /// A panel by the shorter rule, whatever the integrand.
+    pub(super) fn coarse(width: f64) -> Panel {
+        Panel { width, rule: &EIGHT }
+    }
+
+    /// A panel by the longer rule, for an integrand analytic far around.
+    pub(super) fn fine(width: f64) -> Panel {
+        Panel { width, rule: &TWENTY }
+    }
+
     /// Calls `visit(distance below the panel's top, weight)` at every abscissa; the weights add up to the width.
     pub(super) fn visit(&self, mut visit: impl FnMut(f64, f64)) {
         for &(u, weight) in self.rule {
@@ -71,7 +81,7 @@ impl Singular {
 /// faster change than by a factor e over `scale`. It ends early when the panels, taken from s = 0, no longer count: give
 /// first the end where f is large.
 pub(super) fn along_strip(length: f64, scale: f64, room: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-    let widest = (20.0 * scale).min(3.0);
+    let widest = (8.0 * scale).min(3.0);
     let (mut total, mut done) = (0.0, 0.0);
     while done < length {
         let left = length - done;

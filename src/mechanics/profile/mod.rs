@@ -19,6 +19,7 @@ mod shape;
 mod span;
 mod sphere;
 mod sum;
+mod tabulated;
 mod truncated_cone;
 mod truncated_sphere;
 mod zone;
@@ -31,6 +32,7 @@ pub use rounded_cone::RoundedCone;
 pub use rounded_punch::RoundedPunch;
 pub use sphere::Sphere;
 pub use sum::Sum;
+pub use tabulated::Tabulated;
 pub use truncated_cone::TruncatedCone;
 pub use truncated_sphere::TruncatedSphere;
 
@@ -60,6 +62,8 @@ pub enum Profile {
     RoundedPunch(RoundedPunch),
     /// Cone with a rounded tip.
     RoundedCone(RoundedCone),
+    /// A table of heights.
+    Tabulated(Tabulated),
     /// Several profiles added up.
     Sum(Sum),
 }
@@ -77,6 +81,7 @@ macro_rules! each {
             Profile::TruncatedSphere($shape) => $value,
             Profile::RoundedPunch($shape) => $value,
             Profile::RoundedCone($shape) => $value,
+            Profile::Tabulated($shape) => $value,
             Profile::Sum($shape) => $value,
         }
     };
@@ -261,12 +266,26 @@ impl Profile {
         }
     }
 
-    /// The radius, m, that every contact must stay below: where the exact sphere is vertical. A punch's edge is no such limit.
+    /// The radius, m, that every contact must stay below: where the exact sphere is vertical, where a table ends or its g falls.
+    /// A punch's edge is no such limit.
     #[must_use]
     pub fn limit_radius(&self) -> Option<f64> {
+        self.limit().map(|(radius, _)| radius)
+    }
+
+    /// An estimate of the noise of g, m, that a table's heights bring to a contact of this radius, m, and how many times their
+    /// own noise that is. `None` for what is no table.
+    #[must_use]
+    pub fn noise(&self, radius: f64) -> Option<(f64, f64)> {
         match self {
-            Profile::ExactSphere(sphere) => Some(sphere.limit()),
-            Profile::Sum(sum) => sum.parts().iter().filter_map(Profile::limit_radius).reduce(f64::min),
+            Profile::Tabulated(table) => {
+                let amplification = table.noise_amplification(radius);
+                Some((table.noise() * amplification, amplification))
+            }
+            Profile::Sum(sum) => {
+                let noises = sum.parts().iter().filter_map(|part| part.noise(radius));
+                noises.reduce(|one, other| if one.0 > other.0 { one } else { other })
+            }
             _ => None,
         }
     }
@@ -280,11 +299,29 @@ impl Profile {
     /// Gives a contact radius back.
     ///
     /// # Errors
-    /// [`Error::BeyondProfile`] if it is not below [`Profile::limit_radius`].
+    /// If it is not below [`Profile::limit_radius`]: [`Error::NotConvexEnough`] where g falls from there on,
+    /// [`Error::BeyondProfile`] where the profile ends.
     pub fn check_radius(&self, radius: f64) -> Result<f64, Error> {
-        match self.limit_radius() {
-            Some(limit) if radius >= limit => Err(Error::BeyondProfile { radius, limit }),
+        match self.limit() {
+            Some((limit, falls)) if radius >= limit => Err(if falls {
+                Error::NotConvexEnough { radius: limit }
+            } else {
+                Error::BeyondProfile { radius, limit }
+            }),
             _ => Ok(radius),
+        }
+    }
+
+    /// The limit, and whether it is there because g falls. A sum has the least of its parts, though another part might make up
+    /// for a g that falls.
+    fn limit(&self) -> Option<(f64, bool)> {
+        match self {
+            Profile::ExactSphere(sphere) => Some((sphere.limit(), false)),
+            Profile::Tabulated(table) => Some(table.limit()),
+            Profile::Sum(sum) => {
+                sum.parts().iter().filter_map(Profile::limit).reduce(|a, b| if b.0 < a.0 { b } else { a })
+            }
+            _ => None,
         }
     }
 }

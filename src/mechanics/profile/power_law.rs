@@ -120,6 +120,10 @@ impl Chart for PowerLaw {
         (self.exponent - 2.0) * self.slope(t)
     }
 
+    fn bend_below(&self, t: f64, outer: f64, drop: f64) -> f64 {
+        (self.exponent - 2.0) * self.slope_below(t, outer, drop)
+    }
+
     fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
         let decades = if dt < 0.5 * top { -(-dt / top).ln_1p() } else { (top / t).ln() };
         -self.level(top) * (-self.exponent * decades).exp_m1()

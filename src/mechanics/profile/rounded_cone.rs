@@ -8,6 +8,7 @@ use super::super::error::Error;
 use super::super::range;
 use super::angle::tangent_less_angle;
 use super::chart::{self, Chart};
+use super::roots::descend;
 use super::shape::Shape;
 use super::sphere::Sphere;
 use super::{At, Double, Moments, Ring, Span};
@@ -24,6 +25,8 @@ pub struct RoundedCone {
 struct Flank {
     slope: f64,
     tip_radius: f64,
+    /// The level at the end of the tip, from the paraboloid so that both sides agree on it.
+    seam: Double,
 }
 
 impl RoundedCone {
@@ -33,12 +36,9 @@ impl RoundedCone {
     /// [`Error::OutOfRange`] by [`range::SLOPE`] and [`range::TIP_RADIUS`].
     pub fn new(slope: f64, tip_radius: f64) -> Result<RoundedCone, Error> {
         let (slope, tip_radius) = (range::SLOPE.check(slope)?, range::TIP_RADIUS.check(tip_radius)?);
-        Ok(RoundedCone { tip: Sphere::of_curvature(tip_radius / slope), flank: Flank { slope, tip_radius } })
-    }
-
-    /// The level at which the tip ends, from the paraboloid so that both sides agree on it.
-    fn seam(&self) -> f64 {
-        self.tip.level(self.flank.tip_radius)
+        let curvature_radius = tip_radius / slope;
+        let seam = Double::square_of(tip_radius).over(Double::from(curvature_radius));
+        Ok(RoundedCone { tip: Sphere::of_curvature(curvature_radius), flank: Flank { slope, tip_radius, seam } })
     }
 
     fn parts(&self, span: &Span) -> (Option<Span>, Option<Span>) {
@@ -82,18 +82,33 @@ impl Chart for Flank {
         let b = self.tip_radius;
         let (x, x_top) = (self.radius_at(t), self.radius_at(top));
         let dx = dt * (t + top) / (x + x_top);
-        // A(top) - A(t), of first order in t where each of its terms is of order nought: the tangents' part is combined first.
         let (both, ends) = (b * b + t * top, (x + t) * (x_top + top));
-        let product = (b * b * (t * t + top * top) + t * t * top * top) / (x * x_top + b * b);
-        let tangents = b * (dt * (product + x * top + t * x_top) / both - dx) / ends;
-        let turn = tangents - tangent_less_angle(b * dt / both);
+        let u = b * dt / both;
+        // A(top) - A(t), of second order in t where each of its terms is of first: the tangents' part is combined before.
+        let turn = if u < 1.0 {
+            let product = (b * b * (t * t + top * top) + t * t * top * top) / (x * x_top + b * b);
+            b * (dt * (product + x * top + t * x_top) / both - dx) / ends - tangent_less_angle(u)
+        } else {
+            u.atan() - b * (dt + dx) / ends
+        };
         self.slope * (x_top * turn + (b / (x + t) + t.atan2(b)) * dx)
     }
 
     fn start(&self, level: f64) -> f64 {
-        // Q >= pi/2, so g rises by at least T (pi/2)(x - b).
-        let more = ((level / self.slope - self.tip_radius) * std::f64::consts::FRAC_2_PI).max(0.0);
+        // Q >= pi/2, so g rises by at least T (pi/2)(x - b); here `level` is that rise.
+        let more = (level / self.slope * std::f64::consts::FRAC_2_PI).max(0.0);
         (more * (more + 2.0 * self.tip_radius)).sqrt()
+    }
+
+    fn square_above(&self, level: Double) -> Double {
+        // From the seam on, lest t drown in the level of the seam.
+        let climb = (level - self.seam).value();
+        let start = self.start(climb);
+        Double::square_of(if start > 0.0 {
+            descend(start, |t| (self.rise_at(0.0, t, t) - climb, self.slope_at(t)))
+        } else {
+            0.0
+        })
     }
 }
 
@@ -111,11 +126,11 @@ impl Shape for RoundedCone {
     }
 
     fn radius(&self, level: f64) -> f64 {
-        if level <= self.seam() { self.tip.radius(level) } else { self.flank.radius_at(self.flank.solve(level)) }
+        self.square(level.into()).value().sqrt()
     }
 
     fn square(&self, level: Double) -> Double {
-        if level.value() <= self.seam() {
+        if level <= self.flank.seam {
             self.tip.square(level)
         } else {
             Double::square_of(self.flank.tip_radius) + self.flank.square_above(level)

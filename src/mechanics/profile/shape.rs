@@ -142,5 +142,10 @@ pub(super) trait Shape {
 
 /// The stretch from a node of a zone up to the zone's top.
 fn under(top: &Span, zone: &Zone, node: Node) -> Span {
-    Span::under(top.outer, top.outer_radius, node.dt * (zone.high + node.t))
+    if node.dt < 0.5 * zone.high {
+        return Span::under(top.outer, top.outer_radius, node.dt * (zone.high + node.t));
+    }
+    // Low in the zone its own square is what must be exact, not how much it lacks.
+    let inner = Double::square_of(zone.base) + Double::square_of(node.t);
+    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
 }

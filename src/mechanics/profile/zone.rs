@@ -4,7 +4,9 @@
 //! The one thing asked of a profile is its rise from a radius up to the zone's top, to round-off of itself: then
 //! h = y_outer - g is a sum of positive terms and nothing cancels, however thin the ring.
 
-use super::gauss::Singular;
+use std::f64::consts::FRAC_PI_2;
+
+use super::gauss::{Panel, Singular};
 use super::{At, Double, Moments, Span};
 
 /// A stretch of radii in the coordinate t of the kink beneath it.
@@ -20,6 +22,8 @@ pub(super) struct Zone {
     pub(super) singular: Singular,
     /// g changes no faster than x to this power.
     pub(super) power: f64,
+    /// t at the inner end, m.
+    low: f64,
     /// Sum of the radii at both ends, m.
     radii: f64,
     /// Difference of their squares, m^2.
@@ -42,26 +46,35 @@ impl Zone {
         let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
         let above = if ceiling < f64::INFINITY { ((ceiling - base) * (ceiling + base)).sqrt() } else { ceiling };
         let singular = Singular { below: reach, above };
-        Zone { base, high, drop, singular, power, radii: span.inner_radius + span.outer_radius, gap: span.gap }
+        Zone { base, high, drop, singular, power, low, radii: span.inner_radius + span.outer_radius, gap: span.gap }
     }
 
-    /// The radius at t.
-    fn radius(&self, t: f64) -> f64 {
-        (self.base * self.base + t * t).sqrt()
+    /// dx/dt = t/x.
+    fn stretch(&self, t: f64) -> f64 {
+        if self.base > 0.0 { t / (self.base * self.base + t * t).sqrt() } else { 1.0 }
     }
 
-    /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows.
-    fn sweep(&self, singular: Singular, top: f64, length: f64, mut visit: impl FnMut(f64, f64)) {
+    /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows. At a distance s below the top
+    /// ln t has fallen by at least rate s + bend s^2/2.
+    fn sweep(&self, singular: Singular, top: f64, length: f64, fall: (f64, f64), mut visit: impl FnMut(f64, f64)) {
+        let (rate, bend) = (self.power * fall.0, self.power * fall.1);
         let mut done = 0.0;
         while done < length {
             let (high, left) = (top - done, length - done);
-            // A panel this low has neither width nor height to count; the rounding of `high` must not keep it alive.
-            if high <= 1e-17 * top {
+            if high <= 1e-14 * top {
+                // So low that any rule will do, and that `done` would soon stand still.
+                Panel::coarse(left).visit(|below, weight| visit(done + below, weight));
                 break;
             }
-            let steep = self.power > 10.0 && done * self.power < 40.0 * top;
-            let reach = if steep { left.min(10.0 / self.power * high) } else { left };
-            let panel = singular.panel(high, reach);
+            let mut panel = singular.panel(high, left);
+            if self.power > 10.0 && done * (rate + 0.5 * bend * done) < 40.0 {
+                // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
+                let steep = rate + bend * done;
+                let reach = 10.0 / (steep + (steep * steep + 10.0 * bend).sqrt());
+                if reach < panel.width {
+                    panel = Panel::fine(reach);
+                }
+            }
             panel.visit(|below, weight| visit(done + below, weight));
             done += panel.width;
         }
@@ -73,10 +86,10 @@ impl Zone {
             return Moments::default();
         }
         let (mut first, mut second) = (0.0, 0.0);
-        self.sweep(self.singular, self.high, self.drop, |dt, weight| {
+        self.sweep(self.singular, self.high, self.drop, (self.high.recip(), 0.0), |dt, weight| {
             let t = (self.high - dt).max(0.0);
             let h = rise(Node { t, dt });
-            let area = weight * h * t / self.radius(t);
+            let area = weight * h * self.stretch(t);
             first += area;
             second += area * h;
         });
@@ -89,7 +102,7 @@ impl Zone {
         if inner >= 0.0 || self.gap <= 0.0 {
             return 0.0;
         }
-        let low = (self.high - self.drop).max(0.0);
+        let low = self.low;
         let tau_square = (at.square - Double::square_of(self.base)).value();
         let (w_low, w_top) = ((-inner).sqrt(), (-outer).max(0.0).sqrt());
         let (top, missing, gap) = if outer > 0.0 {
@@ -99,14 +112,17 @@ impl Zone {
             (self.high, 0.0, self.gap)
         };
         let angle = (gap * tau_square / (top * w_low + low * w_top)).atan2(w_low * w_top + low * top);
-        let singular =
-            Singular { below: (self.singular.below / tau_square.sqrt()).asinh(), above: std::f64::consts::PI };
+        let tau = tau_square.sqrt();
+        // A singularity on the axis of t lies beyond the top in theta, or beside pi/2, where it counts as half as far.
+        let beyond = self.singular.above / tau;
+        let beyond = if beyond < 1.0 { beyond.asin() } else { FRAC_PI_2 + 0.5 * beyond.acosh().min(3.0) };
+        let singular = Singular { below: (self.singular.below / tau).asinh(), above: beyond };
         let mut total = 0.0;
-        self.sweep(singular, top.atan2(w_top), angle, |turn, weight| {
+        self.sweep(singular, top.atan2(w_top), angle, (w_top / top, 1.0), |turn, weight| {
             let half = (0.5 * turn).sin();
             let dt = 2.0 * top * half * half + w_top * turn.sin();
             let t = (top - dt).max(0.0);
-            total += weight * (above + rise(Node { t, dt: missing + dt })) * t / self.radius(t);
+            total += weight * (above + rise(Node { t, dt: missing + dt })) * self.stretch(t);
         });
         total
     }

@@ -1,0 +1,197 @@
+//! Sums of w/sqrt(|X - Y|) over many sources Y, far from X: sources in clusters, each stood for by a few at fixed places.
+//!
+//! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
+//! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table
+//! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about).
+
+use std::f64::consts::PI;
+
+/// Points that stand for a cluster.
+const PROXIES: usize = 20;
+/// Items in the smallest clusters.
+const LEAF: usize = 8;
+
+/// Sources of the items `first..last`.
+#[derive(Clone, Debug, PartialEq)]
+struct Cluster {
+    first: usize,
+    last: usize,
+    low: f64,
+    high: f64,
+    weights: [f64; PROXIES],
+    children: Option<(usize, usize)>,
+}
+
+/// A tree of clusters over items in rising order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Far {
+    clusters: Vec<Cluster>,
+}
+
+/// The Chebyshev points of an interval.
+fn place(low: f64, high: f64, index: usize) -> f64 {
+    0.5 * (low + high) + 0.5 * (high - low) * cosine(index)
+}
+
+fn angle(index: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "an index below 20")]
+    let index = index as f64;
+    PI * (index + 0.5) / 20.0
+}
+
+fn cosine(index: usize) -> f64 {
+    angle(index).cos()
+}
+
+/// The values at `place` of the polynomials that are one at one Chebyshev point of the interval and nought at the others.
+fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
+    let u = (at - 0.5 * (low + high)) / (0.5 * (high - low));
+    let mut shares = [0.0; PROXIES];
+    let mut total = 0.0;
+    for (index, share) in shares.iter_mut().enumerate() {
+        let distance = u - cosine(index);
+        if distance.abs() < 1e-300 {
+            shares = [0.0; PROXIES];
+            shares[index] = 1.0;
+            return shares;
+        }
+        let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
+        *share = sign * angle(index).sin() / distance;
+        total += *share;
+    }
+    shares.map(|share| share / total)
+}
+
+impl Far {
+    /// The clusters of items that fill the intervals between consecutive `bounds`; `sources` gives an item's sources, place and
+    /// weight each.
+    pub(super) fn new(bounds: &[f64], sources: impl Fn(usize, &mut dyn FnMut(f64, f64))) -> Far {
+        let mut far = Far { clusters: Vec::new() };
+        if bounds.len() > 1 {
+            far.build(bounds, &sources, 0, bounds.len() - 1);
+        }
+        far
+    }
+
+    fn build(
+        &mut self,
+        bounds: &[f64],
+        sources: &impl Fn(usize, &mut dyn FnMut(f64, f64)),
+        first: usize,
+        last: usize,
+    ) -> usize {
+        let (low, high) = (bounds[first], bounds[last]);
+        let mut weights = [0.0; PROXIES];
+        let mut add = |at: f64, weight: f64| {
+            for (sum, share) in weights.iter_mut().zip(shares(low, high, at)) {
+                *sum += weight * share;
+            }
+        };
+        let children = if last - first <= LEAF {
+            for item in first..last {
+                sources(item, &mut add);
+            }
+            None
+        } else {
+            let middle = first.midpoint(last);
+            let pair = (self.build(bounds, sources, first, middle), self.build(bounds, sources, middle, last));
+            for child in [pair.0, pair.1] {
+                let child = &self.clusters[child];
+                for (index, &weight) in child.weights.iter().enumerate() {
+                    add(place(child.low, child.high, index), weight);
+                }
+            }
+            Some(pair)
+        };
+        self.clusters.push(Cluster { first, last, low, high, weights, children });
+        self.clusters.len() - 1
+    }
+
+    /// Goes through the items `items`, seen from the interval `from`: whole clusters as sources where they are far, by `far`, else
+    /// item by item, by `near`.
+    pub(super) fn visit(
+        &self,
+        items: std::ops::Range<usize>,
+        from: (f64, f64),
+        far: &mut impl FnMut(f64, f64),
+        near: &mut impl FnMut(usize),
+    ) {
+        if let Some(root) = self.clusters.len().checked_sub(1) {
+            self.descend(root, &items, from, far, near);
+        }
+    }
+
+    fn descend(
+        &self,
+        index: usize,
+        items: &std::ops::Range<usize>,
+        from: (f64, f64),
+        far: &mut impl FnMut(f64, f64),
+        near: &mut impl FnMut(usize),
+    ) {
+        let cluster = &self.clusters[index];
+        let (first, last) = (cluster.first.max(items.start), cluster.last.min(items.end));
+        if first >= last {
+            return;
+        }
+        let distance = (cluster.low - from.1).max(from.0 - cluster.high);
+        let whole = first == cluster.first && last == cluster.last;
+        if whole && distance >= (cluster.high - cluster.low).max(from.1 - from.0) {
+            for (index, &weight) in cluster.weights.iter().enumerate() {
+                far(place(cluster.low, cluster.high, index), weight);
+            }
+        } else if let Some((low, high)) = cluster.children {
+            self.descend(low, items, from, far, near);
+            self.descend(high, items, from, far, near);
+        } else {
+            (first..last).for_each(near);
+        }
+    }
+}
+
+/// A smooth function of X over an interval, by its values at twenty points.
+pub(super) struct Sampled {
+    low: f64,
+    high: f64,
+    values: [f64; PROXIES],
+}
+
+impl Sampled {
+    /// Samples `f`.
+    pub(super) fn new(low: f64, high: f64, mut f: impl FnMut(f64) -> f64) -> Sampled {
+        let mut values = [0.0; PROXIES];
+        for (index, value) in values.iter_mut().enumerate() {
+            *value = f(place(low, high, index));
+        }
+        Sampled { low, high, values }
+    }
+
+    /// Its value anywhere in the interval.
+    pub(super) fn at(&self, place: f64) -> f64 {
+        shares(self.low, self.high, place).iter().zip(self.values).map(|(share, value)| share * value).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Far;
+
+    #[test]
+    fn far_and_near_together_are_the_whole() {
+        let bounds: Vec<f64> = (0..=100u32).map(|i| f64::from(i * i)).collect();
+        let source = |item: usize| (0.3 * bounds[item] + 0.7 * bounds[item + 1], 1.0 + bounds[item].sin());
+        let far = Far::new(&bounds, |item, add| {
+            let (at, weight) = source(item);
+            add(at, weight);
+        });
+        let exact: f64 = (10..90).map(source).map(|(at, weight)| weight / (at - 64.0f64).abs().sqrt()).sum();
+        let (mut sum, mut extra, mut calls) = (0.0, 0.0, 0);
+        far.visit(10..90, (64.0, 64.0), &mut |at, weight| sum += weight / (at - 64.0f64).abs().sqrt(), &mut |item| {
+            let (at, weight) = source(item);
+            extra += weight / (at - 64.0f64).abs().sqrt();
+            calls += 1;
+        });
+        assert!(((sum + extra) / exact - 1.0).abs() < 1e-15);
+        assert!(calls < 40, "{calls}");
+    }
+}
