@@ -121,9 +121,13 @@ pub struct Contact {
     dissipated: Double,
     initial: Figures,
     path_error: f64,
+    path_kernel: f64,
     /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
     inverse_scale: Double,
 }
+
+/// Beyond this, steepness of g is the edge of a punch, which no rounding moves.
+const STEEPEST: f64 = 1e4;
 
 /// Estimates of what rounding, or a coarse model, has cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,6 +177,7 @@ impl Contact {
             dissipated: Double::ZERO,
             initial,
             path_error: 0.0,
+            path_kernel: 0.0,
             inverse_scale,
         })
     }
@@ -270,6 +275,7 @@ impl Contact {
         if self.memory.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
             // What gross slip wipes out takes its errors with it.
             self.path_error = 0.0;
+            self.path_kernel = 0.0;
         }
     }
 
@@ -287,8 +293,10 @@ impl Contact {
         self.displacement
     }
 
-    pub(super) fn add_path_error(&mut self, error: f64) {
-        self.path_error += error;
+    /// Notes what a chord has cost: errors of the force add up, those of the stress are local.
+    pub(super) fn add_path_error(&mut self, force: f64, kernel: f64) {
+        self.path_error += force;
+        self.path_kernel = self.path_kernel.max(kernel);
     }
 
     /// Normal force, N, at an indentation, m.
@@ -333,6 +341,24 @@ impl Contact {
         &self.profile
     }
 
+    /// Contact radius a, m.
+    #[must_use]
+    pub fn contact_radius(&self) -> f64 {
+        self.memory.edge().radius
+    }
+
+    /// Indentation d, m; below nought a gap.
+    #[must_use]
+    pub fn indentation(&self) -> f64 {
+        self.memory.edge().level.value()
+    }
+
+    /// Displacement of gross slip on first loading, m, at the present load.
+    #[must_use]
+    pub fn gross_slip_displacement(&self) -> f64 {
+        self.scale() * self.indentation().max(0.0)
+    }
+
     /// How many straight pieces the history has left.
     #[must_use]
     pub fn memory_depth(&self) -> usize {
@@ -359,15 +385,22 @@ impl Contact {
 
     /// What rounding and curved paths have cost. The force is a sum over pieces, each good to some units in the last place of
     /// itself, so its rounding scales with the magnitudes that went into the sum; a stress likewise, whose terms are
-    /// bounded by mu p.
+    /// bounded by mu p. A stress has cusps: the estimate holds for a radius moved by some units in its last place.
     #[must_use]
     pub fn accuracy(&self) -> Estimate {
         let carried = self.friction * self.normal_force;
         let summed = self.force_unit() * self.memory.force_size();
         let terms = if carried > 0.0 { summed / carried } else { 0.0 };
+        let (radius, indentation) = (self.contact_radius(), self.indentation());
+        // Where g is steep, a rounded radius moves the indentation by this many units.
+        let steepness = radius * self.profile.slope(radius) / indentation;
+        let steepness = if steepness.is_finite() { steepness.clamp(0.0, STEEPEST) } else { 0.0 };
+        let mean_pressure = self.normal_force / (std::f64::consts::PI * radius * radius);
+        let bend = self.elasticity.e_star() / std::f64::consts::PI * self.path_kernel / mean_pressure;
+        let bend = if bend.is_finite() { bend } else { 0.0 };
         Estimate {
-            force_error: f64::EPSILON * (2.0 + 6.0 * terms) + self.path_error,
-            stress_error: f64::EPSILON * (4.0 + 12.0 * terms) + self.path_error,
+            force_error: f64::EPSILON * (2.0 + 6.0 * terms + steepness) + self.path_error,
+            stress_error: f64::EPSILON * (4.0 + 12.0 * terms + 2.0 * steepness) + self.path_error + bend,
         }
     }
 

@@ -110,13 +110,15 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     }
     // The largest of a scan, then thirds about it: a profile that is steep outside has its maximum off the centre.
     let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
-    let best = (0..PRESSURE_SCAN).max_by(|&a, &b| at(radius(a)).total_cmp(&at(radius(b)))).unwrap_or(0);
+    let scan: Vec<f64> = (0..PRESSURE_SCAN).map(|index| at(radius(index))).collect();
+    let best = (0..PRESSURE_SCAN).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
     let (mut low, mut high) = (radius(best.saturating_sub(1)), radius(best + 1));
-    for _ in 0..60 {
+    // At a maximum, half the digits of the radius are all that count.
+    for _ in 0..40 {
         let third = (high - low) / 3.0;
         if at(low + third) >= at(high - third) { high -= third } else { low += third }
     }
-    Some(at(0.5 * (low + high)).max(at(radius(best))))
+    Some(at(0.5 * (low + high)).max(scan[best]))
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.

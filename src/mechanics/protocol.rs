@@ -43,8 +43,7 @@ pub struct EqualPeaks {
 /// need none have none unless it is given.
 #[must_use]
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
-    let figures = contact.figures();
-    let edge = figures.contact_radius;
+    let (edge, indentation) = (contact.contact_radius(), contact.indentation());
     let singular = contact.profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max);
     let cutoff = match (cutoff_radius, singular) {
         (Some(given), singular) => given.clamp(singular.unwrap_or(0.0), edge),
@@ -52,14 +51,14 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         (None, None) => 0.0,
     };
     let spread = Spread::new(&contact.profile, cutoff, edge);
-    let full = figures.gross_slip_displacement;
+    let full = contact.gross_slip_displacement();
     let size = |index: usize| {
         let part = index as f64 / reversals.max(1) as f64;
         match spread.radius(part) {
             // The first stroke slips as a whole, so that nothing before it matters.
             _ if index == 0 => full,
             _ if index == reversals => 0.0,
-            Some(radius) => full * (1.0 - contact.profile.level(radius) / figures.indentation).max(0.0),
+            Some(radius) => full * (1.0 - contact.profile.level(radius) / indentation).max(0.0),
             None => full * (1.0 - part),
         }
     };

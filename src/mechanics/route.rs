@@ -8,7 +8,7 @@
 use super::contact::Contact;
 use super::double::Double;
 use super::error::Error;
-use super::profile::Ring;
+use super::profile::{At, Ring};
 
 /// Error of the tangential force, relative to mu F_N, that a path may cost unless the caller says otherwise.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -59,6 +59,8 @@ struct Deviation {
     integral: f64,
     /// Whether slip sets in or ends between its ends.
     turns: bool,
+    /// Error of the slope of w over y, weighted with the kernel of what is touched at its inner end.
+    kernel: f64,
 }
 
 fn between(from: f64, to: f64, part: f64) -> f64 {
@@ -95,7 +97,7 @@ impl Contact {
                 continue;
             }
             self.advance(&end);
-            self.add_path_error(error);
+            self.add_path_error(error, deviation.kernel);
             done = next;
             chords += 1;
             step *= 2.0;
@@ -159,7 +161,7 @@ impl Contact {
         let start = self.memory.edge().level;
         let rise = end.indentation - start;
         if rise.abs() <= Double::ZERO {
-            return Deviation { integral: 0.0, turns: false };
+            return Deviation { integral: 0.0, turns: false, kernel: 0.0 };
         }
         let middle = self.stop_on(route, 0.5 * (done + next));
         let half_rise = middle.indentation - start;
@@ -174,12 +176,11 @@ impl Contact {
         let lower = if lower.value() > 0.0 { lower } else { Double::ZERO };
         let upper = if rise.value() > 0.0 { end.indentation } else { start };
         let edge = self.profile.point(upper);
-        let width = if turns {
-            edge.radius
-        } else {
-            self.profile.moments(&Ring::between(self.profile.point(lower), edge)).width
-        };
-        Deviation { integral: off * width, turns }
+        let touched = Ring::between(self.profile.point(lower), edge);
+        let width = if turns { edge.radius } else { self.profile.moments(&touched).width };
+        // A parabola's slope is four times its height over its base off its chord's.
+        let kernel = 4.0 * off / rise.abs().value() * self.profile.kernel(&At::point(&touched.inner), &touched);
+        Deviation { integral: off * width, turns, kernel }
     }
 
     /// Scaled displacement from here to a point of the path, m.

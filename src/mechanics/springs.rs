@@ -49,10 +49,10 @@ struct Spring {
 /// Those of [`Contact::new`] and, for the normal targets, of [`Contact::apply`].
 pub fn reach(setup: &Setup, moves: &[Move]) -> Result<f64, Error> {
     let mut contact = Contact::new(setup.clone())?;
-    let mut reach = contact.figures().contact_radius;
+    let mut reach = contact.contact_radius();
     for step in moves.iter().filter(|step| step.normal.is_some()) {
         contact.apply(&Move { tangential: None, ..*step })?;
-        reach = reach.max(contact.figures().contact_radius);
+        reach = reach.max(contact.contact_radius());
     }
     Ok(reach)
 }
@@ -71,7 +71,7 @@ impl Springs {
 
     fn alone(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         let contact = Contact::new(setup.clone())?;
-        let initial = contact.figures();
+        let initial = contact.initial_figures();
         let Setup { profile, friction, .. } = setup;
         let spacing = 2.0 * reach / count as f64;
         let first = if count.is_multiple_of(2) { 0.5 } else { 0.0 };
@@ -298,16 +298,23 @@ impl Springs {
     /// Pressure, Pa, at a radius, m.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        let edge = self.indentation - self.profile.level(self.contact_radius());
-        self.initial.e_star * self.stress(radius, edge, |spring| self.indentation - spring.level)
+        self.initial.e_star * self.stress(radius, self.rim_depth(), |spring| self.indentation - spring.level)
     }
 
     /// Shear stress, Pa, at a radius, m.
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
-        let room = self.scale() * (self.indentation - self.profile.level(self.contact_radius())).max(0.0);
+        let room = self.scale() * self.rim_depth();
         let last = self.in_contact().last().map_or(0.0, |spring| spring.carried);
         self.initial.g_star * self.stress(radius, last.clamp(-room, room), |spring| spring.carried)
+    }
+
+    /// How deep a vertical edge is pressed in, m; nought for a profile without one, but for rounding.
+    fn rim_depth(&self) -> f64 {
+        if self.profile.rim_radius().is_none() {
+            return 0.0;
+        }
+        (self.indentation - self.profile.level(self.contact_radius())).max(0.0)
     }
 
     /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring

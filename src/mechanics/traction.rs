@@ -54,6 +54,9 @@ const FINEST: f64 = 1e-3;
 /// The most samples of one stretch: they reach down to round-off.
 const SAMPLES: i32 = 72;
 
+/// A derivative below this share of what it is the sum of is nought: the kernels of some families are good to 1e-13.
+const NOISE: f64 = 1e-12;
+
 /// A stretch of radii in which the shear stress is smooth.
 struct Stretch {
     inner: At,
@@ -104,7 +107,7 @@ impl Contact {
             sum -= term;
             size += term.abs();
         }
-        if sum.abs() > 8.0 * f64::EPSILON * size { sum } else { 0.0 }
+        if sum.abs() > NOISE * size { sum } else { 0.0 }
     }
 
     /// All extrema of the shear stress with their exact radii, and what they amount to.
@@ -186,11 +189,12 @@ impl Contact {
         // Times the root of the distance to the kink, whose inverse the derivative grows with, dips stand out.
         let sample = |share: f64| (share, self.trend(&stretch.at(share)) * share.sqrt());
         let mut samples: Vec<(f64, f64)> = Vec::new();
-        let finest = if stretch.beyond > 0.0 { FINEST * stretch.beyond / span } else { 0.0 };
+        // Nothing is beyond the edge; what is beyond a spike is unknown.
+        let beyond = if stretch.beyond > 0.0 { (stretch.beyond / span).min(1.0) } else { 1.0 };
         for power in 0..SAMPLES {
             let share = SHRINK.powi(power);
             samples.push(sample(share));
-            if share < finest.min(FINEST) {
+            if share < FINEST * beyond {
                 break;
             }
         }

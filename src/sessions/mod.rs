@@ -254,7 +254,7 @@ impl Live {
 fn start(definition: &ContactDefinition, setup: Setup) -> Result<(Contact, Arc<About>), simulation::Failure> {
     let elasticity = setup.elasticity;
     let contact = simulation::contact(setup, "")?;
-    let figures: Figures = contact.figures().into();
+    let figures: Figures = contact.initial_figures().into();
     let Figures { contact_radius, e_star, indentation, .. } = figures;
     let noise = contact.profile().noise(contact_radius);
     let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };

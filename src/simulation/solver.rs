@@ -9,9 +9,10 @@ pub trait Solver {
     /// Its name in replies.
     const KIND: SolverKind;
 
-    /// The figures of the normal load at hand: the present one or, for springs, which stand for one simulation, that of
-    /// the definition.
+    /// The figures of the definition.
     fn figures(&self) -> Figures;
+    /// Displacement of gross slip at the normal load at hand, m.
+    fn gross_slip_displacement(&self) -> f64;
     /// Makes a move; a refused one changes nothing. The tolerance is for what is not exact.
     ///
     /// # Errors
@@ -41,7 +42,11 @@ impl Solver for Contact {
     const KIND: SolverKind = SolverKind::Exact;
 
     fn figures(&self) -> Figures {
-        self.figures()
+        self.initial_figures()
+    }
+
+    fn gross_slip_displacement(&self) -> f64 {
+        self.gross_slip_displacement()
     }
 
     fn apply(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
@@ -90,6 +95,10 @@ impl Solver for Springs {
 
     fn figures(&self) -> Figures {
         self.initial_figures()
+    }
+
+    fn gross_slip_displacement(&self) -> f64 {
+        self.initial_figures().gross_slip_displacement
     }
 
     fn apply(&mut self, step: &Move, _tolerance: f64) -> Result<(), Error> {

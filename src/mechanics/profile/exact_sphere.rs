@@ -36,9 +36,14 @@ impl ExactSphere {
         Ok(ExactSphere { radius: range::RADIUS.check(radius)? })
     }
 
-    /// R, m, which no contact radius reaches.
+    /// What every contact radius must stay below, m: R less a millionth of a millionth, nearer to which X says nothing of the level.
     pub(super) fn limit(&self) -> f64 {
-        self.radius
+        self.radius * (1.0 - 1e-12)
+    }
+
+    /// x/R, below one even where rounding has x = R, so that levels stay finite.
+    fn share(&self, radius: f64) -> f64 {
+        (radius / self.radius).min(1.0 - 0.5 * f64::EPSILON)
     }
 
     /// R^2 less a square, kept off nought where rounding has x = R.
@@ -55,7 +60,8 @@ impl ExactSphere {
     fn ends(&self, span: &Span) -> (Place, Place, f64) {
         let inner = self.place(span.inner_radius, span.inner);
         let outer = self.place(span.outer_radius, span.outer);
-        (inner, outer, (self.radius * span.width() / (inner.height * outer.height)).asinh())
+        let turn = (self.radius * span.width() / (inner.height * outer.height)).asinh();
+        (inner, outer, turn.min(outer.sigma))
     }
 
     /// x_outer - x and g_outer - g where sigma is smaller by `turn`.
@@ -100,7 +106,7 @@ impl Chart for ExactSphere {
     }
 
     fn bend_at(&self, t: f64) -> f64 {
-        let u = t / self.radius;
+        let u = self.share(t);
         let square = u * u;
         if square > 0.1 {
             let rest = 1.0 - square;
@@ -127,11 +133,11 @@ impl Chart for ExactSphere {
 
 impl Shape for ExactSphere {
     fn level(&self, radius: f64) -> f64 {
-        radius * (radius / self.radius).atanh()
+        radius * self.share(radius).atanh()
     }
 
     fn slope(&self, radius: f64) -> f64 {
-        let u = radius / self.radius;
+        let u = self.share(radius);
         u.atanh() + u / ((1.0 - u) * (1.0 + u))
     }
 
@@ -140,13 +146,17 @@ impl Shape for ExactSphere {
     }
 
     fn square(&self, level: Double) -> Double {
+        let sigma = self.sigma(level.value());
+        if sigma > 1.0 {
+            return Double::square_of(self.radius * sigma.tanh());
+        }
         // R y tanh(sigma)/sigma: where a << R the factor is so near to one that its rounding does not count.
-        let factor = Double::from(1.0) - Double::from(shortfall(self.sigma(level.value()).max(f64::MIN_POSITIVE)));
+        let factor = Double::from(1.0) - Double::from(shortfall(sigma.max(f64::MIN_POSITIVE)));
         level * self.radius * factor
     }
 
     fn load(&self, radius: f64) -> f64 {
-        let sigma = (radius / self.radius).atanh();
+        let sigma = self.share(radius).atanh();
         0.5 * (self.radius * self.radius * sigma * shortfall(sigma.max(f64::MIN_POSITIVE)) + radius * radius * sigma)
     }
 
@@ -193,7 +203,8 @@ impl Shape for ExactSphere {
 
     fn moments(&self, span: &Span) -> Moments {
         let (_, outer, length) = self.ends(span);
-        let singular = Singular { below: std::f64::consts::FRAC_PI_2, above: f64::INFINITY };
+        // Poles of the fourth order at i pi/2: kept at arm's length.
+        let singular = Singular { below: 1.1, above: f64::INFINITY };
         let (mut done, mut first, mut second) = (0.0, 0.0, 0.0);
         while done < length {
             let panel = singular.panel(outer.sigma - done, length - done);

@@ -1,8 +1,8 @@
 //! Gauss-Legendre rules, and how far one may reach.
 //!
 //! A rule of n points errs like rho^(-2n), rho the sum of the half-axes of the largest ellipse about the panel, foci at its ends
-//! and half its width the unit, that holds no singularity (Trefethen 2008). Eight points need rho = 10, twenty rho = 2.6, to
-//! reach round-off; so the width of a panel follows from how far the integrand's nearest singularities are.
+//! and half its width the unit, that holds no singularity (Trefethen 2008). Eight points need rho = 10,
+//! twelve 4.6 and twenty 2.6 to reach round-off; so the width of a panel follows from how far the integrand's nearest singularities are.
 
 /// Abscissae below one half and their weights, on 0..1; the other half is the mirror image.
 type Rule = [(f64, f64)];
@@ -12,6 +12,15 @@ const EIGHT: [(f64, f64); 4] = [
     (0.101_666_761_293_186_64, 0.111_190_517_226_687_24),
     (0.237_233_795_041_835_5, 0.156_853_322_938_943_65),
     (0.408_282_678_752_175_1, 0.181_341_891_689_180_98),
+];
+
+const TWELVE: [(f64, f64); 6] = [
+    (0.009_219_682_876_640_375, 0.023_587_668_193_255_914),
+    (0.047_941_371_814_762_57, 0.053_469_662_997_659_21),
+    (0.115_048_662_902_847_65, 0.080_039_164_271_673_11),
+    (0.206_341_022_856_691_3, 0.101_583_713_361_532_96),
+    (0.316_084_250_500_909_9, 0.116_746_268_269_177_4),
+    (0.437_383_295_744_265_54, 0.124_573_522_906_701_39),
 ];
 
 const TWENTY: [(f64, f64); 10] = [
@@ -66,11 +75,19 @@ pub(super) struct Singular {
 impl Singular {
     /// The panel that hangs from `top` and covers `left`, or what can be covered of it.
     pub(super) fn panel(&self, top: f64, left: f64) -> Panel {
+        if top <= 0.0 {
+            // Only rounding leads here.
+            return Panel { width: left, rule: &EIGHT };
+        }
         let bottom = (top - left).max(0.0);
         let foci = (bottom * bottom + self.below * self.below).sqrt() + (top * top + self.below * self.below).sqrt();
-        let room = self.above - top;
+        // Rounding may put the top on the singularity; the panels must get off it.
+        let room = (self.above - top).max(1e-9 * top);
         if foci >= 5.05 * left && left <= 0.5 * room {
             return Panel { width: left, rule: &EIGHT };
+        }
+        if foci >= 2.45 * left && left <= 1.4 * room {
+            return Panel { width: left, rule: &TWELVE };
         }
         let width = if foci >= 1.5 * left { left } else { left.min(0.8 * top) };
         Panel { width: width.min(4.0 * room), rule: &TWENTY }
@@ -82,13 +99,21 @@ impl Singular {
 /// first the end where f is large.
 pub(super) fn along_strip(length: f64, scale: f64, room: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let widest = (8.0 * scale).min(3.0);
+    let room = room.max(1e-9);
     let (mut total, mut done) = (0.0, 0.0);
     while done < length {
         let left = length - done;
         let width = left.min(widest).min(4.0 * (room + done));
-        let short = width <= 0.6 && width <= 2.0 * scale && width <= 0.5 * (room + done);
+        let within = |share: f64| width <= share && width <= 3.0 * share * scale && width <= share * (room + done);
+        let rule: &Rule = if within(0.6) {
+            &EIGHT
+        } else if within(1.4) {
+            &TWELVE
+        } else {
+            &TWENTY
+        };
         let mut part = 0.0;
-        Panel { width, rule: if short { &EIGHT } else { &TWENTY } }.visit(|s, weight| part += weight * f(done + s));
+        Panel { width, rule }.visit(|s, weight| part += weight * f(done + s));
         total += part;
         if part.abs() * left < 1e-18 * total.abs() * width {
             break;

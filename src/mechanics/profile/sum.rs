@@ -55,7 +55,7 @@ impl Sum {
             kinks,
         };
         let rim = sum.parts.iter().filter_map(Shape::rim).map(|(radius, _)| radius).fold(f64::INFINITY, f64::min);
-        if rim < f64::INFINITY {
+        if rim < sum.ceiling {
             sum.rim = Some((rim, sum.level(rim)));
         }
         Ok(sum)

@@ -10,7 +10,7 @@ use super::panel::{self, Panel};
 use super::spline::Knot;
 
 /// Panels that share one far field.
-const BLOCK: usize = 8;
+const BLOCK: usize = 4;
 
 /// f' between two knots, f' = A + C r.
 struct Segment {

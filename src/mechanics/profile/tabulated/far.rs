@@ -4,12 +4,10 @@
 //! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table
 //! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about).
 
-use std::f64::consts::PI;
-
 /// Points that stand for a cluster.
 const PROXIES: usize = 20;
 /// Items in the smallest clusters.
-const LEAF: usize = 8;
+const LEAF: usize = 4;
 
 /// Sources of the items `first..last`.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,19 +26,56 @@ pub(super) struct Far {
     clusters: Vec<Cluster>,
 }
 
-/// The Chebyshev points of an interval.
+/// The Chebyshev points of -1..1, cos(pi (k + 1/2)/20).
+const POINTS: [f64; PROXIES] = [
+    0.996_917_333_733_128,
+    0.972_369_920_397_676_6,
+    0.923_879_532_511_286_7,
+    0.852_640_164_354_092_2,
+    0.760_405_965_600_030_9,
+    0.649_448_048_330_183_7,
+    0.522_498_564_715_948_9,
+    0.382_683_432_365_089_8,
+    0.233_445_363_855_905_42,
+    0.078_459_095_727_844_94,
+    -0.078_459_095_727_844_94,
+    -0.233_445_363_855_905_42,
+    -0.382_683_432_365_089_8,
+    -0.522_498_564_715_948_9,
+    -0.649_448_048_330_183_7,
+    -0.760_405_965_600_030_9,
+    -0.852_640_164_354_092_2,
+    -0.923_879_532_511_286_7,
+    -0.972_369_920_397_676_6,
+    -0.996_917_333_733_128,
+];
+/// Their barycentric weights, (-1)^k sin(pi (k + 1/2)/20).
+const WEIGHTS: [f64; PROXIES] = [
+    0.078_459_095_727_844_94,
+    -0.233_445_363_855_905_42,
+    0.382_683_432_365_089_8,
+    -0.522_498_564_715_948_9,
+    0.649_448_048_330_183_7,
+    -0.760_405_965_600_030_9,
+    0.852_640_164_354_092_2,
+    -0.923_879_532_511_286_7,
+    0.972_369_920_397_676_6,
+    -0.996_917_333_733_128,
+    0.996_917_333_733_128,
+    -0.972_369_920_397_676_6,
+    0.923_879_532_511_286_7,
+    -0.852_640_164_354_092_2,
+    0.760_405_965_600_030_9,
+    -0.649_448_048_330_183_7,
+    0.522_498_564_715_948_9,
+    -0.382_683_432_365_089_8,
+    0.233_445_363_855_905_42,
+    -0.078_459_095_727_844_94,
+];
+
+/// A Chebyshev point of an interval.
 fn place(low: f64, high: f64, index: usize) -> f64 {
-    0.5 * (low + high) + 0.5 * (high - low) * cosine(index)
-}
-
-fn angle(index: usize) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "an index below 20")]
-    let index = index as f64;
-    PI * (index + 0.5) / 20.0
-}
-
-fn cosine(index: usize) -> f64 {
-    angle(index).cos()
+    0.5 * (low + high) + 0.5 * (high - low) * POINTS[index]
 }
 
 /// The values at `place` of the polynomials that are one at one Chebyshev point of the interval and nought at the others.
@@ -49,14 +84,13 @@ fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
     let mut shares = [0.0; PROXIES];
     let mut total = 0.0;
     for (index, share) in shares.iter_mut().enumerate() {
-        let distance = u - cosine(index);
+        let distance = u - POINTS[index];
         if distance.abs() < 1e-300 {
             shares = [0.0; PROXIES];
             shares[index] = 1.0;
             return shares;
         }
-        let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
-        *share = sign * angle(index).sin() / distance;
+        *share = WEIGHTS[index] / distance;
         total += *share;
     }
     shares.map(|share| share / total)

@@ -3,8 +3,8 @@
 //! t = sqrt(x^2 - k^2), and one short series there replaces the thousand terms.
 //!
 //! f'(0) = 0: a sharp tip would be the noise of the first two points, and a log-infinite pressure; who wants one adds a cone.
-//! Interpolation error of g at n equal steps h, f analytic: of order h^2 f'''', measured 2.5 times smaller for each n doubled
-//! to the 1.4 and better (see the test below). Only radii below the last of the table, and below the first at which g falls, exist.
+//! With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up to r = 1.5: 3e-5 of g at
+//! n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the first at which g falls, exist.
 
 mod build;
 mod far;
@@ -19,7 +19,7 @@ use super::super::range;
 use super::chart::{self, Chart};
 use super::gauss;
 use super::shape::Shape;
-use super::{At, Moments, Span};
+use super::{At, Moments, Point, Ring, Span};
 use far::Far;
 use panel::Panel;
 use spline::Knot;
@@ -164,11 +164,12 @@ impl Tabulated {
         if inner == outer {
             return (None, outer..outer, Some((outer, *span)));
         }
-        let next = &self.panels[inner + 1];
-        let low = span.below(next.square, next.radius).map(|span| (inner, span));
+        let (this, next) = (&self.panels[inner], &self.panels[inner + 1]);
+        let whole = span.inner_radius <= this.radius;
+        let low = if whole { None } else { span.below(next.square, next.radius).map(|span| (inner, span)) };
         let top = &self.panels[outer];
         let high = span.above(top.square, top.radius).map(|span| (outer, span));
-        (low, inner + 1..outer, high)
+        (low, if whole { inner } else { inner + 1 }..outer, high)
     }
 
     /// Sums over the panels of a span: `panel` for one, `far` for sources that stand for many; only what lies beyond r counts.
@@ -273,6 +274,31 @@ impl Shape for Tabulated {
         let between = self.run(whole.start, whole.end).1;
         [low, high].into_iter().flatten().map(|(index, span)| chart::rise(&self.panels[index], &span)).sum::<f64>()
             + between
+    }
+
+    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        let square = Double::square_of(self.end.0);
+        let outer =
+            if ring.outer.square > square { Point { square, radius: self.end.0, ..ring.outer } } else { ring.outer };
+        let inside = Ring { outer, ..*ring };
+        let first = self.find(inside.inner.radius);
+        if self.panels.get(first + 1).is_some_and(|next| next.radius < outer.radius) {
+            // Over a seam: the squares know the distance to it on either side.
+            return (outer.square - inside.inner.square).value();
+        }
+        chart::gap(&self.panels[first], &inside, depth)
+    }
+
+    fn lift(&self, at: &At, span: &Span) -> f64 {
+        let (low, whole, high) = self.parts(span);
+        let whole = whole.map(|index| (index, self.panels[index].span()));
+        let (mut sum, mut above) = (0.0, 0.0);
+        for (index, span) in high.into_iter().chain(whole.rev()).chain(low) {
+            let panel = &self.panels[index];
+            sum += panel.lift(at, &span, above);
+            above += chart::rise(panel, &span);
+        }
+        sum
     }
 
     fn rim(&self) -> Option<(f64, f64)> {

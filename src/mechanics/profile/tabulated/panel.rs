@@ -6,7 +6,7 @@
 use super::super::super::double::Double;
 use super::super::chart::Chart;
 use super::super::zone::Zone;
-use super::super::{Moments, Span};
+use super::super::{At, Moments, Span};
 
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
@@ -158,6 +158,12 @@ impl Panel {
         zone.moments(|node| self.rise_at(node.t, zone.high, node.dt))
     }
 
+    /// The lift of a span within, `above` the level added to h.
+    pub(super) fn lift(&self, at: &At, span: &Span, above: f64) -> f64 {
+        let zone = self.zone(span);
+        zone.lift(span, at, above, |node| self.rise_at(node.t, zone.high, node.dt))
+    }
+
     /// int x dg from the beginning to t.
     pub(super) fn load_to(&self, t: f64) -> f64 {
         let mut load = 0.0;
@@ -183,7 +189,7 @@ impl Panel {
             let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
             let step = (next - t).abs();
             t = next;
-            if step <= 1e-16 * t {
+            if step <= 3e-16 * t || high - low <= 3e-16 * high {
                 break;
             }
         }

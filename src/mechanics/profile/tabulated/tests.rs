@@ -73,7 +73,9 @@ fn rings_of_a_table_are_those_of_the_sum() {
                     pairs.push((table.kernel(&at, &ours), sum.kernel(&at, &exact)));
                     pairs.push((table.kernel_slope(&at, &ours), sum.kernel_slope(&at, &exact)));
                 }
-                println!("{idle} {inner} {outer} {share}: {:e}", worst(&pairs));
+                // x^2 is known to round-off of x^2: in a ring of 1e-9 of it, near an edge, little of x^2 - r^2 is left.
+                let allowed = if outer - inner > 1e-5 { 1e-10 } else { 1e-3 };
+                assert!(worst(&pairs) < allowed, "{idle} {inner} {outer} {share}: {:e} {pairs:?}", worst(&pairs));
             }
         }
     }
@@ -120,8 +122,7 @@ fn the_interpolation_converges() {
         (Tabulated::new(&radii, &heights).unwrap().level(1.0) / exact - 1.0).abs()
     };
     let errors: Vec<f64> = [15, 30, 60, 120, 240].into_iter().map(error).collect();
-    println!("{errors:?}");
-    assert!(errors.windows(2).all(|pair| pair[1] < 0.4 * pair[0]), "{errors:?}");
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.19 * pair[0]), "{errors:?}");
 }
 
 #[test]
