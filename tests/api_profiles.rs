@@ -1,0 +1,141 @@
+//! Every profile over HTTP: the promises of the contract that hang on the shape.
+
+mod common;
+
+use serde_json::{Value, json};
+
+async fn post(server: &str, body: &Value) -> (u16, Value) {
+    let reply = reqwest::Client::new().post(format!("{server}/simulate")).json(body).send().await.unwrap();
+    (reply.status().as_u16(), reply.json().await.unwrap())
+}
+
+fn request(profile: &Value, preload: &Value) -> Value {
+    json!({
+        "contact": {
+            "profile": profile,
+            "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}},
+            "friction": 0.3,
+            "preload": preload
+        },
+        "path": {"falling_amplitude": {"reversals": 6}},
+        "steps": "last"
+    })
+}
+
+fn families() -> Vec<Value> {
+    let radii: Vec<f64> = (0..=100).map(|index| 1e-5 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
+    vec![
+        json!({"type": "sphere", "radius": 0.01}),
+        json!({"type": "exact_sphere", "radius": 0.01}),
+        json!({"type": "cone", "slope": 0.05}),
+        json!({"type": "power_law", "exponent": 1.5, "coefficient": 1.0}),
+        json!({"type": "flat_punch", "radius": 1e-3}),
+        json!({"type": "truncated_cone", "slope": 0.05, "flat_radius": 5e-5}),
+        json!({"type": "truncated_sphere", "radius": 0.01, "flat_radius": 5e-5}),
+        json!({"type": "rounded_punch", "flat_radius": 5e-5, "edge_radius": 0.01}),
+        json!({"type": "rounded_cone", "slope": 0.05, "tip_radius": 5e-5}),
+        json!({"type": "tabulated", "r": radii, "z": heights}),
+        json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.02}, {"type": "cone", "slope": 0.01}]}),
+    ]
+}
+
+#[tokio::test]
+async fn every_profile_carries_its_normal_force_and_gives_every_field() {
+    let server = common::Server::start().await;
+    for profile in families() {
+        let mut body = request(&profile, &json!({"normal_force": 10.0}));
+        body["stress"] = json!({"points": 9, "fields": ["pressure", "shear", "slip", "displacement"]});
+        body["residual"] = json!(true);
+        let (status, reply) = post(&server.base, &body).await;
+        assert_eq!(status, 200, "{profile}: {reply}");
+        assert_eq!(reply["contact"]["normal_force"], json!(10.0));
+        for field in ["radius", "pressure", "shear", "slip", "displacement"] {
+            assert_eq!(reply["stress"][field].as_array().unwrap().len(), 9, "{profile} {field}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn only_what_is_asked_for_is_in_the_reply() {
+    let server = common::Server::start().await;
+    let body = request(&families()[0], &json!({"normal_force": 10.0}));
+    let (_, reply) = post(&server.base, &body).await;
+    for absent in ["stress", "residual", "protocol"] {
+        assert!(reply.get(absent).is_none(), "{absent} was not asked for");
+    }
+    let mut body = body;
+    body["stress"] = json!({"points": 3, "fields": ["slip"]});
+    let (_, reply) = post(&server.base, &body).await;
+    assert!(reply["stress"].get("pressure").is_none() && reply["stress"]["slip"].is_array());
+}
+
+#[tokio::test]
+async fn infinite_stresses_are_null_and_spoil_nothing() {
+    let server = common::Server::start().await;
+    let mut body = request(&json!({"type": "flat_punch", "radius": 1e-3}), &json!({"normal_force": 10.0}));
+    body["path"] = json!({"displacement": [1e-9]});
+    body["stress"] = json!({"points": 3});
+    body["residual"] = json!(true);
+    let (_, reply) = post(&server.base, &body).await;
+    for field in ["pressure", "shear"] {
+        let values = reply["stress"][field].as_array().unwrap();
+        assert!(values[0].is_number() && values[1].is_number() && values[2].is_null(), "{field}: {values:?}");
+    }
+    assert!(reply["contact"]["max_pressure"].is_null() && reply["residual"]["max"].is_null());
+    assert_eq!(reply["steps"][0]["regime"], "stick", "a punch sticks as a whole");
+    body["path"] = json!({"displacement": [1e-3]});
+    let (_, reply) = post(&server.base, &body).await;
+    assert_eq!(reply["steps"][0]["regime"], "gross_slip", "and slides as a whole");
+}
+
+#[tokio::test]
+async fn what_a_shape_cannot_do_is_refused_by_name() {
+    let server = common::Server::start().await;
+    let sphere = json!({"type": "exact_sphere", "radius": 0.01});
+    let punch = json!({"type": "flat_punch", "radius": 1e-3});
+    let table = json!({"type": "tabulated", "r": [0.0, 1e-5, 2e-5], "z": [0.0, 1e-9, 4e-9]});
+    for (profile, preload, code, pointer) in [
+        (&sphere, json!({"contact_radius": 0.02}), "beyond_profile", "/contact"),
+        (&table, json!({"normal_force": 1e6}), "beyond_profile", "/contact"),
+        (&punch, json!({"contact_radius": 1e-3}), "invalid_input", "/contact/preload/contact_radius"),
+        (
+            &json!({"type": "cone", "radius": 1.0}),
+            json!({"normal_force": 1}),
+            "invalid_input",
+            "/contact/profile/radius",
+        ),
+        (&json!({"type": "cone"}), json!({"normal_force": 1}), "invalid_input", "/contact/profile/slope"),
+        (
+            &json!({"type": "tabulated", "r": [0, 1], "z": [0, 1]}),
+            json!({"normal_force": 1}),
+            "invalid_input",
+            "/contact/profile/r",
+        ),
+        (
+            &json!({"type": "power_law", "exponent": 0, "coefficient": 1}),
+            json!({"normal_force": 1}),
+            "invalid_input",
+            "/contact/profile/exponent",
+        ),
+    ] {
+        let (status, reply) = post(&server.base, &request(profile, &preload)).await;
+        assert_eq!((status, reply["code"].as_str()), (422, Some(code)), "{profile}: {reply}");
+        assert!(reply["errors"][0]["pointer"].as_str().unwrap().starts_with(pointer), "{reply}");
+    }
+}
+
+#[tokio::test]
+async fn equal_peaks_say_which_path_they_are() {
+    let server = common::Server::start().await;
+    let mut body = request(&json!({"type": "cone", "slope": 0.05}), &json!({"normal_force": 10.0}));
+    body["path"] = json!({"equal_peaks": {"reversals": 5}});
+    let (status, reply) = post(&server.base, &body).await;
+    assert_eq!(status, 200, "{reply}");
+    let (radius, cutoff) = (&reply["contact"]["contact_radius"], &reply["protocol"]["cutoff_radius"]);
+    assert!((cutoff.as_f64().unwrap() / radius.as_f64().unwrap() - 0.1).abs() < 1e-12);
+    let path = reply["protocol"]["displacement"].clone();
+    body["path"] = json!({ "displacement": path });
+    let (_, again) = post(&server.base, &body).await;
+    assert_eq!(again["steps"], reply["steps"], "the path is usable as it is");
+}

@@ -1,0 +1,97 @@
+//! The law of equal peaks: what it gains over the linearly falling amplitude, profile by profile.
+
+use stickslip::mechanics::profile::{Cone, PowerLaw, Tabulated, TruncatedSphere};
+use stickslip::mechanics::protocol::{equal_peaks, falling_amplitude};
+use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+
+fn pressed(profile: Profile) -> Contact {
+    Contact::new(Setup {
+        profile,
+        elasticity: Elasticity::effective(1000.0, 800.0).unwrap(),
+        friction: 0.3,
+        preload: Preload::Indentation(0.025),
+    })
+    .unwrap()
+}
+
+fn power(exponent: f64) -> Profile {
+    Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
+}
+
+/// Largest peak, and its ratio to the smallest, beyond a radius; the outermost peak apart, which the edge makes smaller.
+fn peaks(profile: &Profile, path: &[f64], beyond: f64) -> (f64, f64) {
+    let mut contact = pressed(profile.clone());
+    for &target in path {
+        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
+    }
+    let found = contact.residual().peaks;
+    let sizes: Vec<f64> =
+        found[..found.len() - 1].iter().filter(|peak| peak.radius > beyond).map(|peak| peak.shear.abs()).collect();
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    (largest, largest / sizes.iter().copied().fold(f64::INFINITY, f64::min))
+}
+
+/// ((largest, ratio) of the linear fall, the same of equal peaks), and the cut-off radius.
+fn compared(profile: &Profile, reversals: usize) -> ((f64, f64), (f64, f64), f64) {
+    let contact = pressed(profile.clone());
+    let linear: Vec<f64> = falling_amplitude(reversals, contact.gross_slip_displacement()).collect();
+    let equal = equal_peaks(&contact, reversals, None);
+    assert_eq!(equal.displacements.len(), reversals + 1);
+    assert!(equal.displacements[reversals].abs() <= 0.0, "the path ends at nought");
+    assert!((equal.displacements[0] - contact.gross_slip_displacement()).abs() <= 0.0, "and starts with gross slip");
+    let cutoff = equal.cutoff_radius;
+    (peaks(profile, &linear, cutoff), peaks(profile, &equal.displacements, cutoff), cutoff)
+}
+
+#[test]
+fn on_a_sphere_the_law_is_the_linear_fall() {
+    let contact = pressed(Profile::Sphere(Sphere::new(10.0).unwrap()));
+    let full = contact.gross_slip_displacement();
+    let equal = equal_peaks(&contact, 20, None);
+    for (found, expected) in equal.displacements.iter().zip(falling_amplitude(20, full)) {
+        assert!((found - expected).abs() < 1e-6 * full, "{found:e} {expected:e}");
+    }
+}
+
+#[test]
+fn on_power_laws_the_largest_peak_falls() {
+    for (exponent, least_gain) in [(1.5, 0.39), (3.0, 0.12), (4.0, 0.16)] {
+        let ((linear, before), (equal, after), cutoff) = compared(&power(exponent), 50);
+        assert!(cutoff.abs() <= 0.0);
+        assert!(1.0 - equal / linear > least_gain, "exponent {exponent}: {linear:e} to {equal:e}");
+        println!(
+            "exponent {exponent}: ratio of peaks {before:.3} to {after:.3}, largest lower by {:.3}",
+            1.0 - equal / linear
+        );
+    }
+}
+
+#[test]
+fn peaks_are_more_even_than_with_the_linear_fall() {
+    let radii: Vec<f64> = (0..=200).map(|index| 0.9 * f64::from(index) / 200.0).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 0.1 * r * r * (1.0 + r)).collect();
+    let profiles = [
+        ("power 1.5", power(1.5)),
+        ("power 3", power(3.0)),
+        ("power 4", power(4.0)),
+        ("cone", Profile::Cone(Cone::new(0.05).unwrap())),
+        ("truncated sphere", Profile::TruncatedSphere(TruncatedSphere::new(10.0, 0.2).unwrap())),
+        ("table", Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap())),
+    ];
+    for (name, profile) in profiles {
+        let ((_, before), (_, after), _) = compared(&profile, 50);
+        println!("{name}: ratio of largest to smallest interior peak {before:.3} to {after:.3}");
+        assert!(after < before, "{name}: {before:.3} to {after:.3}");
+    }
+}
+
+#[test]
+fn where_the_slope_jumps_the_law_starts_from_a_cutoff() {
+    let cone = Profile::Cone(Cone::new(0.05).unwrap());
+    let edge = pressed(cone.clone()).contact_radius();
+    let ((_, before), (_, after), cutoff) = compared(&cone, 50);
+    assert!((cutoff - 0.1 * edge).abs() < 1e-15);
+    assert!(before > 2.9 && after < 1.05, "{before} {after}");
+    let given = equal_peaks(&pressed(cone), 50, Some(0.3 * edge));
+    assert!((given.cutoff_radius - 0.3 * edge).abs() < 1e-15);
+}
