@@ -30,7 +30,8 @@
 //! # The map
 //!
 //! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
-//! friction work of a move. `contact`, `force`, `traction`: what is asked of it. [`protocol`]: paths. [`springs`]: the
+//! friction work of a move. `contact`, `force`, `route`, `traction`, `surface`: what is asked
+//! of it. [`protocol`]: paths. [`springs`]: the
 //! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
 
 mod contact;
