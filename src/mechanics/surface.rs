@@ -50,7 +50,7 @@ impl Contact {
             sum += at_core * arc_to(&core.inner, &at);
         }
         for (ring, line) in self.memory.rings() {
-            if ring.inner.radius < radius {
+            if (at.square - ring.inner.square).value() > 0.0 {
                 let outer = line.at(ring.outer.level).value();
                 sum += outer * self.profile.arc(&at, &ring) - line.slope.value() * self.profile.lift(&at, &ring);
             }

@@ -1,6 +1,6 @@
 //! The profile: which shape touches the flat.
 //!
-//! A new family is a variant of [`Profile`] with its document, a name in [`Kind`], its members in [`Members`], and an arm
+//! A new family is a variant of [`Profile`] with its document, a name in `Kind`, its members in `Members`, and an arm
 //! in the two matches.
 
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};

@@ -1,8 +1,6 @@
-"""Frictional contact in many digits: an independent reference for `hard_cases.csv`, `curved.csv` and `accuracy.csv`.
+"""Frictional contact in many digits: an independent reference, put to work by `scenes.py`.
 
-    python3 tests/data/reference.py [hard] [curved] [accuracy]
-
-needs mpmath alone (gmpy2 makes it ten times faster). It shares no code and no shortcut with the crate:
+It needs mpmath alone (gmpy2 makes it ten times faster). It shares no code and no shortcut with the crate:
 
 - a profile is its g and g' in closed form, each checked against the definition g = x int_0^x f'(r)/sqrt(x^2 - r^2) dr by
   quadrature, and against a numerical derivative;
@@ -17,7 +15,6 @@ Units are scaled as in `mechanics/mod.rs`: y = g(x), w = u_x/m, W = U/m, m = mu 
 """
 
 import random
-import sys
 from functools import lru_cache
 
 from mpmath import mp, mpf, inf, pi

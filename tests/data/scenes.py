@@ -2,6 +2,8 @@
 
     python3 tests/data/scenes.py [hard] [curved] [accuracy]
 
+takes some minutes a file and writes the same at every run.
+
 Rows of the files: `scene,name,E*,G*,mu,preload kind,preload,profile`, then its moves (`move`, or a run of many: `nested`,
 `swing`), then `units,mu F_N,stress unit,u_max` and one row a result. The stress unit is mu p(0) for spheres and mu times the
 mean pressure for the rest. A result that ends in `own` is to be compared relative to itself. A `kink` is the shear stress next to
