@@ -9,6 +9,8 @@
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
 //! - Nothing wrong with the request, but no capacity: [`Kind::Overloaded`], with `Retry-After`.
+//! - The storage has no room ([`Kind::StorageFull`]) or cannot be reached ([`Kind::StorageUnavailable`]): not the client's
+//!   fault, and not this program's. Nothing has been acknowledged, and a retry is welcome.
 //! - A fault of this program: [`Kind::Internal`]. Its cause goes to the log, and the client gets the request's identifier.
 //!
 //! The errors of the lower floors know no status codes; the `From` implementations here are the one place that gives them.
@@ -19,6 +21,7 @@ use axum::response::{IntoResponse, Response};
 use crate::mechanics;
 use crate::sessions::SessionError;
 use crate::simulation::{Failure, PoolError};
+use crate::store::StoreError;
 use crate::wire::{Fault, ProblemDocument, Rejection};
 
 use super::limits;
@@ -35,6 +38,8 @@ pub enum Kind {
     NotFound,
     /// No such session.
     ContactNotFound,
+    /// The session was idle for so long that it has been deleted.
+    ContactExpired,
     /// The path has no such method.
     MethodNotAllowed,
     /// The state of the session forbids it.
@@ -61,16 +66,21 @@ pub enum Kind {
     IdempotencyKeyReused,
     /// No capacity at present.
     Overloaded,
+    /// The storage has no room.
+    StorageFull,
+    /// The storage cannot be reached.
+    StorageUnavailable,
     /// A fault of this program.
     Internal,
 }
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 17] = [
+    pub const ALL: [Kind; 20] = [
         Kind::NotJson,
         Kind::NotFound,
         Kind::ContactNotFound,
+        Kind::ContactExpired,
         Kind::MethodNotAllowed,
         Kind::Conflict,
         Kind::StaleSequence,
@@ -84,6 +94,8 @@ impl Kind {
         Kind::TooMuchWork,
         Kind::IdempotencyKeyReused,
         Kind::Overloaded,
+        Kind::StorageFull,
+        Kind::StorageUnavailable,
         Kind::Internal,
     ];
 
@@ -94,6 +106,7 @@ impl Kind {
             Kind::NotJson => (StatusCode::BAD_REQUEST, "not_json", "The body is not JSON"),
             Kind::NotFound => (StatusCode::NOT_FOUND, "not_found", "There is nothing at this path"),
             Kind::ContactNotFound => (StatusCode::NOT_FOUND, "contact_not_found", "There is no such contact"),
+            Kind::ContactExpired => (StatusCode::GONE, "contact_expired", "The contact has expired"),
             Kind::MethodNotAllowed => {
                 (StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", "This path has no such method")
             }
@@ -127,6 +140,10 @@ impl Kind {
                 "The idempotency key belongs to another request",
             ),
             Kind::Overloaded => (StatusCode::SERVICE_UNAVAILABLE, "overloaded", "The server is busy"),
+            Kind::StorageFull => (StatusCode::INSUFFICIENT_STORAGE, "storage_full", "The server has no room left"),
+            Kind::StorageUnavailable => {
+                (StatusCode::SERVICE_UNAVAILABLE, "storage_unavailable", "The storage cannot be reached")
+            }
             Kind::Internal => (StatusCode::INTERNAL_SERVER_ERROR, "internal", "The server has failed"),
         }
     }
@@ -202,7 +219,7 @@ impl IntoResponse for Problem {
     /// The status alone: the document waits in the extensions for `observe`, which knows the request's identifier.
     fn into_response(self) -> Response {
         let mut response = self.kind.parts().0.into_response();
-        if self.kind == Kind::Overloaded {
+        if matches!(self.kind, Kind::Overloaded | Kind::StorageUnavailable) {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER.as_secs()));
         }
         response.extensions_mut().insert(self);
@@ -260,6 +277,14 @@ impl From<SessionError> for Problem {
             SessionError::KeyReused => Problem::new(Kind::IdempotencyKeyReused, detail),
             SessionError::Failure(failure) => failure.into(),
             SessionError::Pool(error) => error.into(),
+            SessionError::Expired(_) => Problem::new(Kind::ContactExpired, detail),
+            SessionError::Store(StoreError::Full(_)) => {
+                Problem::new(Kind::StorageFull, "nothing has changed; try again when there is room").because(detail)
+            }
+            SessionError::Store(StoreError::Unavailable(_)) => {
+                let advice = "the change may or may not be stored; retry with the same Idempotency-Key, or look";
+                Problem::new(Kind::StorageUnavailable, advice).because(detail)
+            }
             SessionError::Store(_) | SessionError::Broken(_) => Problem::internal(detail),
         }
     }

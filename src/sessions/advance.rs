@@ -71,7 +71,7 @@ impl Sessions {
         let receipt = idempotency::receipt(key.clone(), &reply);
         match (self.store.append(id, sequence, records, receipt).await, expected) {
             (Ok(()), _) => *guard = Some(live),
-            (Err(StoreError::NotFound), _) => return Err(self.failed(id, StoreError::NotFound)),
+            (Err(error @ (StoreError::NotFound | StoreError::Expired)), _) => return Err(self.failed(id, error)),
             (Err(StoreError::Stale { found }), Some(expected)) => return Err(SessionError::Stale { expected, found }),
             (Err(StoreError::Stale { found }), None) => return Err(SessionError::Overtaken { found }),
             (Err(other), _) => return self.lost(other, key).await,

@@ -34,6 +34,9 @@ pub enum SessionError {
     /// There is no such session.
     #[error("there is no contact {0}")]
     NotFound(Uuid),
+    /// There was such a session, and it has expired.
+    #[error("the contact {0} has expired")]
+    Expired(Uuid),
     /// The sequence is not the one that the client expects.
     #[error("the contact is at sequence {found}, not at {expected}")]
     Stale {
@@ -228,6 +231,10 @@ impl Sessions {
             StoreError::NotFound => {
                 self.cache.forget(id);
                 SessionError::NotFound(id)
+            }
+            StoreError::Expired => {
+                self.cache.forget(id);
+                SessionError::Expired(id)
             }
             other => SessionError::Store(other),
         }

@@ -1,13 +1,14 @@
 //! Everything in the process: fast, and gone when it ends.
 
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use futures::FutureExt as _;
+use jiff::Timestamp;
 use uuid::Uuid;
 
-use super::{Answer, RECEIPT_LIFETIME, Receipt, Record, Session, Store, StoreError};
+use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
 
 /// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
@@ -19,18 +20,22 @@ const RECEIPT_OVERHEAD: usize = 256;
 pub struct MemoryStore {
     // A std mutex: it is held for a lookup, a push or a page of copies, never across an await.
     inner: Mutex<Inner>,
+    changes: Changes,
 }
 
 #[derive(Default)]
 struct Inner {
     sessions: BTreeMap<Uuid, Stored>,
     receipts: Receipts,
+    // Only what expired: a deleted session leaves nothing behind.
+    expired: HashSet<Uuid>,
 }
 
 struct Stored {
     session: Session,
     // Forks share the past until one of them moves on.
     past: Arc<Vec<Record>>,
+    snapshot: Option<Snapshot>,
 }
 
 #[derive(Default)]
@@ -55,8 +60,14 @@ impl MemoryStore {
 }
 
 impl Inner {
+    /// Why there is no such session, if there is none.
+    fn missing(&self, id: Uuid) -> StoreError {
+        if self.expired.contains(&id) { StoreError::Expired } else { StoreError::NotFound }
+    }
+
     fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored, StoreError> {
-        let stored = self.sessions.get_mut(&id).ok_or(StoreError::NotFound)?;
+        let missing = self.missing(id);
+        let stored = self.sessions.get_mut(&id).ok_or(missing)?;
         if stored.session.sequence == expected {
             Ok(stored)
         } else {
@@ -112,13 +123,14 @@ impl Store for MemoryStore {
     fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
         let mut inner = self.lock();
         answer(inner.receipts.free(receipt.as_ref()).map(|()| {
-            inner.sessions.insert(session.id, Stored { session, past: Arc::default() });
+            inner.sessions.insert(session.id, Stored { session, past: Arc::default(), snapshot: None });
             inner.receipts.keep(receipt);
         }))
     }
 
     fn find(&self, id: Uuid) -> Answer<'_, Session> {
-        answer(self.lock().sessions.get(&id).map(|stored| stored.session.clone()).ok_or(StoreError::NotFound))
+        let inner = self.lock();
+        answer(inner.sessions.get(&id).map(|stored| stored.session.clone()).ok_or_else(|| inner.missing(id)))
     }
 
     fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
@@ -140,7 +152,9 @@ impl Store for MemoryStore {
             inner.receipts.keep(receipt);
             Ok(())
         };
-        answer(append(&mut self.lock()))
+        let appended = append(&mut self.lock());
+        self.changes.wake(id);
+        answer(appended)
     }
 
     fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
@@ -151,14 +165,15 @@ impl Store for MemoryStore {
             let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.past.len());
             stored.past[start..].iter().take(limit).copied().collect()
         });
-        answer(page.ok_or(StoreError::NotFound))
+        answer(page.ok_or_else(|| inner.missing(id)))
     }
 
     fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
         let fork = |inner: &mut Inner| {
             inner.receipts.free(receipt.as_ref())?;
-            let past = Arc::clone(&inner.at(id, copy.sequence)?.past);
-            inner.sessions.insert(copy.id, Stored { session: copy, past });
+            let Stored { past, snapshot, .. } = inner.at(id, copy.sequence)?;
+            let (past, snapshot) = (Arc::clone(past), snapshot.clone());
+            inner.sessions.insert(copy.id, Stored { session: copy, past, snapshot });
             inner.receipts.keep(receipt);
             Ok(())
         };
@@ -169,6 +184,7 @@ impl Store for MemoryStore {
         let mut inner = self.lock();
         let deleted = inner.at(id, expected).map(|_| ()).map(|()| inner.sessions.remove(&id));
         drop(inner);
+        self.changes.wake(id);
         answer(deleted.map(drop))
     }
 
@@ -176,6 +192,39 @@ impl Store for MemoryStore {
         let mut inner = self.lock();
         inner.receipts.sweep();
         answer(Ok(inner.receipts.by_key.get(key).cloned()))
+    }
+
+    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
+        let inner = self.lock();
+        answer(inner.sessions.get(&id).map(|stored| stored.snapshot.clone()).ok_or_else(|| inner.missing(id)))
+    }
+
+    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
+        if let Some(stored) = self.lock().sessions.get_mut(&id)
+            && stored.snapshot.as_ref().is_none_or(|kept| kept.sequence < snapshot.sequence)
+        {
+            stored.snapshot = Some(snapshot);
+        }
+        answer(Ok(()))
+    }
+
+    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
+        let mut inner = self.lock();
+        inner.receipts.sweep();
+        let idle: Vec<Uuid> = idle_since.map_or_else(Vec::new, |since| {
+            let idle = inner.sessions.values().filter(|stored| stored.session.updated_at < since);
+            idle.map(|stored| stored.session.id).collect()
+        });
+        for id in &idle {
+            inner.sessions.remove(id);
+            inner.expired.insert(*id);
+            self.changes.wake(*id);
+        }
+        answer(Ok(idle.len() as u64))
+    }
+
+    fn changes(&self) -> &Changes {
+        &self.changes
     }
 }
 

@@ -3,6 +3,7 @@
 //! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
 //! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end.
 
+pub mod changes;
 pub mod memory;
 
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use uuid::Uuid;
 
 use crate::wire::{ContactDefinition, Move, State};
 
+pub use changes::Changes;
 pub use memory::MemoryStore;
 
 /// How long a reply is kept for retries with the same idempotency key.
@@ -79,12 +81,25 @@ pub struct Receipt {
     pub reply: Reply,
 }
 
-/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after [`StoreError::Failed`].
+/// A packed state for a replay to begin at: a cache of what the moves say, and never a truth of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Snapshot {
+    /// The move that it was taken after.
+    pub sequence: u64,
+    /// The state, in bytes that the store does not read.
+    pub state: Vec<u8>,
+}
+
+/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after [`StoreError::Unavailable`]
+/// and [`StoreError::Failed`].
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// There is no such session.
     #[error("there is no such session")]
     NotFound,
+    /// There was such a session; it has expired.
+    #[error("the session has expired")]
+    Expired,
     /// The session has another sequence than expected.
     #[error("the session is at sequence {found}")]
     Stale {
@@ -94,6 +109,12 @@ pub enum StoreError {
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
+    /// There is no room left. Nothing has changed.
+    #[error("the storage is full: {0}")]
+    Full(String),
+    /// The storage cannot be reached for now; whether the change was made is unknown.
+    #[error("the storage is out of reach: {0}")]
+    Unavailable(String),
     /// The storage itself failed; whether the change was made is unknown.
     #[error("the storage failed: {0}")]
     Failed(String),
@@ -131,4 +152,17 @@ pub trait Store: Send + Sync + 'static {
 
     /// The receipt for an idempotency key, if the key has been used within [`RECEIPT_LIFETIME`].
     fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>>;
+
+    /// The newest snapshot of a session, if there is one.
+    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>>;
+
+    /// Keeps a snapshot in place of an older one. Nothing happens where the session is gone or a newer one is kept.
+    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()>;
+
+    /// Deletes receipts past [`RECEIPT_LIFETIME`], and, where `idle_since` is given, the sessions that have not moved since.
+    /// Those are [`StoreError::Expired`] from then on. Returns how many sessions went.
+    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64>;
+
+    /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
+    fn changes(&self) -> &Changes;
 }

@@ -1,0 +1,65 @@
+//! Waiting for a session to change.
+//!
+//! A wake-up says that something may have happened, not what: whoever is woken reads the history beyond what it has seen.
+//! So wake-ups may be merged or come in vain, and none that matters is lost.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tokio::sync::watch;
+use uuid::Uuid;
+
+/// Those who wait, by session. The map holds an entry only while somebody waits.
+#[derive(Default)]
+pub struct Changes {
+    // A std mutex: held for a lookup, never across an await.
+    waiting: Mutex<HashMap<Uuid, watch::Sender<()>>>,
+}
+
+impl Changes {
+    /// Marks each change of a session from now on as one that has not been seen.
+    #[must_use]
+    pub fn subscribe(&self, id: Uuid) -> watch::Receiver<()> {
+        let mut waiting = self.lock();
+        waiting.retain(|_, sender| sender.receiver_count() > 0);
+        waiting.entry(id).or_default().subscribe()
+    }
+
+    /// Wakes those who wait for a session.
+    pub fn wake(&self, id: Uuid) {
+        if let Some(sender) = self.lock().get(&id) {
+            sender.send_replace(());
+        }
+    }
+
+    /// Wakes everybody: after a gap in which changes may have gone unnoticed.
+    pub fn wake_all(&self) {
+        for sender in self.lock().values() {
+            sender.send_replace(());
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<Uuid, watch::Sender<()>>> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Changes;
+    use uuid::Uuid;
+
+    #[test]
+    fn only_those_who_wait_for_a_session_are_woken_and_nobody_is_kept_who_left() {
+        let (changes, here, elsewhere) = (Changes::default(), Uuid::now_v7(), Uuid::now_v7());
+        let (mut waits, idles) = (changes.subscribe(here), changes.subscribe(elsewhere));
+        changes.wake(here);
+        assert!(waits.has_changed().unwrap() && !idles.has_changed().unwrap());
+        waits.mark_unchanged();
+        changes.wake_all();
+        assert!(waits.has_changed().unwrap() && idles.has_changed().unwrap());
+        drop((waits, idles));
+        drop(changes.subscribe(here));
+        assert_eq!(changes.lock().len(), 1);
+    }
+}
