@@ -22,6 +22,9 @@ pub(super) const SAME: f64 = 2.0 * f64::EPSILON;
 /// its last digits.
 pub(super) const MET_AGAIN: f64 = 1e-28;
 
+/// The largest part of a change of load that may be its rounding.
+const ROUNDED: f64 = 1e-6;
+
 /// A straight part of w - W over y: `offset + slope * y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line {
@@ -215,7 +218,7 @@ impl Memory {
         // A straight path in two steps is one path: the top piece is drawn out as long as it still meets the edge.
         let straight_on = self.pieces.last().is_some_and(|top| {
             let off = (top.line.at(d1) + self.shift()).abs();
-            off.value() <= round_off(d1, self.shift())
+            off.value() <= round_off(d1, self.shift(), rise)
         });
         if straight_on {
             self.close(profile);
@@ -240,7 +243,7 @@ impl Memory {
             self.edge = edge_at(profile, d1);
             self.position = w1;
             let trial = self.pieces.last().map_or(Double::ZERO, |top| top.line.at(d1)) + self.shift();
-            if trial.abs().value() <= round_off(d1, self.shift()) {
+            if trial.abs().value() <= round_off(d1, self.shift(), dd) {
                 // A rise taken back the same way.
                 self.close(profile);
                 return Passage { work };
@@ -335,9 +338,9 @@ fn sums(profile: &Profile, line: &Line, below: Sums, ring: &Ring) -> Sums {
 }
 
 /// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far it
-/// has slid before does not count.
-fn round_off(indentation: Double, shift: Double) -> f64 {
-    SAME * (indentation.value() + shift.value().abs())
+/// has slid before does not count. A change of load by a few ulp is meant as it is given: there the path is taken at its word.
+fn round_off(indentation: Double, shift: Double, change: Double) -> f64 {
+    (SAME * (indentation.value() + shift.value().abs())).min(ROUNDED * change.value().abs())
 }
 
 /// The edge of a contact at `indentation`; with a gap there is none, and its radius is nought.

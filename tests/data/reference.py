@@ -327,7 +327,8 @@ class RoundedCone(Profile):
 
 class Tabulated(Profile):
     """Points joined by parabolas, f' without jumps. The rule, as documented: f' at a point is that of the parabola through it
-    and its neighbours, nought at the centre; between two points one parabola if it fits, else two (Schumaker 1983)."""
+    and its neighbours, nought at the centre, at a peak and beside a flat, and drawn to the chords where these change little; between two points
+    one parabola if it fits, else two (Schumaker 1983)."""
 
     def __init__(self, *numbers):
         radii, heights = numbers[::2], numbers[1::2]
@@ -336,16 +337,27 @@ class Tabulated(Profile):
         for (r0, r1, r2), before, after in zip(zip(radii, radii[1:], radii[2:]), chords, chords[1:]):
             slopes.append(before + (after - before) * (r1 - r0) / (r2 - r0))
         slopes.append(chords[-1] + (chords[-1] - chords[-2]) * (radii[-1] - radii[-2]) / (radii[-1] - radii[-3]))
+        for i in range(1, len(chords)):
+            if chords[i - 1] * chords[i] <= 0:
+                slopes[i] = mpf(0)
+
+        def within(i, chord, most):
+            slopes[i] = chord + max(-most, min(most, slopes[i] - chord))
+
+        for i, chord in enumerate(chords):
+            if (slopes[i] - chord) * chord > 0 and (slopes[i + 1] - chord) * chord > 0:
+                within(i, chord, abs(chord))
+                within(i + 1, chord, abs(chord))
+        for i in range(len(chords) - 1, 0, -1):
+            within(i, chords[i], 7 * abs(slopes[i + 1] - chords[i]))
+        for i, chord in enumerate(chords):
+            within(i + 1, chord, 7 * abs(slopes[i] - chord))
         self.knots = [(radii[0], slopes[0])]
         for r0, r1, s0, s1, chord in zip(radii, radii[1:], slopes, slopes[1:], chords):
             left, right = s0 - chord, s1 - chord
-            if abs(left + right) > mpf(10) ** -12 * (abs(left) + abs(right) + abs(chord)):
-                if left * right >= 0:
-                    share = mpf(1) / 2
-                elif abs(right) < abs(left):
-                    share = right / (right - left)
-                else:
-                    share = 1 + left / (right - left)
+            size = abs(left) + abs(right)
+            if abs(left + right) > mpf(10) ** -12 * (size + abs(chord)):
+                share = min(max(abs(right) / size, mpf(1) / 8), mpf(7) / 8)
                 self.knots.append((r0 + share * (r1 - r0), 2 * chord - s0 * share - s1 * (1 - share)))
             self.knots.append((r1, s1))
         bends = [(s1 - s0) / (r1 - r0) for (r0, s0), (r1, s1) in zip(self.knots, self.knots[1:])]
