@@ -5,7 +5,9 @@ mod reference;
 
 use physics::Random;
 use reference::{found, scenes};
-use stickslip::mechanics::profile::{Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sphere, TruncatedSphere};
+use stickslip::mechanics::profile::{
+    Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated, TruncatedSphere,
+};
 use stickslip::mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Tangential};
 
 /// The largest true error over its estimate.
@@ -144,6 +146,93 @@ fn estimates_of_paths_straight_in_a_force_are_honest() {
         }
     }
     assert!(forces.compared > 400, "only {} curves were followed", forces.compared);
+    forces.close();
+    stresses.close();
+}
+
+/// A smooth body of about unit size.
+fn smooth_body(random: &mut Random) -> Profile {
+    let blunt = 1.0 / random.within(0.5, 3.0);
+    let steep = |random: &mut Random, exponent: f64| PowerLaw::new(exponent, random.within(0.01, 1.5)).unwrap();
+    match random.bits() % 4 {
+        0 => Profile::ExactSphere(ExactSphere::new(random.within(1.2, 5.0)).unwrap()),
+        1 => Profile::PowerLaw(steep(random, 2.5)),
+        2 => {
+            let part = |exponent: f64, random: &mut Random| Profile::PowerLaw(steep(random, exponent));
+            let parts = vec![Profile::Sphere(Sphere::new(blunt).unwrap()), part(4.0, random), part(6.0, random)];
+            Profile::Sum(Sum::new(parts).unwrap())
+        }
+        _ => Profile::RoundedPunch(RoundedPunch::new(random.within(0.05, 0.3), blunt).unwrap()),
+    }
+}
+
+/// Its heights at a few to a few hundred radii up to one, evenly spaced or not.
+fn measured(random: &mut Random, height: impl Fn(f64) -> f64) -> Profile {
+    let count = 4 + random.bits() % (1 << (2 + random.bits() % 7));
+    let uneven = if random.bits().is_multiple_of(2) { 0.0 } else { random.within(0.0, 0.4) };
+    let mut radii: Vec<f64> = (0..=count).map(|i| (i as f64 + random.within(-uneven, uneven)) / count as f64).collect();
+    (radii[0], radii[count as usize]) = (0.0, 1.0);
+    let heights: Vec<f64> = radii.iter().map(|&r| height(r)).collect();
+    Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap())
+}
+
+/// f(r), for what [`smooth_body`] makes.
+fn height(body: &Profile, r: f64) -> f64 {
+    match body {
+        Profile::Sum(sum) => sum.parts().iter().map(|part| height(part, r)).sum(),
+        // f follows from g by the other Abel transform: f(r) = (2/pi) int_0^r g(x)/sqrt(r^2 - x^2) dx, x = r sin q.
+        other => {
+            let g = |q: f64| other.level(r * q.sin());
+            physics::quadrature::integral(&g, 0.0, std::f64::consts::FRAC_PI_2, 1e-15) * std::f64::consts::FRAC_2_PI
+        }
+    }
+}
+
+#[test]
+fn estimates_of_what_tables_leave_open_are_honest() {
+    let mut random = Random(5);
+    let mut forces = Honesty::new("force of a table");
+    let mut stresses = Honesty::new("shear stress of a table");
+    for index in 0..500 {
+        let body = smooth_body(&mut random);
+        let table = measured(&mut random, |r| height(&body, r));
+        let elasticity = Elasticity::effective(1e6, random.within(5e5, 1.2e6)).unwrap();
+        let (share, friction) = (random.within(0.5, 0.9), random.within(0.1, 0.9));
+        let load = 2e6 * body.level(share) * share * 0.7;
+        let preload = match random.bits() % 3 {
+            0 => Preload::ContactRadius(share),
+            1 => Preload::Indentation(body.level(share)),
+            _ => Preload::NormalForce(load),
+        };
+        let contact =
+            |profile: &Profile| Contact::new(Setup { profile: profile.clone(), elasticity, friction, preload });
+        let (Ok(mut exact), Ok(mut found)) = (contact(&body), contact(&table)) else { continue };
+        let figures = exact.figures();
+        for _ in 0..1 + random.bits() % 4 {
+            let target = figures.gross_slip_displacement * random.within(-0.9, 0.9);
+            let tangential = Some(Tangential::Displacement(target));
+            for contact in [&mut exact, &mut found] {
+                contact.apply(&Move { tangential, ..Move::default() }).unwrap();
+            }
+        }
+        let estimate = found.accuracy();
+        let name = format!("scene {index}, {preload:?}");
+        let unit = friction * exact.normal_force();
+        forces.compare(&name, (found.force() - exact.force()).abs() / unit, estimate.force_error);
+        let unit = friction * figures.max_pressure.unwrap();
+        for _ in 0..4 {
+            let radius = random.within(0.0, 1.0) * figures.contact_radius;
+            // A kink lies where the level of the table does.
+            let moved = estimate.force_error.min(0.1) * figures.contact_radius;
+            let near = [radius, (radius - moved).max(0.0), radius + moved].map(|r| exact.shear(r));
+            let (low, high) =
+                (near.iter().copied().fold(f64::MAX, f64::min), near.iter().copied().fold(f64::MIN, f64::max));
+            let value = found.shear(radius);
+            let error = (value - value.clamp(low, high)).abs() / unit;
+            stresses.compare(&format!("{name} at {radius:.3}"), error, estimate.stress_error);
+        }
+    }
+    assert!(forces.compared > 400, "only {} tables were followed", forces.compared);
     forces.close();
     stresses.close();
 }

@@ -55,6 +55,25 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
+fn a_move_broken_off_has_changed_nothing() {
+    let mut contact = ball(LOAD);
+    let full = contact.gross_slip_displacement();
+    let slide = |target: f64| Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
+    contact.apply(&slide(0.3 * full)).unwrap();
+    let before = contact.state();
+    let curve = Move { normal: Some(Normal::NormalForce(2.0 * LOAD)), ..slide(0.9 * full) };
+    let chords = std::cell::Cell::new(0);
+    let go_on = || {
+        chords.set(chords.get() + 1);
+        chords.get() < 20
+    };
+    assert_eq!(contact.apply_while(&curve, 1e-10, &go_on), Err(Error::BrokenOff));
+    assert_eq!((contact.state(), chords.get()), (before, 20));
+    contact.apply(&curve).unwrap();
+    assert!(contact.normal_force() > 1.99 * LOAD);
+}
+
+#[test]
 fn proportional_loading_from_nothing_never_slips() {
     // Mindlin & Deresiewicz (1953): below the friction angle, dU/dd = (E*/G*) dF_x/dF_N throughout.
     for share in [0.1, 0.5, 0.9, 0.999_999, -0.7] {

@@ -247,6 +247,7 @@ impl From<Failure> for Problem {
                     mechanics::Error::BeyondProfile { .. } => Kind::BeyondProfile,
                     mechanics::Error::NotConvexEnough { .. } => Kind::ProfileNotConvexEnough,
                     mechanics::Error::ForceExceedsFriction { .. } => Kind::ForceExceedsFriction,
+                    mechanics::Error::BrokenOff => Kind::TooMuchWork,
                     mechanics::Error::Unsupported { .. } => Kind::UnsupportedMove,
                 };
                 Problem::at(kind, pointer, error.to_string())

@@ -10,86 +10,7 @@ use super::normal::{self, Figures, Preload};
 use super::profile::{At, Point, Profile};
 use super::range;
 use super::route::{Approach, DEFAULT_TOLERANCE, Route, Stop, Tangent};
-
-/// What a contact is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Setup {
-    /// The shape of the indenter.
-    pub profile: Profile,
-    /// The reduced moduli.
-    pub elasticity: Elasticity,
-    /// Coulomb's coefficient of friction mu.
-    pub friction: f64,
-    /// The normal load that the virgin contact starts with.
-    pub preload: Preload,
-}
-
-/// Where a move leads, along a straight line in the quantities that it names.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Move {
-    /// The tangential target; without one the displacement stays.
-    pub tangential: Option<Tangential>,
-    /// The normal target; without one the indentation stays.
-    pub normal: Option<Normal>,
-    /// Whether the numbers are increments.
-    pub relative: bool,
-}
-
-/// A tangential target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tangential {
-    /// Displacement U of the indenter, m.
-    Displacement(f64),
-    /// Tangential force F_x, N.
-    Force(f64),
-}
-
-/// A normal target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Normal {
-    /// Indentation d, m; below nought the bodies part.
-    Indentation(f64),
-    /// Normal force F_N, N.
-    NormalForce(f64),
-}
-
-/// What the last move did to the contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Regime {
-    /// Nothing slipped.
-    Stick,
-    /// An outer ring slipped.
-    PartialSlip,
-    /// All of it slipped.
-    GrossSlip,
-    /// There is no contact.
-    Separated,
-}
-
-/// The state after a move. Positive displacement gives positive force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
-    /// Tangential displacement U of the indenter, m.
-    pub displacement: f64,
-    /// Tangential force F_x, N.
-    pub force: f64,
-    /// Indentation d, m.
-    pub indentation: f64,
-    /// Normal force F_N, N.
-    pub normal_force: f64,
-    /// Contact radius a, m.
-    pub contact_radius: f64,
-    /// Radius of the part that did not slip in the last move, m.
-    pub stick_radius: f64,
-    /// What the last move did.
-    pub regime: Regime,
-    /// Friction work since the start, J.
-    pub dissipated_energy: f64,
-    /// Elastic energy of the tangential deformation, J.
-    pub elastic_energy: f64,
-    /// Pieces held in memory.
-    pub memory_depth: usize,
-}
+use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
 /// A frictional contact, solved exactly.
 ///
@@ -120,22 +41,10 @@ pub struct Contact {
     normal_force: f64,
     dissipated: Double,
     initial: Figures,
-    path_error: f64,
-    path_kernel: f64,
+    pub(super) path_error: f64,
+    pub(super) path_kernel: f64,
     /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
     inverse_scale: Double,
-}
-
-/// Beyond this, steepness of g is the edge of a punch, which no rounding moves.
-const STEEPEST: f64 = 1e4;
-
-/// Estimates of what rounding, or a coarse model, has cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// Error of the tangential force over mu F_N.
-    pub force_error: f64,
-    /// Error of the shear stress over mu p_max, or over mu times the mean pressure where the former is infinite.
-    pub stress_error: f64,
 }
 
 impl Contact {
@@ -198,6 +107,14 @@ impl Contact {
     /// [`Error::OutOfRange`] for a target outside [`range`]; [`Error::ForceExceedsFriction`] for a tangential force that
     /// friction cannot hold all the way.
     pub fn apply_within(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
+        self.apply_while(step, tolerance, &|| true)
+    }
+
+    /// As [`Contact::apply_within`], for as long as `go_on` says so: a curved move can take seconds.
+    ///
+    /// # Errors
+    /// As [`Contact::apply_within`], and [`Error::BrokenOff`].
+    pub fn apply_while(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
         let approach = self.approach(step)?;
         let tangent = self.tangent(step)?;
         // Without a tangential target the displacement stays, and any way to the new indentation is the same.
@@ -215,7 +132,13 @@ impl Contact {
             self.advance(&Stop { indentation, normal_force, displacement });
             return Ok(());
         }
-        self.follow(&Route { tangent, approach }, tolerance)
+        // Only a way of many chords can be broken off half-way; a copy is nothing beside it.
+        let before = self.clone();
+        let followed = self.follow(&Route { tangent, approach }, tolerance, go_on);
+        if followed.is_err() {
+            *self = before;
+        }
+        followed
     }
 
     fn approach(&self, step: &Move) -> Result<Approach, Error> {
@@ -381,27 +304,6 @@ impl Contact {
     #[must_use]
     pub fn initial_figures(&self) -> Figures {
         self.initial
-    }
-
-    /// What rounding and curved paths have cost. The force is a sum over pieces, each good to some units in the last place of
-    /// itself, so its rounding scales with the magnitudes that went into the sum; a stress likewise, whose terms are
-    /// bounded by mu p. A stress has cusps: the estimate holds for a radius moved by some units in its last place.
-    #[must_use]
-    pub fn accuracy(&self) -> Estimate {
-        let carried = self.friction * self.normal_force;
-        let summed = self.force_unit() * self.memory.force_size();
-        let terms = if carried > 0.0 { summed / carried } else { 0.0 };
-        let (radius, indentation) = (self.contact_radius(), self.indentation());
-        // Where g is steep, a rounded radius moves the indentation by this many units.
-        let steepness = radius * self.profile.slope(radius) / indentation;
-        let steepness = if steepness.is_finite() { steepness.clamp(0.0, STEEPEST) } else { 0.0 };
-        let mean_pressure = self.normal_force / (std::f64::consts::PI * radius * radius);
-        let bend = self.elasticity.e_star() / std::f64::consts::PI * self.path_kernel / mean_pressure;
-        let bend = if bend.is_finite() { bend } else { 0.0 };
-        Estimate {
-            force_error: f64::EPSILON * (2.0 + 6.0 * terms + steepness) + self.path_error,
-            stress_error: f64::EPSILON * (4.0 + 12.0 * terms + 2.0 * steepness) + self.path_error + bend,
-        }
     }
 
     /// The state after the last move.

@@ -52,6 +52,9 @@ pub enum Error {
         /// Where along the move that is, from 0 to 1.
         part: f64,
     },
+    /// The caller has broken the move off.
+    #[error("broken off")]
+    BrokenOff,
     /// The solver cannot follow this pair of targets.
     #[error("{what}")]
     Unsupported {

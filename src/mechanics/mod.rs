@@ -30,10 +30,11 @@
 //! # The map
 //!
 //! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
-//! friction work of a move. `contact`, `force`, `route`, `traction`, `surface`: what is asked
-//! of it. [`protocol`]: paths. [`springs`]: the
+//! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `surface`, `accuracy`: what is
+//! asked of it. [`protocol`]: paths. [`springs`]: the
 //! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
 
+mod accuracy;
 mod contact;
 mod double;
 pub mod elasticity;
@@ -47,10 +48,12 @@ pub mod range;
 mod release;
 mod route;
 pub mod springs;
+mod state;
 mod surface;
 mod traction;
 
-pub use contact::{Contact, Estimate, Move, Normal, Regime, Setup, State, Tangential};
+pub use accuracy::Estimate;
+pub use contact::Contact;
 pub use double::Double;
 pub use elasticity::{Body, Elasticity};
 pub use error::Error;
@@ -58,4 +61,5 @@ pub use normal::{Figures, Preload};
 pub use profile::{Profile, Sphere};
 pub use route::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use springs::Springs;
+pub use state::{Move, Normal, Regime, Setup, State, Tangential};
 pub use traction::{Peak, Residual};

@@ -72,8 +72,8 @@ fn doubles_between(from: Double, to: Double, part: f64) -> Double {
 }
 
 impl Contact {
-    /// Follows a route; `tolerance` is relative to mu F_N.
-    pub(super) fn follow(&mut self, route: &Route, tolerance: f64) -> Result<(), Error> {
+    /// Follows a route while `go_on` says so; `tolerance` is relative to mu F_N.
+    pub(super) fn follow(&mut self, route: &Route, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
         self.check_limit(route)?;
         if matches!(route.approach, Approach::Force { .. }) && self.memory.edge().level < Double::ZERO {
             // A gap closes before any force can rise.
@@ -84,6 +84,9 @@ impl Contact {
         let largest = self.friction * self.load_on(route, 0.0).max(self.load_on(route, 1.0));
         let (mut done, mut step, mut chords) = (0.0, 1.0_f64, 0);
         while done < 1.0 {
+            if !go_on() {
+                return Err(Error::BrokenOff);
+            }
             let next = if chords < MAX_CHORDS && done + step < 1.0 { done + step } else { 1.0 };
             let end = self.stop_on(route, next);
             let deviation = self.deviation(route, done, next, &end);

@@ -4,7 +4,9 @@
 //! tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to order
 //! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
-use super::contact::{Estimate, Move, Normal, Regime, Setup, State, Tangential};
+use super::accuracy::Estimate;
+use super::state::{Move, Normal, Regime, Setup, State, Tangential};
+
 use super::error::Error;
 use super::normal::Figures;
 use super::range;
@@ -159,7 +161,9 @@ impl Springs {
     /// two errors may by chance be alike.
     #[must_use]
     pub fn accuracy(&self) -> Estimate {
-        let Some(coarser) = &self.coarser else { return Estimate { force_error: 1.0, stress_error: 1.0 } };
+        let Some(coarser) = &self.coarser else {
+            return Estimate { force_error: 1.0, path_error: 0.0, stress_error: 1.0 };
+        };
         let limit = self.friction * self.normal_force();
         let edge = self.contact_radius();
         let largest = (0..COMPARED)
@@ -170,6 +174,7 @@ impl Springs {
         let pressure = self.friction * self.initial.max_pressure.unwrap_or(mean_pressure);
         let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
         Estimate {
+            path_error: 0.0,
             force_error: relative((self.force() - coarser.force()).abs(), limit) + f64::EPSILON,
             stress_error: relative(largest, pressure) + f64::EPSILON,
         }

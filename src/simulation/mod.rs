@@ -58,6 +58,7 @@ fn quantity(error: &mechanics::Error) -> Option<&'static str> {
         | mechanics::Error::NotConvexEnough { .. }
         | mechanics::Error::Table { .. }
         | mechanics::Error::ForceExceedsFriction { .. }
+        | mechanics::Error::BrokenOff
         | mechanics::Error::Unsupported { .. } => None,
     }
 }

@@ -6,9 +6,7 @@ use crate::mechanics::protocol::equal_peaks;
 use crate::mechanics::{Contact, Estimate, Setup, Springs, springs};
 use crate::wire::reply::{Accuracy, State, finite};
 use crate::wire::simulate::Simulation;
-use crate::wire::{
-    self, ContactDefinition, Move, Plan, Residual, Sampling, SimulateReply, SolverKind, Steps, Stress, limits,
-};
+use crate::wire::{self, ContactDefinition, Move, Plan, Residual, Sampling, SimulateReply, Steps, Stress, limits};
 
 use super::{
     Failure, LONGEST_WORK, Solver, Stop, cost, quantity,
@@ -80,13 +78,14 @@ fn run<S: Solver>(
     let accuracy = accuracy(&solver, timer, reason);
     // The tolerance is for a move, and the errors of curved ones add up.
     let allowed = simulation.tolerance * simulation.plan.curved().max(1) as f64 + 1e-13;
-    let missed = (accuracy.force_error > allowed).then_some(accuracy.force_error);
+    let path_error = solver.accuracy().path_error;
+    let missed = (path_error > allowed).then_some(path_error);
     let seen = Seen {
         contact_radius: largest,
         e_star: figures.e_star,
         indentation: figures.indentation,
         noise: simulation.setup.profile.noise(largest),
-        missed: missed.filter(|_| S::KIND == SolverKind::Exact),
+        missed,
     };
     Ok(SimulateReply {
         contact: figures.into(),
@@ -129,9 +128,13 @@ pub fn follow<S: Solver>(
     let moves = plan.moves(gross_slip, &|reversals, cutoff_radius| solver.equal_peaks(reversals, cutoff_radius));
     for (index, step) in moves.enumerate() {
         stop.check()?;
-        solver.apply(&step.step(), tolerance).map_err(|error| {
-            let named = quantity(&error).filter(|name| step.names(name));
-            Failure::Refused { pointer: plan.place_of(index, named), error }
+        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
+            Err(Failure::TooLong { .. }) => Failure::TooLong { pointer: plan.place_of(index, None) },
+            Err(stopped) => stopped,
+            Ok(()) => {
+                let named = quantity(&error).filter(|name| step.names(name));
+                Failure::Refused { pointer: plan.place_of(index, named), error }
+            }
         })?;
         let depth = solver.depth();
         if depth > limits::MEMORY_DEPTH {
@@ -177,7 +180,7 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
-    let Estimate { force_error, stress_error } = solver.accuracy();
+    let Estimate { force_error, stress_error, .. } = solver.accuracy();
     Accuracy {
         solver: S::KIND,
         reason: reason.to_owned(),

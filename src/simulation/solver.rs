@@ -13,11 +13,11 @@ pub trait Solver {
     fn figures(&self) -> Figures;
     /// Displacement of gross slip at the normal load at hand, m.
     fn gross_slip_displacement(&self) -> f64;
-    /// Makes a move; a refused one changes nothing. The tolerance is for what is not exact.
+    /// Makes a move while `go_on` says so; a refused one changes nothing. The tolerance is for what is not exact.
     ///
     /// # Errors
-    /// What the mechanics has no answer to.
-    fn apply(&mut self, step: &Move, tolerance: f64) -> Result<(), Error>;
+    /// What the mechanics has no answer to, and [`Error::BrokenOff`].
+    fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error>;
     /// The state after the last move.
     fn state(&self) -> State;
     /// Pieces held in memory.
@@ -49,8 +49,8 @@ impl Solver for Contact {
         self.gross_slip_displacement()
     }
 
-    fn apply(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
-        self.apply_within(step, tolerance)
+    fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
+        self.apply_while(step, tolerance, go_on)
     }
 
     fn state(&self) -> State {
@@ -101,7 +101,7 @@ impl Solver for Springs {
         self.initial_figures().gross_slip_displacement
     }
 
-    fn apply(&mut self, step: &Move, _tolerance: f64) -> Result<(), Error> {
+    fn apply(&mut self, step: &Move, _tolerance: f64, _go_on: &dyn Fn() -> bool) -> Result<(), Error> {
         self.apply(step)
     }
 

@@ -96,7 +96,8 @@ pub struct Accuracy {
     pub solver: SolverKind,
     /// Why this one.
     pub reason: String,
-    /// Estimated error of the forces, relative to the friction limit μ F_N.
+    /// Estimated error of the forces, relative to the friction limit μ F_N: of rounding, of curved paths, of the
+    /// interpolation of a table, of springs.
     pub force_error: f64,
     /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean).
     pub stress_error: f64,

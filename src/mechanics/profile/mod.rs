@@ -11,6 +11,7 @@ mod cone;
 mod exact_sphere;
 mod flat_punch;
 mod gauss;
+mod measured;
 mod power_law;
 mod roots;
 mod rounded_cone;
@@ -32,7 +33,7 @@ pub use rounded_cone::RoundedCone;
 pub use rounded_punch::RoundedPunch;
 pub use sphere::Sphere;
 pub use sum::Sum;
-pub use tabulated::Tabulated;
+pub use tabulated::{Doubt, Tabulated};
 pub use truncated_cone::TruncatedCone;
 pub use truncated_sphere::TruncatedSphere;
 
@@ -271,23 +272,6 @@ impl Profile {
     #[must_use]
     pub fn limit_radius(&self) -> Option<f64> {
         self.limit().map(|(radius, _)| radius)
-    }
-
-    /// An estimate of the noise of g, m, that a table's heights bring to a contact of this radius, m, and how many times their
-    /// own noise that is. `None` for what is no table.
-    #[must_use]
-    pub fn noise(&self, radius: f64) -> Option<(f64, f64)> {
-        match self {
-            Profile::Tabulated(table) => {
-                let amplification = table.noise_amplification(radius);
-                Some((table.noise() * amplification, amplification))
-            }
-            Profile::Sum(sum) => {
-                let noises = sum.parts().iter().filter_map(|part| part.noise(radius));
-                noises.reduce(|one, other| if one.0 > other.0 { one } else { other })
-            }
-            _ => None,
-        }
     }
 
     /// The radius, m, of a vertical edge, which the contact keeps under every higher load.

@@ -82,9 +82,10 @@ impl PowerLaw {
 /// Gamma(z + 1) = z Gamma(z): kappa(n) = kappa(n + 2) (n + 1)/(n + 2).
 fn kappa(exponent: f64) -> f64 {
     let mut n = exponent;
-    let mut share = 1.0;
+    // Twenty-five roundings of the product would move every level by some units in the last place.
+    let mut share = Double::from(1.0);
     while n < 50.0 {
-        share *= (n + 1.0) / (n + 2.0);
+        share = share * Double::from(n + 1.0).over(Double::from(n + 2.0));
         n += 2.0;
     }
     // Gamma(z + 1/2)/Gamma(z), z = (n + 1)/2, by Tricomi and Erdelyi's series (1951) in w = z - 1/4, which holds even powers alone.
@@ -92,7 +93,7 @@ fn kappa(exponent: f64) -> f64 {
     let u = 1.0 / (w * w);
     let series =
         1.0 + u * (1.0 / 64.0 + u * (-19.0 / 8192.0 + u * (631.0 / 524_288.0 + u * (-174_317.0 / 134_217_728.0))));
-    share * (std::f64::consts::PI * w).sqrt() * series
+    share.value() * (std::f64::consts::PI * w).sqrt() * series
 }
 
 impl Chart for PowerLaw {

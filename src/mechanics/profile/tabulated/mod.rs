@@ -7,6 +7,7 @@
 //! n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the first at which g falls, exist.
 
 mod build;
+mod doubt;
 mod far;
 mod panel;
 mod spline;
@@ -20,6 +21,7 @@ use super::chart::{self, Chart};
 use super::gauss;
 use super::shape::Shape;
 use super::{At, Moments, Point, Ring, Span};
+pub use doubt::Doubt;
 use far::Far;
 use panel::Panel;
 use spline::Knot;
@@ -30,6 +32,8 @@ pub struct Tabulated {
     radii: Vec<f64>,
     /// Estimate of the noise of the heights, m.
     noise: f64,
+    /// What the interpolation leaves open, at rising radii.
+    doubts: Vec<(f64, Doubt)>,
     panels: Vec<Panel>,
     /// Moments and depth of all runs of panels, as a binary tree with the leaves in its second half.
     tree: Vec<(Moments, f64)>,
@@ -64,7 +68,9 @@ impl Tabulated {
             return Err(Error::Table { what: "r does not rise", index: index + 1 });
         }
         range::RADIUS.check(radii[1])?;
-        let mut table = Tabulated::from_knots(&spline::knots(radii, heights))?;
+        let knots = spline::knots(radii, heights);
+        let mut table = Tabulated::from_knots(&knots)?;
+        table.doubts = doubt::doubts(radii, heights, &knots);
         table.radii = radii.to_vec();
         table.noise = noise(radii, heights);
         Ok(table)
@@ -100,7 +106,17 @@ impl Tabulated {
         });
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
-        Ok(Tabulated { radii: Vec::new(), noise: 0.0, panels, tree, sources, knots, end, falls: falls_at.is_some() })
+        Ok(Tabulated {
+            radii: Vec::new(),
+            noise: 0.0,
+            doubts: Vec::new(),
+            panels,
+            tree,
+            sources,
+            knots,
+            end,
+            falls: falls_at.is_some(),
+        })
     }
 
     /// The radius, m, that every contact must stay below, and whether it is there because g falls.
@@ -112,6 +128,13 @@ impl Tabulated {
     #[must_use]
     pub fn noise(&self) -> f64 {
         self.noise
+    }
+
+    /// What the interpolation between the points leaves open in a contact of the radius x, m.
+    #[must_use]
+    pub fn doubt(&self, x: f64) -> Doubt {
+        let index = self.doubts.partition_point(|(radius, _)| *radius < x);
+        self.doubts.get(index).or(self.doubts.last()).map_or_else(Doubt::default, |(_, doubt)| *doubt)
     }
 
     /// By how much g at the radius x, m, has more noise than the heights do (pure number), if theirs is independent:
