@@ -34,7 +34,8 @@ fn exact_scene() -> f64 {
     for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
         contact.apply(&to(target)).expect("a displacement has no limit");
     }
-    (0..RADII).map(|index| contact.shear(figures.contact_radius * index as f64 / RADII as f64)).sum()
+    let radii: Vec<f64> = (0..RADII).map(|index| figures.contact_radius * index as f64 / RADII as f64).collect();
+    contact.shears(&radii).into_iter().sum()
 }
 
 fn springs_scene(count: usize) -> f64 {
@@ -82,6 +83,36 @@ fn scenes(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// A memory of so many pieces, asked at so many radii: beside it as many plain square roots.
+fn stresses(criterion: &mut Criterion) {
+    const MANY: usize = 1_000;
+    let mut group = criterion.benchmark_group("shear stress at 1000 radii under 1000 pieces");
+    let mut contact = virgin();
+    let figures = contact.figures();
+    for target in falling_amplitude(MANY, figures.gross_slip_displacement) {
+        contact.apply(&to(target)).expect("a displacement has no limit");
+    }
+    let radii: Vec<f64> = (0..MANY).map(|index| figures.contact_radius * index as f64 / MANY as f64).collect();
+    group.sample_size(20);
+    group.bench_function("all at once", |bencher| bencher.iter(|| black_box(contact.shears(&radii))));
+    group.bench_function("one by one", |bencher| {
+        bencher.iter(|| radii.iter().map(|&radius| contact.shear(radius)).sum::<f64>());
+    });
+    let terms: Vec<f64> = positions(MANY, 1.0).iter().map(|position| position * position).collect();
+    group.bench_function("a square root per term", |bencher| {
+        let mut roots = vec![0.0; MANY];
+        bencher.iter(|| {
+            for &radius in &radii {
+                for (root, term) in roots.iter_mut().zip(&terms) {
+                    *root = (term + radius).sqrt();
+                }
+                black_box(&roots);
+            }
+        });
+    });
+    group.finish();
+}
+
 fn hand_over(criterion: &mut Criterion) {
     let runtime = tokio::runtime::Builder::new_multi_thread().build().expect("threads are to be had");
     criterion.bench_function("hand-over to the blocking pool and back", |bencher| {
@@ -91,5 +122,5 @@ fn hand_over(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, moves, scenes, hand_over);
+criterion_group!(benches, moves, scenes, stresses, hand_over);
 criterion_main!(benches);

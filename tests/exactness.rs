@@ -21,6 +21,31 @@ fn any_ball() -> impl Strategy<Value = Ball> {
 }
 
 #[test]
+fn many_radii_at_once_are_each_as_exact_as_one() {
+    let stresses = Worst::new("shear stress at many radii at once / mu p_max", 2e-15);
+    let radii = prop::collection::vec(0.0..1.05_f64, 1..70);
+    forall(300, (paths::oblique_steps(30), radii), |(steps, mut radii)| {
+        for ball in [UNIT, PLAIN] {
+            let mut contact = ball.contact();
+            for waypoint in paths::waypoints(&steps) {
+                contact.apply(&ball.towards(waypoint)).unwrap();
+            }
+            let edge = contact.state().contact_radius;
+            radii.iter_mut().for_each(|r| *r *= edge);
+            // At every kink and its neighbours too, in no order.
+            for peak in contact.residual().peaks {
+                radii.extend([peak.radius, peak.radius.next_up(), peak.radius.next_down()]);
+            }
+            let unit = ball.stress_limit(edge.max(ball.radius));
+            for (&r, found) in radii.iter().zip(contact.shears(&radii)) {
+                stresses.close(found, contact.shear(r), unit);
+            }
+            radii.iter_mut().for_each(|r| *r /= edge.max(f64::MIN_POSITIVE));
+        }
+    });
+}
+
+#[test]
 fn paths_at_constant_load_follow_masing_and_madelung() {
     let forces = Worst::new("force at constant load / mu F_N", 1e-12);
     let stresses = Worst::new("shear stress at constant load / mu p_max", 1e-10);

@@ -82,6 +82,20 @@ impl Contact {
         self.shear_at(&At::radius(radius))
     }
 
+    /// [`Contact::shear`] at each of `radii`, m: quicker than one by one.
+    #[must_use]
+    pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
+        let mut rings: Vec<_> = self.memory.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
+        rings.reverse();
+        let unit = self.shear_unit();
+        self.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
+    }
+
+    /// G* m/pi, Pa.
+    fn shear_unit(&self) -> f64 {
+        self.elasticity.g_star() * self.scale() / std::f64::consts::PI
+    }
+
     fn shear_at(&self, at: &At) -> f64 {
         let mut sum = 0.0;
         for (ring, line) in self.memory.rings() {
@@ -93,7 +107,7 @@ impl Contact {
                 sum -= slope * self.profile.kernel(at, &ring);
             }
         }
-        self.elasticity.g_star() * self.scale() / std::f64::consts::PI * sum
+        self.shear_unit() * sum
     }
 
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; nought where it is nought to round-off.

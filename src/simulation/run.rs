@@ -145,6 +145,9 @@ pub fn follow<S: Solver>(
     Ok(())
 }
 
+/// Radii between two looks at the flag.
+const AT_A_TIME: usize = 64;
+
 /// The stresses asked for, and no others.
 ///
 /// # Errors
@@ -155,7 +158,15 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
         radius.iter().map(|radius| stop.check().map(|()| finite(field(*radius)))).collect()
     };
     let pressure = sampling.fields.pressure.then(|| along(&|radius| solver.pressure(radius))).transpose()?;
-    let shear = sampling.fields.shear.then(|| along(&|radius| solver.shear(radius))).transpose()?;
+    let shears = || -> Result<Vec<Option<f64>>, Failure> {
+        let mut all = Vec::with_capacity(radius.len());
+        for radii in radius.chunks(AT_A_TIME) {
+            stop.check()?;
+            all.extend(solver.shears(radii).into_iter().map(finite));
+        }
+        Ok(all)
+    };
+    let shear = sampling.fields.shear.then(shears).transpose()?;
     let slip = |radius| solver.slip(radius).unwrap_or(f64::NAN);
     let slip = sampling.fields.slip.then(|| along(&slip)).transpose()?;
     let displacement = |radius| solver.surface_displacement(radius);

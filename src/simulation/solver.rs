@@ -24,8 +24,8 @@ pub trait Solver {
     fn depth(&self) -> usize;
     /// Normal pressure at a radius (m), Pa.
     fn pressure(&self, radius: f64) -> f64;
-    /// Shear stress at a radius (m), Pa.
-    fn shear(&self, radius: f64) -> f64;
+    /// Shear stress at each of the radii (m), Pa.
+    fn shears(&self, radii: &[f64]) -> Vec<f64>;
     /// Slip under the indenter at a radius (m), m; none outside the contact.
     fn slip(&self, radius: f64) -> Option<f64>;
     /// Tangential displacement of the surface at a radius (m), m.
@@ -65,8 +65,8 @@ impl Solver for Contact {
         self.pressure(radius)
     }
 
-    fn shear(&self, radius: f64) -> f64 {
-        self.shear(radius)
+    fn shears(&self, radii: &[f64]) -> Vec<f64> {
+        self.shears(radii)
     }
 
     fn slip(&self, radius: f64) -> Option<f64> {
@@ -117,8 +117,8 @@ impl Solver for Springs {
         self.pressure(radius)
     }
 
-    fn shear(&self, radius: f64) -> f64 {
-        self.shear(radius)
+    fn shears(&self, radii: &[f64]) -> Vec<f64> {
+        radii.iter().map(|&radius| self.shear(radius)).collect()
     }
 
     fn slip(&self, radius: f64) -> Option<f64> {

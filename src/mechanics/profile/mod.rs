@@ -11,6 +11,7 @@ mod cone;
 mod exact_sphere;
 mod flat_punch;
 mod gauss;
+mod many;
 mod measured;
 mod power_law;
 mod roots;

@@ -23,6 +23,11 @@ impl Sphere {
         Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
     }
 
+    /// Curvature radius R, m.
+    pub(super) fn curvature_radius(&self) -> f64 {
+        self.curvature_radius
+    }
+
     /// The same where R follows from other, checked numbers.
     pub(super) fn of_curvature(radius: f64) -> Sphere {
         Sphere { curvature_radius: radius }
