@@ -1,0 +1,77 @@
+//! Warnings over HTTP: each code comes when it should, stays away when it should not, and has its place in the docs.
+
+mod common;
+
+use serde_json::{Value, json};
+
+/// A scene without a flaw.
+fn flawless() -> Value {
+    json!({
+        "contact": {
+            "profile": {"type": "sphere", "radius": 0.01},
+            "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}},
+            "friction": 0.3,
+            "preload": {"normal_force": 10.0}
+        },
+        "path": {"displacement": [1e-7]}
+    })
+}
+
+/// The scene with some members of its contact, or its path, in place of others.
+fn with(changes: &Value) -> Value {
+    let mut scene = flawless();
+    for (name, value) in changes.as_object().unwrap() {
+        let place = if ["path", "tolerance"].contains(&name.as_str()) { &mut scene } else { &mut scene["contact"] };
+        place[name] = value.clone();
+    }
+    scene
+}
+
+/// A ball of 10 mm, measured every 2 um with heights rounded to `step` (m).
+fn measured(step: f64) -> Value {
+    let radii: Vec<f64> = (0..=200).map(|index| 2e-6 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| (r * r / 0.02 / step).round() * step).collect();
+    json!({"type": "tabulated", "r": radii, "z": heights})
+}
+
+async fn codes(server: &common::Server, scene: &Value) -> Vec<String> {
+    let reply = reqwest::Client::new().post(format!("{}/simulate", server.base)).json(scene).send().await.unwrap();
+    assert_eq!(reply.status(), 200, "{scene}");
+    let reply: Value = reply.json().await.unwrap();
+    reply["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
+}
+
+#[tokio::test]
+async fn each_warning_has_its_cause_and_its_page() {
+    let server = common::Server::start().await;
+    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
+    let incompressible = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.5});
+    let cases: &[(Value, &[&str])] = &[
+        (json!({}), &[]),
+        (json!({"profile": measured(1e-15)}), &[]),
+        (json!({"material": {"bodies": [steel, steel]}}), &["slip_direction"]),
+        (json!({"material": {"bodies": [steel, "rigid"]}}), &["dundurs_beta", "slip_direction"]),
+        // Against a rigid body beta vanishes for an incompressible one.
+        (json!({"material": {"bodies": [incompressible, "rigid"]}}), &["slip_direction"]),
+        (json!({"preload": {"contact_radius": 0.0029}}), &[]),
+        (json!({"preload": {"contact_radius": 0.0031}}), &["large_contact"]),
+        // A radius of 10 and moduli of 115 GPa: millimetres and megapascals.
+        (
+            json!({"profile": {"type": "sphere", "radius": 10.0}, "material": {"effective": {"e_star": 1.15e5, "g_star": 8.5e4}}}),
+            &["units"],
+        ),
+        (json!({"profile": measured(1e-9)}), &["noisy_table"]),
+        (
+            json!({"path": {"moves": [{"displacement": 5e-7, "normal_force": 30.0}]}, "tolerance": 1e-14}),
+            &["tolerance_not_met"],
+        ),
+    ];
+    let pages = include_str!("../docs/warnings.md");
+    for (changes, expected) in cases {
+        let found = codes(&server, &with(changes)).await;
+        assert_eq!(&found, expected, "{changes}");
+        for code in found {
+            assert!(pages.contains(&format!("\n## {code}\n")), "docs/warnings.md has nothing on {code}");
+        }
+    }
+}
