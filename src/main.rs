@@ -13,7 +13,7 @@ use stickslip::api::{self, App, Problem};
 use stickslip::client::Client;
 use stickslip::sessions::{self, Sessions};
 use stickslip::simulation::{self, Pool, Stop};
-use stickslip::store::{MemoryStore, Store};
+use stickslip::store::{MemoryStore, PostgresStore, Store};
 use stickslip::wire::{self, SimulateRequest};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
@@ -65,7 +65,7 @@ struct Serve {
     /// Address and port to listen on; port 0 takes a free one.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Where contacts are kept: `memory:` keeps them until the process ends.
+    /// Where contacts are kept: `postgres://…` shares them between processes, `memory:` keeps them until the process ends.
     #[arg(long, env = "STICKSLIP_STORE", default_value = "memory:")]
     store: String,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
@@ -152,18 +152,22 @@ fn serve(options: Serve) -> Result<(), String> {
         LogFormat::Text => log.with_ansi(false).init(),
         LogFormat::Json => log.json().flatten_event(true).init(),
     }
-    let store = store(&options.store)?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
-    let served = runtime.block_on(listen(options.listen, store));
+    let served = runtime.block_on(async { listen(options.listen, store(&options.store).await?).await });
     runtime.shutdown_timeout(LAST_WORK);
     served
 }
 
-fn store(url: &str) -> Result<Arc<dyn Store>, String> {
-    match url {
-        "memory:" => Ok(Arc::new(MemoryStore::new())),
-        other => Err(format!("--store {other}: unknown kind of store, expected memory:")),
+async fn store(url: &str) -> Result<Arc<dyn Store>, String> {
+    match url.split_once(':') {
+        Some(("memory", "")) => Ok(Arc::new(MemoryStore::new())),
+        Some(("postgres" | "postgresql", _)) => match PostgresStore::open(url).await {
+            Ok(store) => Ok(Arc::new(store)),
+            Err(error) => Err(format!("--store postgres: {error}")),
+        },
+        // Not what was given: it may hold a password.
+        _ => Err("--store: unknown kind of store, expected memory: or postgres://".to_owned()),
     }
 }
 

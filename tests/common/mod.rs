@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+pub mod postgres;
+
 use std::sync::Arc;
 
 use reqwest::{Method, Response};
