@@ -227,6 +227,43 @@ async fn an_engine_without_announcements_serves_too() {
     here.delete(new.id, 1).await.unwrap();
 }
 
+#[tokio::test]
+async fn tls_is_used_and_verified_as_the_url_says() {
+    let cluster = Cluster::start();
+    let url = cluster.database().await.replace("127.0.0.1", "localhost");
+    let certificate = cluster.encrypt();
+    let open = async |options: &str| PostgresStore::open(&format!("{url}?{options}")).await.map(drop);
+    let other = tempfile::NamedTempFile::new().unwrap();
+    let full = format!("sslmode=verify-full&sslrootcert={}", certificate.display());
+    // The server lets nobody in without TLS.
+    for good in ["sslmode=require", "sslmode=prefer", "", &full] {
+        open(good).await.unwrap_or_else(|error| panic!("{good}: {error}"));
+    }
+    assert!(open("sslmode=disable").await.unwrap_err().to_string().contains("no encryption"));
+    // Nobody vouches for this certificate, and it is not for this host.
+    let by_the_system = open("sslmode=verify-full").await.unwrap_err().to_string();
+    assert!(by_the_system.contains("certificate"), "{by_the_system}");
+    let elsewhere = format!("{}?{full}", url.replace("localhost", "127.0.0.1"));
+    let elsewhere = PostgresStore::open(&elsewhere).await.err().unwrap().to_string();
+    assert!(elsewhere.contains("certificate"), "{elsewhere}");
+    let nothing = open(&format!("sslmode=verify-full&sslrootcert={}", other.path().display())).await;
+    assert!(nothing.unwrap_err().to_string().contains("no certificate authority"));
+}
+
+#[tokio::test]
+async fn a_password_is_never_shown() {
+    for url in [
+        "postgres://me:secret@127.0.0.1:port/db",
+        "postgres://me:secret@host/db?sslmode=verify-ca",
+        "postgres://me:secret@host/db?unheard=of",
+        "postgre://me:secret@host/db",
+        "postgres:me:secret@host",
+    ] {
+        let refused = stickslip::store::open(url).await.map(drop).unwrap_err().to_string();
+        assert!(!refused.contains("secret"), "{refused}");
+    }
+}
+
 async fn soon<T>(future: impl Future<Output = T>) -> T {
     tokio::time::timeout(std::time::Duration::from_secs(20), future).await.expect("nothing happened")
 }

@@ -3,13 +3,12 @@
 mod common;
 
 use std::collections::HashMap;
-use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use common::postgres::Cluster;
+use common::process::Process;
 use common::{Server, ball, create, problem};
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
@@ -24,40 +23,6 @@ use uuid::Uuid;
 const SESSIONS: usize = 5;
 const CLIENTS: usize = 16;
 const MOVES: usize = 40;
-
-/// A process of the program.
-struct Replica {
-    process: Child,
-    client: Client,
-    base: String,
-}
-
-impl Replica {
-    fn start(url: &str) -> Replica {
-        let mut process = Command::new(env!("CARGO_BIN_EXE_stickslip"))
-            .args(["serve", "--listen", "127.0.0.1:0", "--store", url, "--log", "error"])
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let base = line.split_whitespace().find(|word| word.starts_with("http")).expect("no address");
-        let base = base.trim_end_matches(',').to_owned();
-        Replica { process, client: Client::new(&base), base }
-    }
-
-    /// As the kernel does when memory runs out: no goodbye.
-    fn kill(&mut self) {
-        self.process.kill().unwrap();
-        self.process.wait().unwrap();
-    }
-}
-
-impl Drop for Replica {
-    fn drop(&mut self) {
-        self.kill();
-    }
-}
 
 /// Moves whose order matters: relative ones, and every kind of target.
 fn step(index: usize) -> Move {
@@ -109,7 +74,7 @@ struct Seen {
 async fn sixteen_clients_on_two_replicas_lose_nothing_while_one_is_killed_and_the_database_crashes() {
     let cluster = Cluster::start();
     let url = cluster.database().await;
-    let (here, mut there) = (Replica::start(&url), Replica::start(&url));
+    let (here, there) = (Process::start(&url).await, Process::start(&url).await);
     let servers = [here.client.clone(), there.client.clone()];
     let ids =
         join_all((0..SESSIONS).map(|_| async { servers[0].create(&create(), &Options::default()).await.unwrap().id }));
@@ -135,7 +100,7 @@ async fn sixteen_clients_on_two_replicas_lose_nothing_while_one_is_killed_and_th
             }
         };
         progress(1).await;
-        there.kill();
+        there.kill().await;
         progress(2).await;
         cluster.crash();
         while seen.unavailable.load(Ordering::Relaxed) == 0 {
@@ -178,7 +143,7 @@ fn replay(past: &[HistoryItem]) -> Vec<State> {
 #[tokio::test]
 async fn a_reply_is_owed_after_a_restart_and_by_the_other_replica() {
     let url = Cluster::shared().database().await;
-    let (mut here, there) = (Replica::start(&url), Replica::start(&url));
+    let (here, there) = (Process::start(&url).await, Process::start(&url).await);
     let http = reqwest::Client::new();
     let post = async |base: &str, path: &str, key: &str, body: Value| {
         let call = http.post(format!("{base}{path}")).header("idempotency-key", key).json(&body);
@@ -192,8 +157,8 @@ async fn a_reply_is_owed_after_a_restart_and_by_the_other_replica() {
     let first = post(&here.base, &moved, "move", step()).await;
     let fork = post(&there.base, &forked, "fork", json!({})).await;
     post(&there.base, &moved, "on", step()).await;
-    here.kill();
-    let again = Replica::start(&url);
+    here.kill().await;
+    let again = Process::start(&url).await;
     for base in [&again.base, &there.base] {
         assert_eq!(post(base, "/contacts", "make", ball()).await, made);
         assert_eq!(post(base, &moved, "move", step()).await, first);

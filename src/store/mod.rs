@@ -2,11 +2,14 @@
 //!
 //! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
 //! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
-//! [`postgres`] shares it between processes.
+//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] tells them apart by
+//! their URLs.
 
 pub mod changes;
 pub mod memory;
+pub mod open;
 pub mod postgres;
+pub mod sqlite;
 
 use std::sync::Arc;
 
@@ -18,7 +21,9 @@ use crate::wire::{ContactDefinition, Move, State};
 
 pub use changes::Changes;
 pub use memory::MemoryStore;
+pub use open::{OpenError, open};
 pub use postgres::PostgresStore;
+pub use sqlite::SqliteStore;
 
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);

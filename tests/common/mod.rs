@@ -2,7 +2,9 @@
 
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+pub mod kill;
 pub mod postgres;
+pub mod process;
 
 use std::sync::Arc;
 

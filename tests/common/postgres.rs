@@ -73,6 +73,24 @@ impl Cluster {
         self.run("pg_ctl", &["-D", &self.data(), "-m", "immediate", "-w", "-s", "stop"]);
     }
 
+    /// Starts the server again with TLS, and with nothing else for connections over TCP. Returns the path of its
+    /// certificate, which is for `localhost` and signed by itself.
+    pub fn encrypt(&self) -> PathBuf {
+        let (key, certificate) = (self.folder.join("data/server.key"), self.folder.join("data/server.crt"));
+        let mut openssl = Command::new("openssl");
+        openssl.args("req -x509 -nodes -newkey rsa:2048 -days 2 -subj /CN=localhost".split(' '));
+        openssl.args(["-addext", "subjectAltName=DNS:localhost", "-addext", "basicConstraints=critical,CA:FALSE"]);
+        openssl.arg("-keyout").arg(&key).arg("-out").arg(&certificate).stderr(Stdio::null());
+        assert!(as_owner(&mut openssl, self.owner).status().unwrap().success(), "openssl failed");
+        self.crash();
+        let rules = "local all all trust\nhostssl all all all trust\n";
+        std::fs::write(self.folder.join("data/pg_hba.conf"), rules).unwrap();
+        let settings = self.folder.join("data/postgresql.auto.conf");
+        std::fs::write(settings, "ssl = on\n").unwrap();
+        self.resume();
+        certificate
+    }
+
     /// The URL of a new, empty database.
     pub async fn database(&self) -> String {
         static COUNT: AtomicU32 = AtomicU32::new(0);

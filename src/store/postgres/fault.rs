@@ -1,5 +1,6 @@
 //! What an error of the database means, and how long to go on trying.
 
+use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -9,7 +10,7 @@ use tokio_postgres::error::{DbError, SqlState};
 
 use crate::store::StoreError;
 
-use super::target::cause;
+use super::target::told;
 
 /// How long a lost database is waited for before its clients are told. Once they have been told, nobody waits any more
 /// until it is back.
@@ -35,7 +36,8 @@ impl From<Error> for Fault {
     fn from(error: Error) -> Fault {
         match error.as_db_error() {
             Some(refusal) => refused(refusal),
-            None => Fault::Lost(format!("{error}: {}", cause(&error))),
+            None if distrusted(&error) => Fault::Refused(StoreError::Failed(told(&error))),
+            None => Fault::Lost(told(&error)),
         }
     }
 }
@@ -53,6 +55,19 @@ impl From<StoreError> for Fault {
     fn from(error: StoreError) -> Fault {
         Fault::Refused(error)
     }
+}
+
+/// Whether TLS came to nothing: time would not change a certificate.
+fn distrusted(error: &Error) -> bool {
+    let mut source = std::error::Error::source(error);
+    while let Some(inner) = source {
+        let carried = inner.downcast_ref::<io::Error>().and_then(io::Error::get_ref);
+        if carried.is_some_and(|carried| carried.is::<rustls::Error>()) {
+            return true;
+        }
+        source = inner.source();
+    }
+    false
 }
 
 fn refused(refusal: &DbError) -> Fault {

@@ -39,7 +39,7 @@ impl Target {
     /// Reads a URL.
     pub(super) fn parse(url: &str) -> Result<Target, String> {
         let (url, verification) = split(url)?;
-        let mut config: Config = url.parse().map_err(|error| format!("{error}: {}", cause(&error)))?;
+        let mut config: Config = url.parse().map_err(|error| told(&error))?;
         if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
             return Err("the URL names no host".to_owned());
         }
@@ -84,15 +84,12 @@ impl Target {
     }
 }
 
-/// What lies under an error of the driver, which alone says little.
-pub(super) fn cause(error: &Error) -> String {
+/// An error of the driver with what lies under it: alone it says little.
+pub(super) fn told(error: &Error) -> String {
+    let mut text = error.to_string();
     let mut source = std::error::Error::source(error);
-    let mut text = String::new();
     while let Some(inner) = source {
-        if !text.is_empty() {
-            text.push_str(": ");
-        }
-        text.push_str(&inner.to_string());
+        text = format!("{text}: {inner}");
         source = inner.source();
     }
     text
