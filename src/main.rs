@@ -13,7 +13,7 @@ use stickslip::api::{self, App, Problem};
 use stickslip::client::Client;
 use stickslip::sessions::{self, Sessions};
 use stickslip::simulation::{self, Pool, Stop};
-use stickslip::store::{MemoryStore, Store};
+use stickslip::store::{self, Store};
 use stickslip::wire::{self, SimulateRequest};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
@@ -65,8 +65,9 @@ struct Serve {
     /// Address and port to listen on; port 0 takes a free one.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Where contacts are kept: `memory:` keeps them until the process ends.
-    #[arg(long, env = "STICKSLIP_STORE", default_value = "memory:")]
+    /// Where contacts are kept: `sqlite:PATH` in a file, `postgres://…` in a database that several processes share,
+    /// `memory:` in this process until it ends.
+    #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
     store: String,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info")]
@@ -152,19 +153,14 @@ fn serve(options: Serve) -> Result<(), String> {
         LogFormat::Text => log.with_ansi(false).init(),
         LogFormat::Json => log.json().flatten_event(true).init(),
     }
-    let store = store(&options.store)?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
-    let served = runtime.block_on(listen(options.listen, store));
+    let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
+    let served = runtime.block_on(listen(options.listen, Arc::clone(&store)));
     runtime.shutdown_timeout(LAST_WORK);
+    // The last handle, now that no request holds one: the store is closed before the process ends.
+    drop(store);
     served
-}
-
-fn store(url: &str) -> Result<Arc<dyn Store>, String> {
-    match url {
-        "memory:" => Ok(Arc::new(MemoryStore::new())),
-        other => Err(format!("--store {other}: unknown kind of store, expected memory:")),
-    }
 }
 
 async fn listen(address: SocketAddr, store: Arc<dyn Store>) -> Result<(), String> {

@@ -133,7 +133,7 @@ async fn headers_say_where_and_which() {
 async fn the_binary_starts_at_once_and_stops_gracefully() {
     let begin = Instant::now();
     let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
-        .args(["--listen", "127.0.0.1:0"])
+        .args(["--listen", "127.0.0.1:0", "--store", "memory:"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()

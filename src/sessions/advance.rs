@@ -1,5 +1,7 @@
 //! Moving a session on: the one place where it changes.
 
+use std::sync::Arc;
+
 use jiff::Timestamp;
 use uuid::Uuid;
 
@@ -9,7 +11,7 @@ use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
 use crate::wire::{MoveReply, PathReply, Plan, Steps, limits};
 
-use super::{Guard, Live, SessionError, Sessions, agree, idempotency, written};
+use super::{ATTEMPTS, Guard, Live, SessionError, Sessions, agree, idempotency, written};
 
 /// Why the exact solver answers for a session.
 const REASON: &str = "a session keeps its exact memory";
@@ -42,7 +44,7 @@ impl Sessions {
         // Whoever hangs up in the queue has left it.
         let guard = self.lock(id).await;
         let (stop, _raised_at_the_end) = Stop::guarded();
-        let sessions = self.clone();
+        let (sessions, advance) = (self.clone(), Arc::new(advance));
         let task = tokio::spawn(async move { sessions.advance_locked(id, advance, expected, key, guard, stop).await });
         task.await.unwrap_or_else(|_| Err(SessionError::Broken("a move panicked".to_owned())))
     }
@@ -50,53 +52,73 @@ impl Sessions {
     async fn advance_locked(
         &self,
         id: Uuid,
-        advance: Advance,
+        advance: Arc<Advance>,
         expected: Option<u64>,
         key: Option<RequestKey>,
         mut guard: Guard,
         stop: Stop,
     ) -> Result<Reply, SessionError> {
-        // Again, now that a twin of this request that stood before it in the queue is done.
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
-            return Ok(reply);
-        }
-        let live = self.present(id, &mut guard).await?;
-        let sequence = live.session.sequence;
-        agree(expected, sequence)?;
-        let (live, Done { records, reply }) = self.compute(id, advance, &mut guard, stop).await?;
+        let (mut found, mut checked) = (0, false);
+        for _ in 0..ATTEMPTS {
+            // Again, now that a twin of this request that stood before it in the queue, here or elsewhere, is done.
+            if let Some(reply) = self.earlier(key.as_ref()).await? {
+                return Ok(reply);
+            }
+            let cached = self.present(id, &mut guard).await?.session.sequence;
+            checked |= expected.is_some_and(|expected| expected != cached);
+            let live = if checked { self.current(id, &mut guard).await? } else { self.present(id, &mut guard).await? };
+            let sequence = live.session.sequence;
+            agree(expected, sequence)?;
+            let (live, Done { records, reply }) = match self.compute(id, &advance, &mut guard, &stop).await {
+                Err(SessionError::Failure(_))
+                    if !std::mem::replace(&mut checked, true)
+                        && self.current(id, &mut guard).await?.session.sequence != sequence =>
+                {
+                    // Refused because of a state of the past.
+                    continue;
+                }
+                computed => computed?,
+            };
 
-        // Between here and the end the state is in doubt. The slot stays empty meanwhile: whoever finds it so, because
-        // the store failed or this task died, asks the store what is true.
-        *guard = None;
-        let receipt = idempotency::receipt(key.clone(), &reply);
-        match (self.store.append(id, sequence, records, receipt).await, expected) {
-            (Ok(()), _) => *guard = Some(live),
-            (Err(error @ (StoreError::NotFound | StoreError::Expired)), _) => return Err(self.failed(id, error)),
-            (Err(StoreError::Stale { found }), Some(expected)) => return Err(SessionError::Stale { expected, found }),
-            (Err(StoreError::Stale { found }), None) => return Err(SessionError::Overtaken { found }),
-            (Err(other), _) => return self.lost(other, key).await,
+            // Between here and the end the state is in doubt. The slot stays empty meanwhile: whoever finds it so, because
+            // the store failed or this task died, asks the store what is true.
+            let before = guard.take();
+            let receipt = idempotency::receipt(key.clone(), &reply);
+            match self.store.append(id, sequence, records, receipt).await {
+                Ok(()) => {
+                    *guard = Some(live);
+                    return Ok(reply);
+                }
+                Err(StoreError::Stale { found: sequence }) => found = sequence,
+                Err(error @ (StoreError::NotFound | StoreError::Expired)) => return Err(self.failed(id, error)),
+                Err(other) => return self.lost(other, key).await,
+            }
+            // Another process was faster, and its moves come first.
+            (*guard, checked) = (before, true);
         }
-        Ok(reply)
+        Err(SessionError::Overtaken { found })
     }
 
     /// Computes the moves. A failure leaves the slot with the state before them, or, at worst, empty.
     async fn compute(
         &self,
         id: Uuid,
-        advance: Advance,
+        advance: &Arc<Advance>,
         guard: &mut Guard,
-        stop: Stop,
+        stop: &Stop,
     ) -> Result<(Live, Done), SessionError> {
         let depth = guard.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
-        // copy costs as much as the memory is deep.
-        let in_place = matches!(advance.plan, Plan::Single(step) if !step.is_curved())
+        // copy costs as much as the memory is deep. Where others may be faster, the move may be for nothing.
+        let in_place = !self.store.is_shared()
+            && matches!(advance.plan, Plan::Single(step) if !step.is_curved())
             && advance.stress.is_none()
             && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH;
         let live = if in_place { guard.take() } else { (**guard).clone() };
         let live = live.ok_or(SessionError::NotFound(id))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let cost = cost::estimated_cost(advance.plan.length(), advance.plan.curved(), depth, radii, false);
+        let (advance, stop) = (Arc::clone(advance), stop.clone());
         let (live, result) = self.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
         match result {
             Ok(done) => Ok((live, done)),

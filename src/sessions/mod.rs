@@ -7,6 +7,7 @@
 
 mod advance;
 mod cache;
+mod current;
 mod idempotency;
 mod read;
 
@@ -27,6 +28,9 @@ use cache::{Cache, Slot};
 
 /// Moves that are fetched from the store at a time for a replay.
 const REPLAY_PAGE: usize = 10_000;
+
+/// How often a change is computed anew when other processes get in before it.
+const ATTEMPTS: usize = 16;
 
 /// Why a session did not do what it was asked for. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
@@ -148,22 +152,30 @@ impl Sessions {
             return Ok(reply);
         }
         let mut guard = self.lock(id).await;
-        let mut copy = self.present(id, &mut guard).await?.clone();
-        let now = Timestamp::now();
-        copy.session = Session {
-            id: Uuid::now_v7(),
-            label: label.or(copy.session.label),
-            created_at: now,
-            updated_at: now,
-            ..copy.session
-        };
-        let reply = copy.introduce()?;
-        let stored = self.store.fork(id, copy.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
-        match stored {
-            Ok(()) => self.cache.insert(copy),
-            Err(error) => return self.lost(error, key).await,
+        let mut found = 0;
+        for _ in 0..ATTEMPTS {
+            let mut copy = self.current(id, &mut guard).await?.clone();
+            let now = Timestamp::now();
+            copy.session = Session {
+                id: Uuid::now_v7(),
+                label: label.clone().or(copy.session.label),
+                created_at: now,
+                updated_at: now,
+                ..copy.session
+            };
+            let reply = copy.introduce()?;
+            let stored = self.store.fork(id, copy.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
+            match stored {
+                Ok(()) => {
+                    self.cache.insert(copy);
+                    return Ok(reply);
+                }
+                Err(StoreError::Stale { found: sequence }) => found = sequence,
+                Err(error @ (StoreError::NotFound | StoreError::Expired)) => return Err(self.failed(id, error)),
+                Err(error) => return self.lost(error, key).await,
+            }
         }
-        Ok(reply)
+        Err(SessionError::Overtaken { found })
     }
 
     /// Deletes a session, if it is at the sequence that the client expects.
@@ -172,16 +184,25 @@ impl Sessions {
     /// [`SessionError`]; it is still there then.
     pub async fn delete(&self, id: Uuid, expected: Option<u64>) -> Result<(), SessionError> {
         let mut guard = self.lock(id).await;
-        let found = match guard.as_ref() {
-            Some(live) => live.session.sequence,
-            None => self.store.find(id).await.map_err(|error| self.failed(id, error))?.sequence,
-        };
-        agree(expected, found)?;
-        // Emptied first: if this call is abandoned half-way, the next one asks the store what is true.
-        *guard = None;
-        self.store.delete(id, found).await.map_err(|error| self.failed(id, error))?;
-        self.cache.forget(id);
-        Ok(())
+        let mut found = 0;
+        for _ in 0..ATTEMPTS {
+            found = match guard.as_ref() {
+                Some(live) if !self.store.is_shared() => live.session.sequence,
+                _ => self.store.sequence(id).await.map_err(|error| self.failed(id, error))?,
+            };
+            agree(expected, found)?;
+            // Emptied first: if this call is abandoned half-way, the next one asks the store what is true.
+            *guard = None;
+            match self.store.delete(id, found).await {
+                Ok(()) => {
+                    self.cache.forget(id);
+                    return Ok(());
+                }
+                Err(StoreError::Stale { .. }) => {}
+                Err(error) => return Err(self.failed(id, error)),
+            }
+        }
+        Err(SessionError::Overtaken { found })
     }
 
     /// Waits for the lock of a session.
@@ -201,28 +222,37 @@ impl Sessions {
     /// The state of a stored session, from its definition and all its moves.
     async fn replay(&self, id: Uuid) -> Result<Live, SessionError> {
         let session = self.store.find(id).await.map_err(|error| self.failed(id, error))?;
-        let broken =
-            |error: &dyn std::fmt::Display| SessionError::Broken(format!("contact {id} cannot be replayed: {error}"));
         let mut faults = Faults::default();
         let setup = session.definition.check(At::Root, &mut faults);
-        let setup = faults.done(setup).map_err(|error| broken(&error))?;
-        let (mut contact, about) = start(&session.definition, setup).map_err(|error| broken(&error))?;
-        let mut sequence = 0;
-        while sequence < session.sequence {
-            let page = self.store.history(id, sequence, REPLAY_PAGE).await.map_err(|error| self.failed(id, error))?;
+        let setup = faults.done(setup).map_err(|error| broken(id, &error))?;
+        let (contact, about) = start(&session.definition, setup).map_err(|error| broken(id, &error))?;
+        let to = session.sequence;
+        let begin = Session { sequence: 0, ..session };
+        let live = self.follow(Live { session: begin, about, contact }, to).await?;
+        Ok(Live { session: Session { updated_at: session.updated_at, ..live.session }, ..live })
+    }
+
+    /// Takes a state on to a later sequence, by the moves that are stored.
+    async fn follow(&self, mut live: Live, to: u64) -> Result<Live, SessionError> {
+        let id = live.session.id;
+        while live.session.sequence < to {
+            let after = live.session.sequence;
+            let mut page = self.store.history(id, after, REPLAY_PAGE).await.map_err(|error| self.failed(id, error))?;
+            page.retain(|record| record.sequence <= to);
             let Some(last) = page.last() else {
-                return Err(broken(&format_args!("moves are missing after {sequence}")));
+                return Err(broken(id, &format_args!("moves are missing after {after}")));
             };
-            sequence = last.sequence;
+            (live.session.sequence, live.session.updated_at) = (last.sequence, last.at);
             let curved = page.iter().filter(|record| record.step.is_curved()).count();
             let cost = cost::estimated_cost(page.len(), curved, 0, 0, false);
+            let mut contact = live.contact;
             let replayed = self.pool.run(cost, move || {
                 let mut steps = page.iter().map(|record| (record.step.step(), record.tolerance));
                 steps.try_for_each(|(step, tolerance)| contact.apply_within(&step, tolerance)).map(|()| contact)
             });
-            contact = replayed.await?.map_err(|error| broken(&error))?;
+            live.contact = replayed.await?.map_err(|error| broken(id, &error))?;
         }
-        Ok(Live { session, about, contact })
+        Ok(live)
     }
 
     /// What a failure of the store means for a client. Where the session is gone, the cache forgets it too.
@@ -267,6 +297,10 @@ fn start(definition: &ContactDefinition, setup: Setup) -> Result<(Contact, Arc<A
     let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
     let warnings = warnings(&definition.profile, &elasticity, &seen);
     Ok((contact, Arc::new(About { figures, warnings })))
+}
+
+fn broken(id: Uuid, error: &dyn std::fmt::Display) -> SessionError {
+    SessionError::Broken(format!("contact {id} cannot be replayed: {error}"))
 }
 
 /// Holds the sequence against the one that the client expects, if it expects one.

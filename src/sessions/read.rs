@@ -14,7 +14,7 @@ impl Sessions {
     /// [`SessionError::NotFound`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
         let mut guard = self.lock(id).await;
-        let live = self.present(id, &mut guard).await?;
+        let live = self.current(id, &mut guard).await?;
         Ok(SessionReply {
             id,
             label: live.session.label.clone(),
@@ -35,7 +35,7 @@ impl Sessions {
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence) = {
             let mut guard = self.lock(id).await;
-            let live = self.present(id, &mut guard).await?;
+            let live = self.current(id, &mut guard).await?;
             (live.contact.clone(), live.session.sequence)
         };
         let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);

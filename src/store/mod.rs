@@ -1,10 +1,15 @@
 //! What must survive: definitions, the moves made since, and the replies that a retry is owed.
 //!
 //! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
-//! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end.
+//! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
+//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] tells them apart by
+//! their URLs.
 
 pub mod changes;
 pub mod memory;
+pub mod open;
+pub mod postgres;
+pub mod sqlite;
 
 use std::sync::Arc;
 
@@ -16,6 +21,9 @@ use crate::wire::{ContactDefinition, Move, State};
 
 pub use changes::Changes;
 pub use memory::MemoryStore;
+pub use open::{OpenError, open};
+pub use postgres::PostgresStore;
+pub use sqlite::SqliteStore;
 
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
@@ -165,4 +173,14 @@ pub trait Store: Send + Sync + 'static {
 
     /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
     fn changes(&self) -> &Changes;
+
+    /// Whether other processes may change the same sessions, so that what is known of one may be out of date.
+    fn is_shared(&self) -> bool {
+        false
+    }
+
+    /// The sequence of a session: all of it that a cache has to know.
+    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
+        Box::pin(async move { Ok(self.find(id).await?.sequence) })
+    }
 }

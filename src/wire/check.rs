@@ -104,7 +104,10 @@ impl Faults {
 
     /// Holds a label against its length.
     pub fn label(&mut self, at: At<'_>, label: Option<&str>) {
-        if label.is_some_and(|text| text.chars().count() > limits::LABEL_LENGTH) {
+        if label.is_some_and(|text| text.contains('\0')) {
+            // Databases end a text there.
+            self.add(at, "the character U+0000 is not allowed");
+        } else if label.is_some_and(|text| text.chars().count() > limits::LABEL_LENGTH) {
             self.add(at, format_args!("too long: allowed are {} characters", limits::LABEL_LENGTH));
         }
     }

@@ -2,6 +2,10 @@
 
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
+pub mod kill;
+pub mod postgres;
+pub mod process;
+
 use std::sync::Arc;
 
 use reqwest::{Method, Response};

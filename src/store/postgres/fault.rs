@@ -1,0 +1,148 @@
+//! What an error of the database means, and how long to go on trying.
+
+use std::io;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use deadpool_postgres::PoolError;
+use tokio_postgres::Error;
+use tokio_postgres::error::{DbError, SqlState};
+
+use crate::store::StoreError;
+
+use super::target::told;
+
+/// How long a lost database is waited for before its clients are told. Once they have been told, nobody waits any more
+/// until it is back.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// How soon to try again at first; the time doubles up to the longest.
+const FIRST_PAUSE: Duration = Duration::from_millis(25);
+const LONGEST_PAUSE: Duration = Duration::from_millis(400);
+
+/// Why the database did not do what it was asked for.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// The connection is lost; whether the change was made is unknown.
+    Lost(String),
+    /// Nothing has changed, and the same may go well at once: two transactions got in each other's way.
+    Again(String),
+    /// Nothing has changed: a key or an identifier is there already.
+    Duplicate(String),
+    /// Nothing has changed, and it is no use trying again.
+    Refused(StoreError),
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Fault {
+        match error.as_db_error() {
+            Some(refusal) => refused(refusal),
+            None if distrusted(&error) => Fault::Refused(StoreError::Failed(told(&error))),
+            None => Fault::Lost(told(&error)),
+        }
+    }
+}
+
+impl From<PoolError> for Fault {
+    fn from(error: PoolError) -> Fault {
+        match error {
+            PoolError::Backend(error) => error.into(),
+            other => Fault::Lost(other.to_string()),
+        }
+    }
+}
+
+impl From<StoreError> for Fault {
+    fn from(error: StoreError) -> Fault {
+        Fault::Refused(error)
+    }
+}
+
+/// Whether TLS came to nothing: time would not change a certificate.
+fn distrusted(error: &Error) -> bool {
+    let mut source = std::error::Error::source(error);
+    while let Some(inner) = source {
+        let carried = inner.downcast_ref::<io::Error>().and_then(io::Error::get_ref);
+        if carried.is_some_and(|carried| carried.is::<rustls::Error>()) {
+            return true;
+        }
+        source = inner.source();
+    }
+    false
+}
+
+fn refused(refusal: &DbError) -> Fault {
+    let text = format!("{} ({})", refusal.message(), refusal.code().code());
+    let code = refusal.code();
+    let class = code.code().get(..2).unwrap_or_default();
+    match class {
+        // The server stops, has crashed, is starting, has no connection left, or has become a standby.
+        "08" | "57" if *code != SqlState::QUERY_CANCELED => Fault::Lost(text),
+        _ if *code == SqlState::TOO_MANY_CONNECTIONS || *code == SqlState::READ_ONLY_SQL_TRANSACTION => {
+            Fault::Lost(text)
+        }
+        "40" => Fault::Again(text),
+        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Again(text),
+        _ if *code == SqlState::UNIQUE_VIOLATION => Fault::Duplicate(text),
+        _ if *code == SqlState::DISK_FULL => Fault::Refused(StoreError::Full(text)),
+        "53" => Fault::Refused(StoreError::Unavailable(text)),
+        _ if *code == SqlState::QUERY_CANCELED => Fault::Refused(StoreError::Unavailable(text)),
+        _ => Fault::Refused(StoreError::Failed(text)),
+    }
+}
+
+impl Fault {
+    /// What is left to say when it is not tried again.
+    pub(super) fn finally(self) -> StoreError {
+        match self {
+            Fault::Lost(text) | Fault::Again(text) => StoreError::Unavailable(text),
+            Fault::Duplicate(text) => StoreError::Failed(text),
+            Fault::Refused(error) => error,
+        }
+    }
+}
+
+/// Since when the database has been out of reach, as far as anybody has noticed.
+#[derive(Default)]
+pub(super) struct Outage {
+    // A std mutex: held for a glance, never across an await.
+    since: Mutex<Option<Instant>>,
+}
+
+impl Outage {
+    /// Notes that the database could be reached.
+    pub(super) fn end(&self) {
+        if let Some(begin) = self.lock().take() {
+            tracing::info!(outage_ms = begin.elapsed().as_millis() as u64, "the database is back");
+        }
+    }
+
+    /// Notes that it could not; tells whether it is worth while to try again.
+    pub(super) fn bearable(&self, fault: &str) -> bool {
+        let mut since = self.lock();
+        if since.is_none() {
+            tracing::warn!(error = fault, "the database is out of reach");
+        }
+        since.get_or_insert_with(Instant::now).elapsed() < PATIENCE
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Instant>> {
+        self.since.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Pauses that grow.
+pub(super) struct Pauses(Duration);
+
+impl Default for Pauses {
+    fn default() -> Pauses {
+        Pauses(FIRST_PAUSE)
+    }
+}
+
+impl Pauses {
+    /// Waits, longer from time to time.
+    pub(super) async fn pause(&mut self) {
+        tokio::time::sleep(self.0).await;
+        self.0 = (2 * self.0).min(LONGEST_PAUSE);
+    }
+}

@@ -1,0 +1,146 @@
+//! One batch on its way: a whole transaction sent at once, so that it costs one round trip however many requests it has.
+
+use std::collections::HashMap;
+
+use futures::future::try_join_all;
+use tokio::time::timeout;
+use tokio_postgres::{Client, Statement};
+use uuid::Uuid;
+
+use super::fault::Fault;
+use super::job::{Change, Job};
+use super::link::{ANSWER, Link, Parameter};
+use super::rows::{Moves, Receipts, Requests, Sessions, count};
+use super::sql;
+
+/// Identifiers in one announcement: its payload must stay below 8000 bytes.
+const ANNOUNCED: usize = 200;
+
+/// The writer's connection.
+pub(super) struct Line {
+    client: Client,
+    lock: Statement,
+    append: Statement,
+    create: Statement,
+    /// None where the engine knows no announcements.
+    notify: Option<Statement>,
+}
+
+/// A batch as columns.
+#[derive(Default)]
+struct Columns {
+    requests: Requests,
+    moves: Moves,
+    receipts: Receipts,
+    sessions: Sessions,
+    first_receipts: Receipts,
+    announcements: Vec<String>,
+}
+
+impl Line {
+    /// Connects, and prepares what is sent again and again.
+    pub(super) async fn open(link: &Link) -> Result<Line, Fault> {
+        let open = async {
+            let client = link.target.open().await?;
+            let statements = [sql::LOCK, sql::APPEND, sql::CREATE].map(|statement| client.prepare(statement));
+            let statements = try_join_all(statements).await?;
+            let notify = if link.announces { Some(client.prepare(sql::NOTIFY).await?) } else { None };
+            let [lock, append, create] = <[Statement; 3]>::try_from(statements)
+                .map_err(|_| Fault::Lost("a statement was not prepared".to_owned()))?;
+            Ok(Line { client, lock, append, create, notify })
+        };
+        timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())))
+    }
+
+    /// Whether it can still be used, as far as is known.
+    pub(super) fn is_open(&self) -> bool {
+        !self.client.is_closed()
+    }
+
+    /// Makes all changes whose sessions are where they were expected, in one transaction. Tells at which sequence the
+    /// sessions to append to were found; those that were not are missing.
+    pub(super) async fn fly(&self, jobs: &[Job]) -> Result<HashMap<Uuid, u64>, Fault> {
+        let columns = Columns::of(jobs);
+        let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
+        let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
+        // The first of the columns of a receipt names the session that has to win for it, and a new one always does.
+        let first_receipts = columns.first_receipts.parameters().into_iter().skip(1);
+        let created: Vec<_> = columns.sessions.parameters().into_iter().chain(first_receipts).collect();
+
+        let locked: [Parameter<'_>; 1] = [&columns.requests.id];
+        let announced: [Parameter<'_>; 2] = [&sql::CHANNEL, &columns.announcements];
+
+        // Polled in this order, and sent as they are polled.
+        let flight = async {
+            futures::join!(
+                self.client.batch_execute(sql::BEGIN),
+                self.client.query(&self.lock, &locked),
+                async {
+                    if columns.requests.id.is_empty() {
+                        Ok(0)
+                    } else {
+                        self.client.execute(&self.append, &appended).await
+                    }
+                },
+                async {
+                    if columns.sessions.id.is_empty() {
+                        Ok(0)
+                    } else {
+                        self.client.execute(&self.create, &created).await
+                    }
+                },
+                async {
+                    match &self.notify {
+                        Some(notify) => self.client.execute(notify, &announced).await,
+                        None => Ok(0),
+                    }
+                },
+                self.client.batch_execute(sql::COMMIT),
+            )
+        };
+        let landed = timeout(ANSWER, flight).await.map_err(|_| Fault::Lost("no answer in time".to_owned()))?;
+        // The first failure is the cause of the others, and of a commit that was none.
+        let (begun, found, appended, created, notified, committed) = landed;
+        begun?;
+        let found = found?;
+        appended?;
+        created?;
+        notified?;
+        committed?;
+        Ok(found.iter().map(|row| (row.get(0), count(row.get(1)))).collect())
+    }
+}
+
+impl Columns {
+    fn of(jobs: &[Job]) -> Columns {
+        let mut columns = Columns::default();
+        for job in jobs {
+            let receipts = match &job.change {
+                Change::Create(session, definition) => {
+                    columns.sessions.push((session, definition.clone()));
+                    &mut columns.first_receipts
+                }
+                Change::Append { id, expected, records } => {
+                    let last = records.last();
+                    let sequence = last.map_or(*expected, |record| record.sequence);
+                    columns.requests.push((*id, *expected, sequence, last.map(|record| record.at)));
+                    for record in records {
+                        columns.moves.push((*id, job.stamp, record));
+                    }
+                    &mut columns.receipts
+                }
+            };
+            if let Some(receipt) = &job.receipt {
+                receipts.push((job.id(), receipt));
+            }
+        }
+        columns.announcements = announcements(&columns.requests.id);
+        columns
+    }
+}
+
+/// Payloads that name these sessions.
+pub(super) fn announcements(ids: &[Uuid]) -> Vec<String> {
+    let payload = |ids: &[Uuid]| ids.iter().map(|id| id.simple().to_string()).collect::<Vec<_>>().join(",");
+    ids.chunks(ANNOUNCED).map(payload).collect()
+}

@@ -1,0 +1,144 @@
+//! The way to the database for all that does not go through the writer: a pool of connections, and another try where a
+//! connection is lost.
+
+use std::time::Duration;
+
+use deadpool_postgres::{Hook, HookError, Manager, ManagerConfig, Object, Pool, RecyclingMethod, Runtime};
+use tokio_postgres::Row;
+use tokio_postgres::types::ToSql;
+
+use crate::store::StoreError;
+
+use super::fault::{Fault, Outage, Pauses};
+use super::sql;
+use super::target::Target;
+
+/// Connections of the pool. Reads are short; more would only make the database switch between them.
+const CONNECTIONS: usize = 8;
+/// How long a call waits for a free connection, or for a new one.
+const PATIENCE_FOR_CONNECTION: Duration = Duration::from_secs(5);
+/// How long an answer may take: longer than the engine itself allows a statement, so that it is the engine that gives up
+/// unless it cannot be reached.
+pub(super) const ANSWER: Duration = Duration::from_secs(15);
+/// The same for statements that copy or delete whole pasts.
+pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
+/// How often two transactions may get in each other's way before the client is told.
+const COLLISIONS: usize = 5;
+
+/// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use any
+/// more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
+macro_rules! call {
+    ($link:expr, $limit:expr, $connection:ident => $work:expr) => {{
+        let mut tries = $crate::store::postgres::link::Tries::default();
+        loop {
+            let fault = match once!($link, $limit, $connection => $work) {
+                Ok(done) => {
+                    $link.outage.end();
+                    break Ok(done);
+                }
+                Err(fault) => fault,
+            };
+            if let Err(error) = tries.bear(&$link.outage, fault).await {
+                break Err(error);
+            }
+        }
+    }};
+}
+
+/// Does work on a connection of the pool. A connection that failed or did not answer in time is not given back.
+macro_rules! once {
+    ($link:expr, $limit:expr, $connection:ident => $work:expr) => {
+        match $link.connection().await {
+            Err(fault) => Err(fault),
+            Ok(mut object) => {
+                let $connection = &mut object;
+                let done = tokio::time::timeout($limit, $work).await;
+                let done = done.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())));
+                if matches!(done, Err(Fault::Lost(_))) {
+                    drop(deadpool_postgres::Object::take(object));
+                }
+                done
+            }
+        }
+    };
+}
+
+pub(super) use {call, once};
+
+/// A parameter of a statement.
+pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
+
+/// The way to the database.
+pub(super) struct Link {
+    pub(super) target: Target,
+    pub(super) outage: Outage,
+    /// Whether the engine knows announcements.
+    pub(super) announces: bool,
+    pool: Pool,
+}
+
+impl Link {
+    /// A pool that connects when it is first used.
+    pub(super) fn new(target: Target, announces: bool) -> Result<Link, StoreError> {
+        let config = ManagerConfig { recycling_method: RecyclingMethod::Fast };
+        let manager = Manager::from_config(target.config.clone(), target.tls.clone(), config);
+        let prepare = Hook::async_fn(|client, _| {
+            Box::pin(async move { client.batch_execute(sql::PREPARE_CONNECTION).await.map_err(HookError::Backend) })
+        });
+        let pool = Pool::builder(manager)
+            .max_size(CONNECTIONS)
+            .runtime(Runtime::Tokio1)
+            .wait_timeout(Some(PATIENCE_FOR_CONNECTION))
+            .create_timeout(Some(PATIENCE_FOR_CONNECTION))
+            .recycle_timeout(Some(PATIENCE_FOR_CONNECTION))
+            .post_create(prepare)
+            .build();
+        let pool = pool.map_err(|error| StoreError::Failed(format!("no pool of connections: {error}")))?;
+        Ok(Link { target, outage: Outage::default(), announces, pool })
+    }
+
+    /// A connection of the pool.
+    pub(super) async fn connection(&self) -> Result<Object, Fault> {
+        Ok(self.pool.get().await?)
+    }
+
+    /// The rows of a statement that only reads, or that may be repeated.
+    pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>, StoreError> {
+        call!(self, ANSWER, connection => rows(connection, statement, parameters))
+    }
+
+    /// The first of these rows.
+    pub(super) async fn row(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Option<Row>, StoreError> {
+        Ok(self.rows(statement, parameters).await?.into_iter().next())
+    }
+}
+
+/// How often work has been tried.
+#[derive(Default)]
+pub(super) struct Tries {
+    pauses: Pauses,
+    collisions: usize,
+}
+
+impl Tries {
+    /// Waits before another try, or says that there is to be none.
+    pub(super) async fn bear(&mut self, outage: &Outage, fault: Fault) -> Result<(), StoreError> {
+        match &fault {
+            Fault::Lost(text) if outage.bearable(text) => {}
+            Fault::Again(_) if self.collisions < COLLISIONS => self.collisions += 1,
+            _ => return Err(fault.finally()),
+        }
+        self.pauses.pause().await;
+        Ok(())
+    }
+}
+
+/// The rows of a statement, prepared once on each connection.
+pub(super) async fn rows(
+    connection: &Object,
+    statement: &str,
+    parameters: &[Parameter<'_>],
+) -> Result<Vec<Row>, Fault> {
+    let statement = connection.prepare_cached(statement).await?;
+    Ok(connection.query(&statement, parameters).await?)
+}

@@ -1,0 +1,243 @@
+//! PostgreSQL, shared by many processes: what one has acknowledged all the others find.
+//!
+//! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
+//! sequence of a session decides who wins where several processes move it at once; the primary key of the moves would catch
+//! whatever got past it. Everything else goes through a pool of connections. A lost connection is replaced, and what is
+//! safe to repeat is repeated for a while; then the callers are told that the storage is out of reach.
+//!
+//! `docs/postgres.md` describes the tables and what the engine has to know.
+
+mod alone;
+mod explain;
+mod fault;
+mod flight;
+mod job;
+mod link;
+mod listen;
+mod rows;
+mod schema;
+mod sql;
+mod target;
+mod writer;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use futures::FutureExt as _;
+use jiff::Timestamp;
+use tokio::task::AbortHandle;
+use uuid::Uuid;
+
+use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
+
+use fault::{Fault, Pauses};
+use job::{Change, Job};
+use link::Link;
+use rows::{count, counted};
+use schema::SchemaError;
+use target::Target;
+use writer::Writer;
+
+/// How long a start waits for the database.
+const START: Duration = Duration::from_secs(15);
+/// How long the question whether the database is there may take.
+const READY: Duration = Duration::from_secs(2);
+
+/// Sessions in a PostgreSQL database.
+pub struct PostgresStore {
+    link: Arc<Link>,
+    writer: Writer,
+    changes: Arc<Changes>,
+    listener: AbortHandle,
+}
+
+impl PostgresStore {
+    /// Connects to the database of a URL (`postgres://…` or `postgresql://…`), and makes or updates its tables. A
+    /// database that does not answer is waited for a little, as it may be starting too.
+    ///
+    /// # Errors
+    /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if it or its tables cannot be used.
+    pub async fn open(url: &str) -> Result<PostgresStore, StoreError> {
+        let target = Target::parse(url).map_err(StoreError::Failed)?;
+        let place = target.place();
+        let announces = prepared(&target).await.map_err(|error| match error {
+            StoreError::Unavailable(text) => StoreError::Unavailable(format!("{place}: {text}")),
+            StoreError::Failed(text) => StoreError::Failed(format!("{place}: {text}")),
+            other => other,
+        })?;
+        if !announces {
+            tracing::warn!("the database knows no pg_notify: changes by other processes are looked for once a second");
+        }
+        let link = Arc::new(Link::new(target, announces)?);
+        let changes = Arc::new(Changes::default());
+        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
+        let listener = tokio::spawn(listen::listen(Arc::clone(&link), Arc::clone(&changes))).abort_handle();
+        Ok(PostgresStore { link, writer, changes, listener })
+    }
+}
+
+impl Drop for PostgresStore {
+    fn drop(&mut self) {
+        self.listener.abort();
+    }
+}
+
+/// Brings the tables up to date, and tells whether the engine knows announcements.
+async fn prepared(target: &Target) -> Result<bool, StoreError> {
+    let (begin, mut pauses) = (Instant::now(), Pauses::default());
+    loop {
+        let fault = match target.open().await.map_err(SchemaError::from) {
+            Ok(mut client) => match schema::migrate(&mut client).await {
+                Ok(()) => return Ok(client.batch_execute(sql::PROBE_NOTIFY).await.is_ok()),
+                Err(error) => error.into(),
+            },
+            Err(error) => Fault::from(error),
+        };
+        match fault {
+            Fault::Lost(_) | Fault::Again(_) if begin.elapsed() < START => pauses.pause().await,
+            fault => return Err(fault.finally()),
+        }
+    }
+}
+
+impl From<SchemaError> for Fault {
+    fn from(error: SchemaError) -> Fault {
+        match error {
+            SchemaError::Database(error) => error.into(),
+            newer => Fault::Refused(StoreError::Failed(newer.to_string())),
+        }
+    }
+}
+
+/// The definition of a session as it is stored: exactly the JSON that it was.
+fn definition(session: &Session) -> Result<String, StoreError> {
+    let written = serde_json::to_string(&*session.definition);
+    written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
+}
+
+impl Store for PostgresStore {
+    fn ready(&self) -> Answer<'_, ()> {
+        async {
+            let asked = async { link::once!(self.link, READY, connection => link::rows(connection, sql::READY, &[])) };
+            let asked = tokio::time::timeout(READY, asked).await;
+            match asked.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned()))) {
+                Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
+                Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
+                Err(fault) => Err(fault.finally()),
+            }
+        }
+        .boxed()
+    }
+
+    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        async {
+            let definition = definition(&session)?;
+            let change = Change::Create(session, definition);
+            self.writer.write(|answer| Job { change, receipt, stamp: job::stamp(), answer }).await
+        }
+        .boxed()
+    }
+
+    fn find(&self, id: Uuid) -> Answer<'_, Session> {
+        async move {
+            match self.link.row(sql::FIND, &[&id]).await? {
+                Some(row) => rows::session(&row),
+                None => Err(self.link.missing(id).await),
+            }
+        }
+        .boxed()
+    }
+
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
+        async move {
+            // Nothing lies before the nil identifier, and no session has it.
+            let after = after.unwrap_or(Uuid::nil());
+            let found = self.link.rows(sql::LIST, &[&after, &counted(limit as u64)]).await?;
+            found.iter().map(rows::session).collect()
+        }
+        .boxed()
+    }
+
+    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        let change = Change::Append { id, expected, records };
+        self.writer.write(move |answer| Job { change, receipt, stamp: job::stamp(), answer }).boxed()
+    }
+
+    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
+        async move {
+            let found = self.link.rows(sql::HISTORY, &[&id, &counted(after), &counted(limit as u64)]).await?;
+            if found.is_empty() && self.link.row(sql::SEQUENCE, &[&id]).await?.is_none() {
+                return Err(self.link.missing(id).await);
+            }
+            found.iter().map(rows::record).collect()
+        }
+        .boxed()
+    }
+
+    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        self.link.fork(id, copy, receipt).boxed()
+    }
+
+    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
+        async move {
+            self.link.delete(id, expected).await?;
+            self.changes.wake(id);
+            Ok(())
+        }
+        .boxed()
+    }
+
+    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
+        self.link.receipt(key).boxed()
+    }
+
+    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
+        async move {
+            let kept = self.link.row(sql::SNAPSHOT, &[&id]).await?;
+            if kept.is_none() && self.link.row(sql::SEQUENCE, &[&id]).await?.is_none() {
+                return Err(self.link.missing(id).await);
+            }
+            Ok(kept.as_ref().map(rows::snapshot))
+        }
+        .boxed()
+    }
+
+    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
+        self.link.keep_snapshot(id, snapshot).boxed()
+    }
+
+    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
+        async move {
+            let gone = self.link.sweep(idle_since).await?;
+            gone.iter().for_each(|id| self.changes.wake(*id));
+            Ok(gone.len() as u64)
+        }
+        .boxed()
+    }
+
+    fn changes(&self) -> &Changes {
+        &self.changes
+    }
+
+    fn is_shared(&self) -> bool {
+        true
+    }
+
+    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
+        async move {
+            match self.link.row(sql::SEQUENCE, &[&id]).await? {
+                Some(row) => Ok(count(row.get(0))),
+                None => Err(self.link.missing(id).await),
+            }
+        }
+        .boxed()
+    }
+}
+
+impl Link {
+    /// [`Store::receipt`]
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+        let row = self.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+        row.map(|row| rows::receipt(key, &row)).transpose()
+    }
+}

@@ -1,0 +1,103 @@
+//! The tables, versioned: a database is brought up to date at start, by one replica at a time.
+
+use tokio_postgres::{Client, Error};
+
+/// The migrations, oldest first. A published one is never edited: the version of a database is how many it has seen.
+const MIGRATIONS: [&str; 1] = ["
+CREATE TABLE contacts (
+    id uuid PRIMARY KEY,
+    label text,
+    definition text NOT NULL,
+    sequence bigint NOT NULL,
+    created_at timestamptz NOT NULL,
+    created_ns smallint NOT NULL,
+    updated_at timestamptz NOT NULL,
+    updated_ns smallint NOT NULL
+);
+CREATE TABLE moves (
+    contact uuid NOT NULL,
+    sequence bigint NOT NULL,
+    target_displacement double precision,
+    target_force double precision,
+    target_indentation double precision,
+    target_normal_force double precision,
+    relative boolean NOT NULL,
+    tolerance double precision NOT NULL,
+    displacement double precision NOT NULL,
+    force double precision NOT NULL,
+    indentation double precision NOT NULL,
+    normal_force double precision NOT NULL,
+    contact_radius double precision NOT NULL,
+    stick_radius double precision NOT NULL,
+    regime text NOT NULL,
+    dissipated_energy double precision NOT NULL,
+    elastic_energy double precision NOT NULL,
+    memory_depth bigint NOT NULL,
+    at timestamptz NOT NULL,
+    at_ns smallint NOT NULL,
+    stamp bigint NOT NULL,
+    PRIMARY KEY (contact, sequence)
+);
+CREATE TABLE receipts (
+    key text PRIMARY KEY,
+    fingerprint bytea NOT NULL,
+    created uuid,
+    sequence bigint NOT NULL,
+    body bytea NOT NULL,
+    created_at timestamptz NOT NULL DEFAULT now()
+);
+CREATE INDEX receipts_created_at ON receipts (created_at);
+CREATE TABLE snapshots (
+    contact uuid PRIMARY KEY REFERENCES contacts (id) ON DELETE CASCADE,
+    sequence bigint NOT NULL,
+    state bytea NOT NULL
+);
+CREATE TABLE expired (
+    id uuid PRIMARY KEY,
+    at timestamptz NOT NULL DEFAULT now()
+);
+"];
+
+/// Held while the tables are made, so that of several replicas that start together one makes them: "stickslip" in ASCII,
+/// shortened to eight letters.
+const ADVISORY_LOCK: &str = "SELECT pg_advisory_xact_lock(8319390287385554025)";
+
+const VERSIONS: &str = "
+CREATE TABLE IF NOT EXISTS stickslip_schema (
+    version integer PRIMARY KEY,
+    applied_at timestamptz NOT NULL DEFAULT now()
+)";
+const CURRENT: &str = "SELECT coalesce(max(version), 0) FROM stickslip_schema";
+const APPLIED: &str = "INSERT INTO stickslip_schema (version) VALUES ($1)";
+
+/// Why the tables cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum SchemaError {
+    /// A later version of this program has been here.
+    #[error("the database has schema version {found}, this program knows up to {known}: start the newer program")]
+    Newer { found: i32, known: i32 },
+    /// The database refused or was lost.
+    #[error(transparent)]
+    Database(#[from] Error),
+}
+
+/// Brings the tables up to date.
+pub(super) async fn migrate(client: &mut Client) -> Result<(), SchemaError> {
+    let transaction = client.transaction().await?;
+    transaction.batch_execute(ADVISORY_LOCK).await?;
+    transaction.batch_execute(VERSIONS).await?;
+    let found: i32 = transaction.query_one(CURRENT, &[]).await?.get(0);
+    let mut known = 0;
+    for migration in MIGRATIONS {
+        known += 1;
+        if known > found {
+            transaction.batch_execute(migration).await?;
+            transaction.execute(APPLIED, &[&known]).await?;
+            tracing::info!(version = known, "the database schema has been brought up to date");
+        }
+    }
+    if found > known {
+        return Err(SchemaError::Newer { found, known });
+    }
+    Ok(transaction.commit().await?)
+}

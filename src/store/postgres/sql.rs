@@ -1,0 +1,152 @@
+//! Every statement that is sent, by name. `docs/postgres.md` says which features of the engine they need.
+
+/// Where changes are announced.
+pub(super) const CHANNEL: &str = "stickslip_changes";
+
+/// Bounds for every statement of a connection; and no notices, which only say that a table exists already.
+pub(super) const PREPARE_CONNECTION: &str =
+    "SET statement_timeout = '10s'; SET lock_timeout = '5s'; SET client_min_messages = 'warning'";
+
+/// For the statements that copy or delete whole pasts.
+pub(super) const ALLOW_LONG: &str = "SET LOCAL statement_timeout = '60s'";
+
+pub(super) const BEGIN: &str = "BEGIN ISOLATION LEVEL READ COMMITTED";
+pub(super) const COMMIT: &str = "COMMIT";
+
+/// Locks the sessions of a batch in the order of their identifiers, so that two batches never wait for each other, and
+/// tells where they are.
+pub(super) const LOCK: &str = "SELECT id, sequence FROM contacts WHERE id = ANY($1) ORDER BY id FOR UPDATE";
+
+/// Appends moves to the sessions that are where their movers think they are, and keeps the receipts of these alone.
+pub(super) const APPEND: &str = "
+WITH won AS (
+    UPDATE contacts
+    SET sequence = request.sequence,
+        updated_at = coalesce(request.at, contacts.updated_at),
+        updated_ns = coalesce(request.ns, contacts.updated_ns)
+    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[])
+        AS request (id, expected, sequence, at, ns)
+    WHERE contacts.id = request.id AND contacts.sequence = request.expected
+    RETURNING contacts.id
+), moved AS (
+    INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
+        relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
+        dissipated_energy, elastic_energy, memory_depth, at, at_ns, stamp)
+    SELECT move.*
+    FROM unnest($6::uuid[], $7::bigint[], $8::double precision[], $9::double precision[], $10::double precision[],
+        $11::double precision[], $12::boolean[], $13::double precision[], $14::double precision[],
+        $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
+        $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
+        $24::timestamptz[], $25::smallint[], $26::bigint[]) AS move (contact)
+    JOIN won ON won.id = move.contact
+)
+INSERT INTO receipts (key, fingerprint, created, sequence, body)
+SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
+FROM unnest($27::uuid[], $28::text[], $29::bytea[], $30::uuid[], $31::bigint[], $32::bytea[])
+    AS receipt (contact, key, fingerprint, created, sequence, body)
+JOIN won ON won.id = receipt.contact
+ORDER BY receipt.key";
+
+/// Makes sessions, and keeps the receipts.
+pub(super) const CREATE: &str = "
+WITH made AS (
+    INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns)
+    SELECT * FROM unnest($1::uuid[], $2::text[], $3::text[], $4::bigint[], $5::timestamptz[], $6::smallint[],
+        $7::timestamptz[], $8::smallint[])
+)
+INSERT INTO receipts (key, fingerprint, created, sequence, body)
+SELECT * FROM unnest($9::text[], $10::bytea[], $11::uuid[], $12::bigint[], $13::bytea[]) AS receipt (key)
+ORDER BY receipt.key";
+
+/// Announces changes; a payload names as many sessions as fit.
+pub(super) const NOTIFY: &str = "SELECT pg_notify($1, payload) FROM unnest($2::text[]) AS payload";
+
+/// Asks whether the engine knows announcements at all.
+pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')";
+
+/// Begins to hear announcements.
+pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
+
+/// What became of a request: the sequence of its session, whether that has expired, whether its key is taken, and the
+/// stamp of its last move.
+pub(super) const EXPLAIN: &str = "
+SELECT (SELECT sequence FROM contacts WHERE id = $1),
+    EXISTS (SELECT 1 FROM expired WHERE id = $1),
+    EXISTS (SELECT 1 FROM receipts WHERE key = $2 AND created_at > now() - $3::double precision * INTERVAL '1 second'),
+    (SELECT stamp FROM moves WHERE contact = $1 AND sequence = $4)";
+
+/// Makes room for keys that may be used again.
+pub(super) const FREE_KEYS: &str = "
+DELETE FROM receipts
+WHERE key = ANY($1) AND created_at <= now() - $2::double precision * INTERVAL '1 second'";
+
+pub(super) const READY: &str = "SELECT current_setting('transaction_read_only')";
+
+pub(super) const FIND: &str = "
+SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns FROM contacts WHERE id = $1";
+
+pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
+
+pub(super) const EXPIRED: &str = "SELECT EXISTS (SELECT 1 FROM expired WHERE id = $1)";
+
+pub(super) const LIST: &str = "
+SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns
+FROM contacts WHERE id > $1 ORDER BY id LIMIT $2";
+
+pub(super) const HISTORY: &str = "
+SELECT sequence, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
+    displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
+    elastic_energy, memory_depth, at, at_ns
+FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3";
+
+pub(super) const RECEIPT: &str = "
+SELECT fingerprint, created, sequence, body FROM receipts
+WHERE key = $1 AND created_at > now() - $2::double precision * INTERVAL '1 second'";
+
+pub(super) const SNAPSHOT: &str = "SELECT sequence, state FROM snapshots WHERE contact = $1";
+
+pub(super) const KEEP_SNAPSHOT: &str = "
+INSERT INTO snapshots (contact, sequence, state) SELECT id, $2::bigint, $3::bytea FROM contacts WHERE id = $1
+ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
+WHERE snapshots.sequence < excluded.sequence";
+
+/// Copies the past of `$2` up to `$3`. Nobody has to be locked out: a past only grows.
+pub(super) const COPY_PAST: &str = "
+INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
+    relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
+    dissipated_energy, elastic_energy, memory_depth, at, at_ns, stamp)
+SELECT $1::uuid, sequence, target_displacement, target_force, target_indentation, target_normal_force,
+    relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
+    dissipated_energy, elastic_energy, memory_depth, at, at_ns, stamp
+FROM moves WHERE contact = $2 AND sequence <= $3";
+
+pub(super) const COPY_SNAPSHOT: &str = "
+INSERT INTO snapshots (contact, sequence, state)
+SELECT $1::uuid, sequence, state FROM snapshots WHERE contact = $2 AND sequence <= $3";
+
+pub(super) const DELETE: &str = "DELETE FROM contacts WHERE id = $1 AND sequence = $2";
+
+pub(super) const DELETE_PAST: &str = "DELETE FROM moves WHERE contact = $1";
+
+/// Receipts past their time, some at a time. What another replica is deleting is left to it.
+pub(super) const SWEEP_RECEIPTS: &str = "
+DELETE FROM receipts WHERE key IN (
+    SELECT key FROM receipts WHERE created_at <= now() - $1::double precision * INTERVAL '1 second'
+    ORDER BY created_at LIMIT $2 FOR UPDATE SKIP LOCKED)";
+
+pub(super) const IDLE: &str = "
+SELECT id FROM contacts WHERE (updated_at, updated_ns) < ($1, $2) LIMIT $3";
+
+/// Deletes those of the sessions that are still idle. What another replica moves or deletes meanwhile is left to it.
+pub(super) const SWEEP_IDLE: &str = "
+WITH gone AS (
+    DELETE FROM contacts WHERE id IN (
+        SELECT id FROM contacts WHERE id = ANY($1) AND (updated_at, updated_ns) < ($2, $3)
+        ORDER BY id FOR UPDATE SKIP LOCKED)
+    RETURNING id
+), past AS (
+    DELETE FROM moves WHERE contact IN (SELECT id FROM gone)
+), marked AS (
+    INSERT INTO expired (id) SELECT id FROM gone ON CONFLICT DO NOTHING
+)
+SELECT id FROM gone";

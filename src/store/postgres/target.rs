@@ -1,0 +1,203 @@
+//! Where the database is, and how the way there is protected.
+//!
+//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`Target::place`] says host, database
+//! and user.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use percent_encoding::percent_decode_str;
+use rustls::client::danger::{HandshakeSignatureValid, ServerCertVerified, ServerCertVerifier};
+use rustls::crypto::{CryptoProvider, ring, verify_tls12_signature, verify_tls13_signature};
+use rustls::pki_types::pem::PemObject as _;
+use rustls::pki_types::{CertificateDer, ServerName, UnixTime};
+use rustls::{ClientConfig, DigitallySignedStruct, RootCertStore, SignatureScheme};
+use tokio_postgres::config::Host;
+use tokio_postgres::tls::MakeTlsConnect;
+use tokio_postgres::{Client, Config, Connection, Error, Socket};
+use tokio_postgres_rustls::MakeRustlsConnect;
+
+use super::sql;
+
+/// How long a connection may take to come about, unless the URL says otherwise.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+/// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before it
+/// is tested.
+const SILENCE: Duration = Duration::from_secs(10);
+
+/// A connection whose messages have yet to be driven.
+pub(super) type Driver = Connection<Socket, <MakeRustlsConnect as MakeTlsConnect<Socket>>::Stream>;
+
+/// A database to connect to.
+#[derive(Clone)]
+pub(super) struct Target {
+    pub(super) config: Config,
+    pub(super) tls: MakeRustlsConnect,
+}
+
+impl Target {
+    /// Reads a URL.
+    pub(super) fn parse(url: &str) -> Result<Target, String> {
+        let (url, verification) = split(url)?;
+        let mut config: Config = url.parse().map_err(|error| told(&error))?;
+        if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
+            return Err("the URL names no host".to_owned());
+        }
+        if config.get_connect_timeout().is_none() {
+            config.connect_timeout(CONNECT_TIMEOUT);
+        }
+        if config.get_tcp_user_timeout().is_none() {
+            config.tcp_user_timeout(SILENCE);
+        }
+        if !url.contains("keepalives_idle=") {
+            config.keepalives_idle(SILENCE);
+        }
+        if config.get_application_name().is_none() {
+            config.application_name("stickslip");
+        }
+        Ok(Target { config, tls: MakeRustlsConnect::new(verification.config()?) })
+    }
+
+    /// The database in words, without the password.
+    pub(super) fn place(&self) -> String {
+        let hosts = self.config.get_hosts().iter().map(|host| match host {
+            Host::Tcp(name) => name.clone(),
+            Host::Unix(path) => path.display().to_string(),
+        });
+        let hosts: Vec<String> = hosts.collect();
+        let database = self.config.get_dbname().or(self.config.get_user()).unwrap_or_default();
+        format!("{}/{database}", hosts.join(","))
+    }
+
+    /// Connects, and sets the bounds for statements.
+    pub(super) async fn connect(&self) -> Result<(Client, Driver), Error> {
+        self.config.connect(self.tls.clone()).await
+    }
+
+    /// Connects, leaves the connection to a task of its own, and sets the bounds for statements.
+    pub(super) async fn open(&self) -> Result<Client, Error> {
+        let (client, driver) = self.connect().await?;
+        // It ends when the client is dropped or the connection is lost, which the next statement reports.
+        tokio::spawn(driver);
+        client.batch_execute(sql::PREPARE_CONNECTION).await?;
+        Ok(client)
+    }
+}
+
+/// An error of the driver with what lies under it: alone it says little.
+pub(super) fn told(error: &Error) -> String {
+    let mut text = error.to_string();
+    let mut source = std::error::Error::source(error);
+    while let Some(inner) = source {
+        text = format!("{text}: {inner}");
+        source = inner.source();
+    }
+    text
+}
+
+/// Whom to believe that the server is the right one.
+enum Verification {
+    /// Anybody: the connection is encrypted, as libpq does for `prefer` and `require`.
+    Nobody,
+    /// The certificate authorities of the system.
+    System,
+    /// The certificate authorities in a PEM file.
+    File(String),
+}
+
+/// Takes those TLS options out of a URL that the driver does not know.
+fn split(url: &str) -> Result<(String, Verification), String> {
+    let Some((base, query)) = url.split_once('?') else {
+        return Ok((url.to_owned(), Verification::Nobody));
+    };
+    let (mut rest, mut root, mut full) = (Vec::new(), None, false);
+    for option in query.split('&').filter(|option| !option.is_empty()) {
+        match option.split_once('=') {
+            Some(("sslmode", "verify-full")) => {
+                full = true;
+                rest.push("sslmode=require");
+            }
+            Some(("sslmode", "verify-ca" | "allow")) => {
+                return Err("sslmode may be disable, prefer, require or verify-full".to_owned());
+            }
+            Some(("sslrootcert", path)) => root = Some(percent_decode_str(path).decode_utf8_lossy().into_owned()),
+            _ => rest.push(option),
+        }
+    }
+    let verification = match root {
+        Some(_) if !full => return Err("sslrootcert needs sslmode=verify-full".to_owned()),
+        Some(path) if path != "system" => Verification::File(path),
+        _ if full => Verification::System,
+        _ => Verification::Nobody,
+    };
+    Ok((format!("{base}?{}", rest.join("&")), verification))
+}
+
+impl Verification {
+    fn config(&self) -> Result<ClientConfig, String> {
+        let provider = Arc::new(ring::default_provider());
+        let builder = ClientConfig::builder_with_provider(Arc::clone(&provider));
+        let builder = builder.with_safe_default_protocol_versions().map_err(|error| format!("TLS: {error}"))?;
+        let Some(roots) = self.roots()? else {
+            let anybody = Arc::new(Anybody(provider));
+            return Ok(builder.dangerous().with_custom_certificate_verifier(anybody).with_no_client_auth());
+        };
+        Ok(builder.with_root_certificates(roots).with_no_client_auth())
+    }
+
+    fn roots(&self) -> Result<Option<RootCertStore>, String> {
+        let certificates = match self {
+            Verification::Nobody => return Ok(None),
+            Verification::System => rustls_native_certs::load_native_certs().certs,
+            Verification::File(path) => {
+                let read = CertificateDer::pem_file_iter(path).and_then(Iterator::collect);
+                read.map_err(|error| format!("sslrootcert {path}: {error}"))?
+            }
+        };
+        let mut roots = RootCertStore::empty();
+        let (added, _) = roots.add_parsable_certificates(certificates);
+        if added == 0 {
+            return Err("no certificate authority found to verify the server with".to_owned());
+        }
+        Ok(Some(roots))
+    }
+}
+
+/// Believes every certificate, but checks that the server holds its key.
+#[derive(Debug)]
+struct Anybody(Arc<CryptoProvider>);
+
+impl ServerCertVerifier for Anybody {
+    fn verify_server_cert(
+        &self,
+        _: &CertificateDer<'_>,
+        _: &[CertificateDer<'_>],
+        _: &ServerName<'_>,
+        _: &[u8],
+        _: UnixTime,
+    ) -> Result<ServerCertVerified, rustls::Error> {
+        Ok(ServerCertVerified::assertion())
+    }
+
+    fn verify_tls12_signature(
+        &self,
+        message: &[u8],
+        certificate: &CertificateDer<'_>,
+        signed: &DigitallySignedStruct,
+    ) -> Result<HandshakeSignatureValid, rustls::Error> {
+        verify_tls12_signature(message, certificate, signed, &self.0.signature_verification_algorithms)
+    }
+
+    fn verify_tls13_signature(
+        &self,
+        message: &[u8],
+        certificate: &CertificateDer<'_>,
+        signed: &DigitallySignedStruct,
+    ) -> Result<HandshakeSignatureValid, rustls::Error> {
+        verify_tls13_signature(message, certificate, signed, &self.0.signature_verification_algorithms)
+    }
+
+    fn supported_verify_schemes(&self) -> Vec<SignatureScheme> {
+        self.0.signature_verification_algorithms.supported_schemes()
+    }
+}

@@ -1,0 +1,79 @@
+//! What a failure of SQLite means.
+
+use rusqlite::{Error, ErrorCode, ffi};
+
+use crate::store::StoreError;
+
+/// When a failure came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// Before the changes were to become durable: they have been taken back.
+    Before,
+    /// While they were to become durable.
+    Commit,
+}
+
+/// Whether another attempt at fewer changes may fare better.
+pub(super) fn worth_splitting(error: &Error) -> bool {
+    !matches!(
+        error.sqlite_error_code(),
+        Some(
+            ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked | ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase
+        )
+    ) && !is_sync(error)
+}
+
+/// What a failure of SQLite means to whoever asked for a change or a look.
+pub(super) fn store_error(error: &Error, stage: Stage) -> StoreError {
+    let why = error.to_string();
+    match error.sqlite_error_code() {
+        Some(ErrorCode::DiskFull) => StoreError::Full(why),
+        // A failed sync leaves open what has reached the disk.
+        Some(ErrorCode::SystemIoFailure) if stage == Stage::Commit && is_sync(error) => StoreError::Unavailable(why),
+        // Quotas and shared memory on a full disk come as failures to write.
+        Some(ErrorCode::SystemIoFailure) if is_write(error) => StoreError::Full(why),
+        Some(
+            ErrorCode::DatabaseBusy
+            | ErrorCode::DatabaseLocked
+            | ErrorCode::CannotOpen
+            | ErrorCode::ReadOnly
+            | ErrorCode::OutOfMemory
+            | ErrorCode::SystemIoFailure,
+        ) => StoreError::Unavailable(why),
+        _ => StoreError::Failed(why),
+    }
+}
+
+fn extended(error: &Error) -> i32 {
+    error.sqlite_error().map_or(0, |error| error.extended_code)
+}
+
+fn is_sync(error: &Error) -> bool {
+    matches!(extended(error), ffi::SQLITE_IOERR_FSYNC | ffi::SQLITE_IOERR_DIR_FSYNC)
+}
+
+fn is_write(error: &Error) -> bool {
+    matches!(extended(error), ffi::SQLITE_IOERR_WRITE | ffi::SQLITE_IOERR_SHMSIZE | ffi::SQLITE_IOERR_TRUNCATE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Stage, store_error, worth_splitting};
+    use crate::store::StoreError;
+    use rusqlite::{Error, ffi};
+
+    fn failure(code: i32) -> Error {
+        Error::SqliteFailure(ffi::Error::new(code), None)
+    }
+
+    #[test]
+    fn a_failed_sync_leaves_the_change_in_doubt_and_a_full_disk_does_not() {
+        let of = |code| store_error(&failure(code), Stage::Commit);
+        assert!(matches!(of(ffi::SQLITE_IOERR_FSYNC), StoreError::Unavailable(_)));
+        assert!(matches!(of(ffi::SQLITE_FULL), StoreError::Full(_)));
+        assert!(matches!(of(ffi::SQLITE_IOERR_WRITE), StoreError::Full(_)));
+        assert!(matches!(of(ffi::SQLITE_BUSY), StoreError::Unavailable(_)));
+        assert!(matches!(of(ffi::SQLITE_CORRUPT), StoreError::Failed(_)));
+        assert!(worth_splitting(&failure(ffi::SQLITE_FULL)) && !worth_splitting(&failure(ffi::SQLITE_IOERR_FSYNC)));
+    }
+}

@@ -1,0 +1,198 @@
+//! Opening the file: made whole or not at all, used by one process at a time, and refused untouched if it is not sound.
+
+use std::ffi::OsString;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::FileExt as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rusqlite::config::DbConfig;
+use rusqlite::{Connection, OpenFlags};
+
+use super::schema::{self, APPLICATION, NEWEST};
+use super::{BUSY, torn};
+
+/// What every SQLite file begins with.
+const MAGIC: &[u8] = b"SQLite format 3\0";
+/// Up to this size a file is read whole before it is trusted, which takes a fraction of a second.
+const SMALL: u64 = 32 * 1024 * 1024;
+/// Pages of the write-ahead log (16 MiB) at which its content moves to the file.
+const CHECKPOINT_PAGES: i32 = 4_000;
+/// Bytes of the write-ahead log that are kept on the disk to be written over.
+const LOG_BYTES: i64 = 64 * 1024 * 1024;
+/// KiB of pages that the writer keeps at hand, as SQLite wants it: negative.
+const CACHE: i32 = -65_536;
+/// Statements that the writer keeps prepared.
+const STATEMENTS: usize = 64;
+
+/// A database at the newest version, and the lock that keeps other processes of ours away. The lock is to outlive the
+/// connection: closing any handle of the file ends the locks that SQLite holds on it.
+pub(super) struct Opened {
+    pub(super) database: Connection,
+    pub(super) lock: Arc<File>,
+}
+
+/// Opens the database at a path, or makes one.
+pub(super) fn open(path: &Path) -> Result<Opened, String> {
+    let lock = match OpenOptions::new().read(true).write(true).open(path) {
+        Ok(file) => {
+            lock(&file)?;
+            if length(&file)? == 0 { create(path)? } else { file }
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => create(path)?,
+        Err(error) if error.kind() == ErrorKind::IsADirectory => return Err("it is a folder".to_owned()),
+        Err(error) => return Err(error.to_string()),
+    };
+    let lock = Arc::new(lock);
+    inspect(path, &lock)?;
+    let shared_memory = beside(path, "-shm");
+    let (log, had_log, had_shared_memory) =
+        (beside(path, "-wal"), beside(path, "-wal").exists(), shared_memory.exists());
+    match connect(path) {
+        Ok(database) => Ok(Opened { database, lock }),
+        Err(why) => {
+            // What SQLite has laid beside a file that is refused goes with it.
+            for (file, had) in [(log, had_log), (shared_memory, had_shared_memory)] {
+                if !had
+                    && let Err(error) = std::fs::remove_file(&file)
+                    && error.kind() != ErrorKind::NotFound
+                {
+                    tracing::debug!(%error, file = %file.display(), "could not be removed");
+                }
+            }
+            Err(why)
+        }
+    }
+}
+
+/// Makes a database under another name and renames it when it is whole, so that no crash leaves half of one.
+fn create(path: &Path) -> Result<File, String> {
+    let log = beside(path, "-wal");
+    if std::fs::metadata(&log).is_ok_and(|log| log.len() > 0) {
+        return Err(format!("the file is missing, yet {} is there: put it back beside its log", log.display()));
+    }
+    let young = beside(path, ".new");
+    let made = make(path, &young);
+    if made.is_err() && length_at(path) == 0 {
+        // Best effort: what stays is written over by the next start.
+        let _ = std::fs::remove_file(&young);
+    }
+    made
+}
+
+fn make(path: &Path, young: &Path) -> Result<File, String> {
+    let said = |error: &dyn std::fmt::Display| format!("it cannot be created: {error}");
+    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(young);
+    let file = file.map_err(|error| said(&error))?;
+    lock(&file)?;
+    if length_at(path) > 0 {
+        return Err("another process has just created it".to_owned());
+    }
+    file.set_len(0).map_err(|error| said(&error))?;
+    let mut database = Connection::open_with_flags(young, writing()).map_err(|error| said(&error))?;
+    schema::migrate(&mut database).map_err(|error| said(&error))?;
+    database.close().map_err(|(_, error)| said(&error))?;
+    std::fs::rename(young, path).and_then(|()| sync_folder(path)).map_err(|error| said(&error))?;
+    Ok(file)
+}
+
+/// Looks at the file alone, without SQLite, which would write beside it.
+fn inspect(path: &Path, file: &File) -> Result<(), String> {
+    let mut header = [0; 100];
+    let length = length(file)?;
+    let read = file.read_exact_at(&mut header, 0);
+    if read.is_err() || !header.starts_with(MAGIC) {
+        return Err("it is not an SQLite database, or is cut off".to_owned());
+    }
+    if field(&header, 68) != APPLICATION.cast_unsigned() {
+        return Err("it is an SQLite database of another application".to_owned());
+    }
+    supported(field(&header, 60).cast_signed())?;
+    torn::check(&header, length, &beside(path, "-wal"))
+}
+
+/// Connects the writer, and brings the tables up to date.
+fn connect(path: &Path) -> Result<Connection, String> {
+    let said = |error: rusqlite::Error| match error.sqlite_error_code() {
+        Some(rusqlite::ErrorCode::DatabaseCorrupt | rusqlite::ErrorCode::NotADatabase) => {
+            format!("it is damaged: {error}")
+        }
+        _ => error.to_string(),
+    };
+    let mut database = Connection::open_with_flags(path, writing()).map_err(said)?;
+    // Until it is accepted, nothing moves from the log to the file, not even when the connection is closed.
+    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).map_err(said)?;
+    database.busy_timeout(BUSY).map_err(said)?;
+    supported(schema::version(&database).map_err(said)?)?;
+    if length_at(path) + length_at(&beside(path, "-wal")) <= SMALL {
+        let verdict: String = database.query_row("PRAGMA quick_check(1)", [], |row| row.get(0)).map_err(said)?;
+        if verdict != "ok" {
+            return Err(format!("it is damaged: {}", verdict.replace('\n', " ")));
+        }
+    }
+    let mode: String = database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0)).map_err(said)?;
+    if mode != "wal" {
+        return Err(format!("write-ahead logging is not to be had there, but {mode}"));
+    }
+    database.pragma_update(None, "synchronous", "FULL").map_err(said)?;
+    database.pragma_update(None, "foreign_keys", true).map_err(said)?;
+    database.pragma_update(None, "cache_size", CACHE).map_err(said)?;
+    database.query_row(&format!("PRAGMA wal_autocheckpoint = {CHECKPOINT_PAGES}"), [], |_| Ok(())).map_err(said)?;
+    database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(said)?;
+    database.set_prepared_statement_cache_capacity(STATEMENTS);
+    schema::migrate(&mut database).map_err(said)?;
+    // The version is to stand in the file itself, where the next start looks for it first.
+    database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(said)?;
+    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(said)?;
+    Ok(database)
+}
+
+fn supported(version: i32) -> Result<(), String> {
+    match version {
+        found if found > NEWEST => {
+            Err(format!("its tables are of version {found}, and this program knows them up to version {NEWEST}"))
+        }
+        found if found < 1 => Err("it is not whole: its tables have no version".to_owned()),
+        _ => Ok(()),
+    }
+}
+
+fn lock(file: &File) -> Result<(), String> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err("another process is using it".to_owned()),
+        Err(TryLockError::Error(error)) => Err(format!("it cannot be locked: {error}")),
+    }
+}
+
+fn writing() -> OpenFlags {
+    OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX
+}
+
+/// The file beside `path` whose name is longer by `ending`.
+pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(ending);
+    name.into()
+}
+
+/// A field of the header of an SQLite file.
+pub(super) fn field(header: &[u8], offset: usize) -> u32 {
+    header[offset..offset + 4].iter().fold(0, |value, byte| value << 8 | u32::from(*byte))
+}
+
+fn length(file: &File) -> Result<u64, String> {
+    let about = file.metadata().map_err(|error| error.to_string())?;
+    if about.is_file() { Ok(about.len()) } else { Err("it is not a file".to_owned()) }
+}
+
+fn length_at(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |about| about.len())
+}
+
+/// Makes a rename durable.
+fn sync_folder(path: &Path) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(folder)?.sync_all()
+}

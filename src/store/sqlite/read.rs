@@ -1,0 +1,90 @@
+//! The questions that readers ask. Each is asked within one transaction, and so sees one state of the database.
+
+use jiff::Timestamp;
+use rusqlite::{Connection, OptionalExtension as _, params};
+use uuid::Uuid;
+
+use crate::store::{Receipt, Record, Session, Snapshot, StoreError};
+
+use super::readers::ReadError;
+use super::rows::{
+    MOVE_COLUMNS, SESSION_COLUMNS, SESSIONS, bound, identifier, integer, natural, receipt, record, session,
+};
+
+/// Sessions that one look for idle ones passes.
+const IDLE_PAGE: i64 = 1_000;
+
+/// Whether the database can be read at all.
+pub(super) fn alive(database: &Connection) -> Result<(), ReadError> {
+    Ok(database.prepare_cached("SELECT number FROM contacts LIMIT 1")?.exists([]).map(drop)?)
+}
+
+pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, ReadError> {
+    let mut statement =
+        database.prepare_cached(&format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE c.id = ?1"))?;
+    let found = statement.query_row([id.to_string()], session).optional()?;
+    found.map_or_else(|| Err(missing(database, id)?), Ok)
+}
+
+pub(super) fn list(database: &Connection, after: Option<Uuid>, limit: usize) -> Result<Vec<Session>, ReadError> {
+    // Every identifier comes after the empty text.
+    let after = after.map_or_else(String::new, |id| id.to_string());
+    let sql = format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE c.id > ?1 ORDER BY c.id LIMIT ?2");
+    let mut statement = database.prepare_cached(&sql)?;
+    let found = statement.query_map(params![after, integer(limit as u64)?], session)?;
+    Ok(found.collect::<Result<_, _>>()?)
+}
+
+pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, ReadError> {
+    let number = number(database, id)?;
+    let Ok(after) = integer(after) else { return Ok(Vec::new()) };
+    let sql =
+        format!("SELECT {MOVE_COLUMNS} FROM moves WHERE contact = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3");
+    let mut statement = database.prepare_cached(&sql)?;
+    let found = statement.query_map(params![number, after, integer(limit as u64)?], record)?;
+    Ok(found.collect::<Result<_, _>>()?)
+}
+
+pub(super) fn kept(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, ReadError> {
+    let sql = "SELECT key, fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
+    let mut statement = database.prepare_cached(sql)?;
+    Ok(statement.query_row(params![key, bound(not_before)], receipt).optional()?)
+}
+
+pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, ReadError> {
+    let number = number(database, id)?;
+    let mut statement = database.prepare_cached("SELECT sequence, state FROM snapshots WHERE contact = ?1")?;
+    let found = statement.query_row([number], |row| Ok(Snapshot { sequence: natural(row, 0)?, state: row.get(1)? }));
+    Ok(found.optional()?)
+}
+
+/// The sessions of a page that have not moved since a time, and where the next page begins, if there is one.
+pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Result<(Vec<Uuid>, Option<i64>), ReadError> {
+    let sql = format!(
+        "SELECT c.number, c.id, iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?1 FROM {SESSIONS}
+         WHERE c.number > ?2 ORDER BY c.number LIMIT ?3"
+    );
+    let mut statement = database.prepare_cached(&sql)?;
+    let mut rows = statement.query(params![bound(since), after, IDLE_PAGE])?;
+    let (mut idle, mut passed, mut last) = (Vec::new(), 0, after);
+    while let Some(row) = rows.next()? {
+        passed += 1;
+        last = row.get(0)?;
+        if row.get(2)? {
+            idle.push(identifier(row, 1)?);
+        }
+    }
+    Ok((idle, (passed == IDLE_PAGE).then_some(last)))
+}
+
+fn number(database: &Connection, id: Uuid) -> Result<i64, ReadError> {
+    let mut statement = database.prepare_cached("SELECT number FROM contacts WHERE id = ?1")?;
+    let found = statement.query_row([id.to_string()], |row| row.get(0)).optional()?;
+    found.map_or_else(|| Err(missing(database, id)?), Ok)
+}
+
+/// Why there is no such session.
+fn missing(database: &Connection, id: Uuid) -> Result<ReadError, ReadError> {
+    let expired = database.prepare_cached("SELECT id FROM expired WHERE id = ?1")?.exists([id.to_string()])?;
+    Ok(ReadError::Store(if expired { StoreError::Expired } else { StoreError::NotFound }))
+}

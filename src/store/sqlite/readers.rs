@@ -1,0 +1,111 @@
+//! Looking at the database beside the writer. In write-ahead mode neither waits for the other.
+
+use std::fs::File;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rusqlite::{Connection, OpenFlags};
+use tokio::sync::Semaphore;
+use tokio::task::spawn_blocking;
+
+use crate::store::StoreError;
+
+use super::fault::{Stage, store_error};
+
+/// Looks at a time; more would only crowd each other out.
+const READERS: usize = 4;
+/// Statements that a connection keeps prepared.
+const STATEMENTS: usize = 32;
+
+/// Connections that can only read, made when they are first needed.
+pub(super) struct Readers {
+    permits: Arc<Semaphore>,
+    idle: Arc<Idle>,
+}
+
+/// The connections that nobody uses, and what they need to be made.
+struct Idle {
+    // A std mutex: held for a push or a pop.
+    connections: Mutex<Vec<Connection>>,
+    path: PathBuf,
+    // Dropped after the connections: to close any handle of the file would end the locks that SQLite holds on it.
+    _lock: Arc<File>,
+}
+
+/// Why a look came to nothing.
+pub(super) enum ReadError {
+    /// The answer is a refusal.
+    Store(StoreError),
+    /// SQLite failed.
+    Sqlite(rusqlite::Error),
+}
+
+impl From<rusqlite::Error> for ReadError {
+    fn from(error: rusqlite::Error) -> Self {
+        ReadError::Sqlite(error)
+    }
+}
+
+impl From<ReadError> for StoreError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Store(error) => error,
+            ReadError::Sqlite(error) => store_error(&error, Stage::Before),
+        }
+    }
+}
+
+impl Readers {
+    pub(super) fn new(path: PathBuf, lock: Arc<File>) -> Readers {
+        let idle = Idle { connections: Mutex::default(), path, _lock: lock };
+        Readers { permits: Arc::new(Semaphore::new(READERS)), idle: Arc::new(idle) }
+    }
+
+    /// Looks at one state of the database, on the blocking pool.
+    pub(super) async fn run<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,
+    ) -> Result<T, StoreError> {
+        let permit = Arc::clone(&self.permits).acquire_owned().await;
+        let idle = Arc::clone(&self.idle);
+        let task = spawn_blocking(move || {
+            let connection = idle.take()?;
+            let found = connection.unchecked_transaction().map_err(ReadError::from).and_then(|one| look(&one));
+            idle.put(connection);
+            drop(permit);
+            found
+        });
+        match task.await {
+            Ok(found) => found.map_err(StoreError::from),
+            Err(_) => Err(StoreError::Failed("a look at the database panicked".to_owned())),
+        }
+    }
+
+    /// Closes what nobody uses.
+    pub(super) fn close(&self) {
+        self.idle.lock().clear();
+    }
+}
+
+impl Idle {
+    fn take(&self) -> rusqlite::Result<Connection> {
+        if let Some(connection) = self.lock().pop() {
+            return Ok(connection);
+        }
+        let connection = Connection::open_with_flags(
+            &self.path,
+            OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX,
+        )?;
+        connection.busy_timeout(super::BUSY)?;
+        connection.set_prepared_statement_cache_capacity(STATEMENTS);
+        Ok(connection)
+    }
+
+    fn put(&self, connection: Connection) {
+        self.lock().push(connection);
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Connection>> {
+        self.connections.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,223 @@
+//! The one thread that writes. Requests that wait share a transaction, and so the wait for the disk; nobody is answered
+//! before it is durable.
+//!
+//! Each request is checked before it writes, so that a refusal spoils nothing for its neighbours. When SQLite itself
+//! fails, the transaction is taken back and its requests are tried one by one.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use rusqlite::Connection;
+use tokio::sync::mpsc::error::TryRecvError;
+use tokio::sync::{mpsc, oneshot};
+
+use crate::store::{Changes, StoreError};
+
+use super::change::{Change, Done, Fork, Undone};
+use super::fault::{Stage, store_error, worth_splitting};
+use super::fork::{self, Copying};
+
+/// Requests that share a transaction.
+const BATCH: usize = 512;
+/// Rows that they may write before the transaction ends.
+const BATCH_WEIGHT: usize = 10_000;
+
+/// A change somebody waits for.
+pub(super) struct Request {
+    pub(super) change: Change,
+    pub(super) reply: Reply,
+}
+
+/// Where the outcome of a change goes.
+type Reply = oneshot::Sender<Result<u64, StoreError>>;
+
+/// The state of the writing thread.
+pub(super) struct Writer {
+    database: Connection,
+    changes: Arc<Changes>,
+    /// A number that no session has had.
+    next_number: i64,
+    /// Forks under way; the first of them is being copied.
+    forks: VecDeque<(Fork, Copying, Reply)>,
+    /// Whether there may be moves without an owner.
+    unowned: bool,
+    /// Whether the last transaction succeeded: work that nobody waits for rests where it cannot.
+    healthy: bool,
+}
+
+/// A transaction that failed, taken back.
+struct Failure {
+    error: rusqlite::Error,
+    stage: Stage,
+}
+
+impl Writer {
+    pub(super) fn new(database: Connection, changes: Arc<Changes>) -> rusqlite::Result<Writer> {
+        fork::abandon_all(&database)?;
+        let sql = "SELECT max(coalesce((SELECT max(number) FROM contacts), 0),
+                              coalesce((SELECT max(contact) FROM moves), 0),
+                              coalesce((SELECT max(contact) FROM unowned), 0))";
+        let highest: i64 = database.query_row(sql, [], |row| row.get(0))?;
+        let forks = VecDeque::new();
+        Ok(Writer { database, changes, next_number: highest + 1, forks, unowned: true, healthy: true })
+    }
+
+    /// Serves until nobody can ask any more, then leaves the database file whole.
+    pub(super) fn run(mut self, mut requests: mpsc::Receiver<Request>) {
+        loop {
+            let chores = !self.forks.is_empty() || (self.healthy && self.unowned);
+            let first = if chores {
+                match requests.try_recv() {
+                    Ok(request) => Some(request),
+                    Err(TryRecvError::Empty) => None,
+                    Err(TryRecvError::Disconnected) => break,
+                }
+            } else {
+                match requests.blocking_recv() {
+                    Some(request) => Some(request),
+                    None => break,
+                }
+            };
+            if let Some(first) = first {
+                self.serve(gather(first, &mut requests));
+            }
+            self.chore();
+        }
+        for (_, _, reply) in self.forks.drain(..) {
+            answer(reply, Err(StoreError::Unavailable("the store is closing".to_owned())));
+        }
+        if let Err(error) = self.database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())) {
+            tracing::warn!(%error, "the write-ahead log could not be merged; the next start does it");
+        }
+    }
+
+    /// Makes changes durable together, then answers; or, where that fails, each alone.
+    fn serve(&mut self, batch: Vec<Request>) {
+        match self.attempt(&batch) {
+            Ok(outcomes) => {
+                for (request, outcome) in batch.into_iter().zip(outcomes) {
+                    self.finish(request, outcome);
+                }
+            }
+            Err(failure) if batch.len() > 1 && worth_splitting(&failure.error) => {
+                for request in batch {
+                    self.serve(vec![request]);
+                }
+            }
+            Err(Failure { error, stage }) => {
+                tracing::error!(%error, requests = batch.len(), "the database does not take changes");
+                for request in batch {
+                    answer(request.reply, Err(store_error(&error, stage)));
+                }
+            }
+        }
+    }
+
+    fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
+        let mut number = self.next_number;
+        let outcomes = self.transaction(|database| {
+            let mut outcomes = Vec::with_capacity(batch.len());
+            for request in batch {
+                outcomes.push(match request.change.make(database, number) {
+                    Ok(done) => Ok(done),
+                    Err(Undone::Refused(error)) => Err(error),
+                    Err(Undone::Failed(error)) => return Err(error),
+                });
+                number += 1;
+            }
+            Ok(outcomes)
+        })?;
+        self.next_number = number;
+        Ok(outcomes)
+    }
+
+    fn finish(&mut self, request: Request, outcome: Result<Done, StoreError>) {
+        let Request { change, reply } = request;
+        let made = match outcome {
+            Err(error) => return answer(reply, Err(error)),
+            Ok(Done::Made(count)) => count,
+            Ok(Done::Copying(copying)) => {
+                if let Change::Fork(fork) = change {
+                    self.forks.push_back((*fork, copying, reply));
+                }
+                return;
+            }
+        };
+        self.unowned |= matches!(change, Change::Delete { .. } | Change::Expire { .. });
+        // Answered first: whoever waits for the reply is in more of a hurry than whoever watches.
+        answer(reply, Ok(made));
+        change.touched().iter().for_each(|id| self.changes.wake(*id));
+    }
+
+    /// One step of what takes long.
+    fn chore(&mut self) {
+        if let Some((fork, copying, reply)) = self.forks.pop_front() {
+            let mut proceeded = copying;
+            // A refusal has written a part of the copy and nothing else, and that part is removed later.
+            let step = self.transaction(|database| match fork.proceed(database, &mut proceeded) {
+                Ok(complete) => Ok(Ok(complete)),
+                Err(Undone::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
+                Err(Undone::Failed(error)) => Err(error),
+            });
+            match step {
+                Ok(Ok(false)) => self.forks.push_front((fork, proceeded, reply)),
+                Ok(Ok(true)) => answer(reply, Ok(0)),
+                Ok(Err(error)) => {
+                    self.unowned = true;
+                    answer(reply, Err(error));
+                }
+                Err(Failure { error, stage }) => {
+                    self.unowned |= self.transaction(|database| copying.abandon(database)).is_ok();
+                    answer(reply, Err(store_error(&error, stage)));
+                }
+            }
+        } else if self.unowned && self.healthy {
+            match self.transaction(fork::remove_unowned) {
+                Ok(more) => self.unowned = more,
+                Err(Failure { error, .. }) => tracing::warn!(%error, "deleted moves could not be removed for now"),
+            }
+        }
+    }
+
+    /// Runs a transaction to its durable end, or takes it back.
+    fn transaction<T>(&mut self, work: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> Result<T, Failure> {
+        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database));
+        let outcome = match done {
+            Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
+            Err(error) => Err((error, Stage::Before)),
+        };
+        self.healthy = outcome.is_ok();
+        outcome.map_err(|(error, stage)| {
+            // Some failures end the transaction by themselves.
+            if !self.database.is_autocommit()
+                && let Err(error) = self.run_statement("ROLLBACK")
+            {
+                tracing::error!(%error, "a transaction could not be taken back");
+            }
+            Failure { error, stage }
+        })
+    }
+
+    fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {
+        self.database.prepare_cached(sql)?.execute([]).map(drop)
+    }
+}
+
+/// A request with those that wait behind it.
+fn gather(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<Request> {
+    let mut weight = first.change.weight();
+    let mut batch = vec![first];
+    while batch.len() < BATCH
+        && weight < BATCH_WEIGHT
+        && let Ok(request) = requests.try_recv()
+    {
+        weight += request.change.weight();
+        batch.push(request);
+    }
+    batch
+}
+
+fn answer(reply: Reply, outcome: Result<u64, StoreError>) {
+    // Whoever has left does not want to know.
+    let _ = reply.send(outcome);
+}

@@ -1,0 +1,74 @@
+//! The real binary as a process of its own.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, Output, Stdio};
+
+use stickslip::client::Client;
+
+/// A server that can be killed. What still runs at the end of a test is killed too.
+pub struct Process {
+    // None once it has ended.
+    child: Option<Child>,
+    pub base: String,
+    pub client: Client,
+}
+
+fn command(store: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+    command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
+    command
+}
+
+impl Process {
+    /// Starts a server over a store and waits until it listens.
+    pub async fn start(store: &str) -> Process {
+        let mut child = command(store).stdout(Stdio::piped()).spawn().unwrap();
+        let stdout = child.stdout.take().unwrap();
+        let read = move || BufReader::new(stdout).lines().next();
+        let line = tokio::task::spawn_blocking(read).await.unwrap();
+        let Some(Ok(line)) = line else {
+            panic!("the server ended at once: {:?}", child.wait());
+        };
+        let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
+        Process { child: Some(child), base: base.to_owned(), client: Client::new(base) }
+    }
+
+    /// SIGKILL, and the end awaited.
+    pub async fn kill(mut self) {
+        let mut child = self.child.take().unwrap();
+        child.kill().unwrap();
+        tokio::task::spawn_blocking(move || child.wait().unwrap()).await.unwrap();
+    }
+
+    /// SIGTERM, and a graceful end awaited.
+    pub async fn stop(mut self) {
+        let mut child = self.child.take().unwrap();
+        let told = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+        assert!(told.success());
+        let status = tokio::task::spawn_blocking(move || child.wait().unwrap()).await.unwrap();
+        assert!(status.success(), "{status}");
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.child {
+            // It may have ended by itself.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+/// What a server says that cannot start: its output, once it has ended by itself.
+pub fn refused(store: &str) -> Output {
+    let mut child = command(store).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    for _ in 0..1000 {
+        if child.try_wait().unwrap().is_some() {
+            return child.wait_with_output().unwrap();
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    panic!("the server started: {:?}", child.wait_with_output().unwrap());
+}

@@ -1,0 +1,269 @@
+//! What the PostgreSQL store promises beyond what every store does.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::create;
+use common::postgres::Cluster;
+use futures::future::join_all;
+use jiff::Timestamp;
+use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError};
+use stickslip::wire::{ContactDefinition, Move, Regime, State};
+use uuid::Uuid;
+
+fn session() -> Session {
+    let ball = create();
+    let (profile, material) = (ball.profile, ball.material);
+    let definition = ContactDefinition { profile, material, friction: 0.1 + 0.2, preload: ball.preload };
+    let at = Timestamp::from_nanosecond(1_700_000_000_123_456_789).unwrap();
+    Session {
+        id: Uuid::now_v7(),
+        label: Some("Kugel auf Ebene: μ'\\".to_owned()),
+        definition: Arc::new(definition),
+        sequence: 0,
+        created_at: at,
+        updated_at: at,
+    }
+}
+
+fn record(sequence: u64, displacement: f64) -> Record {
+    Record {
+        sequence,
+        step: Move { displacement: Some(displacement), ..Move::default() },
+        tolerance: 1e-10,
+        state: State {
+            displacement,
+            force: -0.0,
+            indentation: f64::from_bits(1),
+            normal_force: f64::MAX,
+            contact_radius: f64::MIN_POSITIVE,
+            stick_radius: 0.1 + 0.2,
+            regime: Regime::PartialSlip,
+            dissipated_energy: 1e-320,
+            elastic_energy: -5e-324,
+            memory_depth: 3,
+        },
+        at: Timestamp::from_nanosecond(1_700_000_001_000_000_001 + i128::from(sequence)).unwrap(),
+    }
+}
+
+fn receipt(key: &str) -> Option<Receipt> {
+    let request = RequestKey { key: key.to_owned(), fingerprint: [7; 32] };
+    Some(Receipt { request, reply: Reply { created: None, sequence: 1, body: b"{\"a\": 1}".to_vec() } })
+}
+
+async fn open() -> PostgresStore {
+    PostgresStore::open(&Cluster::shared().database().await).await.unwrap()
+}
+
+#[tokio::test]
+async fn numbers_and_times_come_back_to_the_last_bit() {
+    let store = open().await;
+    let new = session();
+    store.create(new.clone(), None).await.unwrap();
+    assert_eq!(store.find(new.id).await.unwrap(), new);
+    let records: Vec<Record> = [-0.0, 5e-324, -1e-310, 0.1, 1e300]
+        .into_iter()
+        .zip(1..)
+        .map(|(value, sequence)| record(sequence, value))
+        .collect();
+    store.append(new.id, 0, records.clone(), None).await.unwrap();
+    let found = store.history(new.id, 0, 10).await.unwrap();
+    // Debug tells -0.0 from 0.0, and prints every other number so that it reads back the same.
+    assert_eq!(format!("{found:?}"), format!("{records:?}"));
+    assert_eq!(store.find(new.id).await.unwrap().updated_at, records[4].at);
+}
+
+#[tokio::test]
+async fn of_many_who_move_one_session_at_once_one_wins_in_every_process() {
+    let url = Cluster::shared().database().await;
+    let stores = [PostgresStore::open(&url).await.unwrap(), PostgresStore::open(&url).await.unwrap()];
+    let ids: Vec<Uuid> = join_all((0..8).map(|_| async {
+        let new = session();
+        stores[0].create(new.clone(), None).await.unwrap();
+        new.id
+    }))
+    .await;
+    for round in 0..20 {
+        // Opposite orders, which would deadlock if batches locked in the order of arrival.
+        let forward = ids.iter().map(|id| (&stores[0], *id));
+        let backward = ids.iter().rev().map(|id| (&stores[1], *id));
+        let attempts = forward.chain(backward).map(|(store, id)| async move {
+            let step = record(round + 1, 1.0);
+            (id, store.append(id, round, vec![step], None).await)
+        });
+        let results = join_all(attempts).await;
+        for id in &ids {
+            let of_this = results.iter().filter(|(of, _)| of == id);
+            let won = of_this.clone().filter(|(_, result)| result.is_ok()).count();
+            let lost =
+                of_this.filter(|(_, result)| matches!(result, Err(StoreError::Stale { found }) if *found == round + 1));
+            assert_eq!((won, lost.count()), (1, 1), "round {round}");
+        }
+    }
+    for id in ids {
+        assert_eq!(stores[0].history(id, 0, 100).await.unwrap().len(), 20);
+    }
+}
+
+#[tokio::test]
+async fn one_that_fails_does_not_fail_those_beside_it() {
+    let store = open().await;
+    let (good, stale) = (session(), session());
+    store.create(good.clone(), None).await.unwrap();
+    store.create(stale.clone(), receipt("taken")).await.unwrap();
+    let other = session();
+    store.create(other.clone(), None).await.unwrap();
+    // Started together, they wait for the same transaction.
+    let (a, b, c, d, e) = futures::join!(
+        store.append(good.id, 0, vec![record(1, 1.0)], receipt("fresh")),
+        store.append(stale.id, 7, vec![record(8, 1.0)], receipt("unused")),
+        store.append(other.id, 0, vec![record(1, 1.0)], receipt("taken")),
+        store.append(Uuid::now_v7(), 0, vec![record(1, 1.0)], None),
+        store.create(session(), None),
+    );
+    assert!(a.is_ok() && e.is_ok(), "{a:?} {e:?}");
+    assert!(matches!(b, Err(StoreError::Stale { found: 0 })), "{b:?}");
+    assert!(matches!(c, Err(StoreError::KeyTaken)), "{c:?}");
+    assert!(matches!(d, Err(StoreError::NotFound)), "{d:?}");
+    assert_eq!(store.find(other.id).await.unwrap().sequence, 0);
+    assert!(store.history(other.id, 0, 10).await.unwrap().is_empty());
+    assert_eq!(store.receipt("unused").await.unwrap(), None);
+    assert_eq!(store.receipt("fresh").await.unwrap(), receipt("fresh"));
+}
+
+#[tokio::test]
+async fn replicas_that_start_together_make_the_tables_once_and_a_newer_schema_is_refused() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let opened = join_all((0..6).map(|_| PostgresStore::open(&url))).await;
+    assert!(opened.iter().all(Result::is_ok), "{:?}", opened.iter().filter_map(|one| one.as_ref().err()).next());
+    let name = url.rsplit('/').next().unwrap();
+    cluster.execute(name, "INSERT INTO stickslip_schema (version) VALUES (999)").await;
+    let refused = PostgresStore::open(&url).await.err().unwrap().to_string();
+    assert!(refused.contains("schema version 999") && !refused.contains('@'), "{refused}");
+}
+
+#[tokio::test]
+async fn a_key_may_be_used_again_after_its_time() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let store = PostgresStore::open(&url).await.unwrap();
+    let new = session();
+    store.create(new.clone(), receipt("key")).await.unwrap();
+    let name = url.rsplit('/').next().unwrap();
+    let older = |hours: u32| format!("UPDATE receipts SET created_at = now() - INTERVAL '{hours} hours'");
+    cluster.execute(name, &older(23)).await;
+    assert!(matches!(store.append(new.id, 0, vec![record(1, 1.0)], receipt("key")).await, Err(StoreError::KeyTaken)));
+    cluster.execute(name, &older(25)).await;
+    assert_eq!(store.receipt("key").await.unwrap(), None);
+    store.append(new.id, 0, vec![record(1, 1.0)], receipt("key")).await.unwrap();
+    cluster.execute(name, &older(25)).await;
+    store.fork(new.id, Session { id: Uuid::now_v7(), sequence: 1, ..new.clone() }, receipt("key")).await.unwrap();
+    cluster.execute(name, &older(25)).await;
+    store.sweep(None).await.unwrap();
+    cluster.execute(name, &older(1)).await;
+    assert_eq!(store.receipt("key").await.unwrap(), None);
+}
+
+#[tokio::test]
+async fn several_sweep_at_once_and_each_idle_session_goes_once() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let stores = join_all((0..3).map(|_| PostgresStore::open(&url))).await;
+    let stores: Vec<PostgresStore> = stores.into_iter().map(Result::unwrap).collect();
+    let idle: Vec<Session> = (0..230).map(|_| session()).collect();
+    join_all(idle.iter().map(|one| stores[0].create(one.clone(), None))).await;
+    let fresh = Session { updated_at: Timestamp::now(), ..session() };
+    stores[0].create(fresh.clone(), None).await.unwrap();
+    // The session was last moved at this very nanosecond, and so not before it.
+    let not_yet = join_all(stores.iter().map(|store| store.sweep(Some(idle[0].updated_at)))).await;
+    assert!(not_yet.into_iter().all(|count| count.unwrap() == 0));
+    let swept = join_all(stores.iter().map(|store| store.sweep(Some(fresh.updated_at)))).await;
+    assert_eq!(swept.into_iter().map(Result::unwrap).sum::<u64>(), 230);
+    assert!(matches!(stores[1].find(idle[7].id).await, Err(StoreError::Expired)));
+    assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired)));
+    assert_eq!(stores[1].list(None, 1000).await.unwrap(), [fresh]);
+}
+
+#[tokio::test]
+async fn changes_by_another_process_wake_those_who_wait() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let (here, there) = (PostgresStore::open(&url).await.unwrap(), PostgresStore::open(&url).await.unwrap());
+    let new = session();
+    here.create(new.clone(), None).await.unwrap();
+    // The listener's start wakes everybody too: it must be behind before a wake-up proves anything.
+    let mut waits = there.changes().subscribe(new.id);
+    for round in 0..3 {
+        here.append(new.id, round, vec![record(round + 1, 1.0)], None).await.unwrap();
+        soon(waits.changed()).await.unwrap();
+        waits.mark_unchanged();
+    }
+    here.delete(new.id, 3).await.unwrap();
+    soon(waits.changed()).await.unwrap();
+}
+
+#[tokio::test]
+async fn an_engine_without_announcements_serves_too() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    let name = url.rsplit('/').next().unwrap();
+    let plain = url.replace("stickslip@", "plain@");
+    cluster
+        .execute(
+            name,
+            "CREATE ROLE plain LOGIN; GRANT ALL ON SCHEMA public TO plain; \
+             REVOKE EXECUTE ON FUNCTION pg_notify FROM PUBLIC",
+        )
+        .await;
+    let (here, there) = (PostgresStore::open(&plain).await.unwrap(), PostgresStore::open(&plain).await.unwrap());
+    let new = session();
+    here.create(new.clone(), None).await.unwrap();
+    let mut waits = there.changes().subscribe(new.id);
+    here.append(new.id, 0, vec![record(1, 1.0)], None).await.unwrap();
+    soon(waits.changed()).await.unwrap();
+    here.delete(new.id, 1).await.unwrap();
+}
+
+#[tokio::test]
+async fn tls_is_used_and_verified_as_the_url_says() {
+    let cluster = Cluster::start();
+    let url = cluster.database().await.replace("127.0.0.1", "localhost");
+    let certificate = cluster.encrypt();
+    let open = async |options: &str| PostgresStore::open(&format!("{url}?{options}")).await.map(drop);
+    let other = tempfile::NamedTempFile::new().unwrap();
+    let full = format!("sslmode=verify-full&sslrootcert={}", certificate.display());
+    // The server lets nobody in without TLS.
+    for good in ["sslmode=require", "sslmode=prefer", "", &full] {
+        open(good).await.unwrap_or_else(|error| panic!("{good}: {error}"));
+    }
+    assert!(open("sslmode=disable").await.unwrap_err().to_string().contains("no encryption"));
+    // Nobody vouches for this certificate, and it is not for this host.
+    let by_the_system = open("sslmode=verify-full").await.unwrap_err().to_string();
+    assert!(by_the_system.contains("certificate"), "{by_the_system}");
+    let elsewhere = format!("{}?{full}", url.replace("localhost", "127.0.0.1"));
+    let elsewhere = PostgresStore::open(&elsewhere).await.err().unwrap().to_string();
+    assert!(elsewhere.contains("certificate"), "{elsewhere}");
+    let nothing = open(&format!("sslmode=verify-full&sslrootcert={}", other.path().display())).await;
+    assert!(nothing.unwrap_err().to_string().contains("no certificate authority"));
+}
+
+#[tokio::test]
+async fn a_password_is_never_shown() {
+    for url in [
+        "postgres://me:secret@127.0.0.1:port/db",
+        "postgres://me:secret@host/db?sslmode=verify-ca",
+        "postgres://me:secret@host/db?unheard=of",
+        "postgre://me:secret@host/db",
+        "postgres:me:secret@host",
+    ] {
+        let refused = stickslip::store::open(url).await.map(drop).unwrap_err().to_string();
+        assert!(!refused.contains("secret"), "{refused}");
+    }
+}
+
+async fn soon<T>(future: impl Future<Output = T>) -> T {
+    tokio::time::timeout(std::time::Duration::from_secs(20), future).await.expect("nothing happened")
+}

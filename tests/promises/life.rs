@@ -1,0 +1,143 @@
+//! Sessions are made, moved, forked and deleted.
+
+use std::sync::Arc;
+
+use futures::future::join_all;
+use stickslip::store::{Session, Store, StoreError};
+use uuid::Uuid;
+
+use super::{exact, record, records, session, snapshot, stored};
+
+pub async fn what_is_stored_is_found(store: &dyn Store) {
+    store.ready().await.unwrap();
+    for label in [None, Some(""), Some("Ärger 'with' \"quotes\" \u{1f980}")] {
+        let mut made = session(label);
+        made.updated_at = made.created_at + jiff::SignedDuration::from_nanos(1);
+        store.create(made.clone(), None).await.unwrap();
+        assert_eq!(exact(&store.find(made.id).await.unwrap()), exact(&made));
+        assert!(store.history(made.id, 0, 10).await.unwrap().is_empty());
+        assert_eq!(store.snapshot(made.id).await.unwrap(), None);
+    }
+    let nobody = Uuid::now_v7();
+    assert!(matches!(store.find(nobody).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.history(nobody, 0, 1).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.snapshot(nobody).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.append(nobody, 0, records(0, 1), None).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.fork(nobody, session(None), None).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.delete(nobody, 0).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.receipt("nobody's").await, Ok(None)));
+}
+
+pub async fn sessions_are_listed_in_order_and_by_pages(store: &dyn Store) {
+    let before = session(None).id;
+    let mut made = Vec::new();
+    for moves in [0, 3, 0, 1, 2] {
+        made.push(stored(store, moves).await.0);
+    }
+    let (mut seen, mut after): (Vec<Session>, _) = (Vec::new(), Some(before));
+    loop {
+        let page = store.list(after, 2).await.unwrap();
+        assert!(page.len() <= 2);
+        let Some(last) = page.last() else { break };
+        after = Some(last.id);
+        seen.extend(page);
+    }
+    assert_eq!(exact(&seen), exact(&made));
+    assert!(store.list(None, 1).await.unwrap()[0].id <= made[0].id);
+}
+
+pub async fn moves_are_appended_at_the_expected_sequence_alone(store: &dyn Store) {
+    let (mut session, mut past) = stored(store, 3).await;
+    for wrong in [0, 2, 4] {
+        let refused = store.append(session.id, wrong, records(wrong, wrong + 1), None).await;
+        assert!(matches!(refused, Err(StoreError::Stale { found: 3 })), "{refused:?}");
+    }
+    assert_eq!(exact(&store.find(session.id).await.unwrap()), exact(&session));
+    store.append(session.id, 3, records(3, 2_500), None).await.unwrap();
+    past.extend(store.history(session.id, 3, 5_000).await.unwrap());
+    (session.sequence, session.updated_at) = (2_500, past[2_499].at);
+    assert_eq!(exact(&store.find(session.id).await.unwrap()), exact(&session));
+    assert_eq!(past.iter().map(|item| item.sequence).collect::<Vec<_>>(), (1..=2_500).collect::<Vec<_>>());
+    for (after, limit) in [(0, 1), (1_234, 1_000), (2_499, 10), (2_500, 10), (u64::MAX, 10)] {
+        let page = store.history(session.id, after, limit).await.unwrap();
+        let start = past.len().min(usize::try_from(after).unwrap_or(usize::MAX));
+        assert_eq!(exact(&page), exact(&past[start..].iter().take(limit).collect::<Vec<_>>()));
+    }
+}
+
+pub async fn a_fork_shares_the_past_and_nothing_else(store: &dyn Store) {
+    let (original, past) = stored(store, 5).await;
+    store.keep_snapshot(original.id, snapshot(4)).await.unwrap();
+    let copy = Session { sequence: 5, label: None, ..session(None) };
+    let early = Session { sequence: 4, ..session(None) };
+    let refused = store.fork(original.id, early.clone(), None).await;
+    assert!(matches!(refused, Err(StoreError::Stale { found: 5 })), "{refused:?}");
+    assert!(matches!(store.find(early.id).await, Err(StoreError::NotFound)));
+    store.fork(original.id, copy.clone(), None).await.unwrap();
+    // Its times are its own, though its last move is older.
+    assert_eq!(exact(&store.find(copy.id).await.unwrap()), exact(&copy));
+    assert_eq!(exact(&store.history(copy.id, 0, 10).await.unwrap()), exact(&past));
+    assert_eq!(store.snapshot(copy.id).await.unwrap(), Some(snapshot(4)));
+
+    store.append(copy.id, 5, vec![record(6)], None).await.unwrap();
+    assert_eq!(exact(&store.find(original.id).await.unwrap()), exact(&original));
+    store.delete(original.id, 5).await.unwrap();
+    assert_eq!(store.history(copy.id, 0, 10).await.unwrap().len(), 6);
+    let of_a_fork = Session { sequence: 6, ..session(None) };
+    store.fork(copy.id, of_a_fork.clone(), None).await.unwrap();
+    store.delete(copy.id, 6).await.unwrap();
+    assert_eq!(exact(&store.history(of_a_fork.id, 0, 5).await.unwrap()), exact(&past));
+}
+
+pub async fn a_long_past_is_forked_and_deleted_while_others_move(store: Arc<dyn Store>) {
+    const LONG: u64 = 30_000;
+    let (original, past) = stored(&*store, LONG).await;
+    let (other, _) = stored(&*store, 0).await;
+    let copies: Vec<Session> = (0..3).map(|_| Session { sequence: LONG, ..session(None) }).collect();
+    let forks = join_all(copies.iter().map(|copy| store.fork(original.id, copy.clone(), None)));
+    let moves = async {
+        for sequence in 0..40 {
+            store.append(other.id, sequence, vec![record(sequence + 1)], None).await.unwrap();
+        }
+        // The copies are whole, whatever the original does meanwhile.
+        match store.append(original.id, LONG, vec![record(LONG + 1)], None).await {
+            Ok(()) | Err(StoreError::NotFound) => {}
+            Err(error) => panic!("{error}"),
+        }
+    };
+    let (forked, ()) = futures::join!(forks, moves);
+    assert!(forked.iter().all(Result::is_ok), "{forked:?}");
+    store.delete(original.id, LONG + 1).await.unwrap();
+    store.delete(copies[0].id, LONG).await.unwrap();
+    assert!(matches!(store.history(original.id, 0, 1).await, Err(StoreError::NotFound)));
+    for copy in &copies[1..] {
+        assert_eq!(exact(&store.find(copy.id).await.unwrap()), exact(copy));
+        let page = store.history(copy.id, 0, LONG as usize + 1).await.unwrap();
+        assert!(exact(&page) == exact(&past), "the past of the copy differs");
+    }
+    assert_eq!(store.find(other.id).await.unwrap().sequence, 40);
+}
+
+pub async fn what_is_deleted_is_gone(store: &dyn Store) {
+    let (session, _) = stored(store, 2).await;
+    store.keep_snapshot(session.id, snapshot(2)).await.unwrap();
+    assert!(matches!(store.delete(session.id, 1).await, Err(StoreError::Stale { found: 2 })));
+    assert_eq!(store.history(session.id, 0, 10).await.unwrap().len(), 2);
+    store.delete(session.id, 2).await.unwrap();
+    assert!(matches!(store.find(session.id).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.history(session.id, 0, 10).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.snapshot(session.id).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.append(session.id, 2, records(2, 3), None).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.delete(session.id, 2).await, Err(StoreError::NotFound)));
+    let listed = store.list(None, 1_000).await.unwrap();
+    assert!(listed.iter().all(|found| found.id != session.id));
+}
+
+pub async fn the_newest_snapshot_is_kept(store: &dyn Store) {
+    let (session, _) = stored(store, 9).await;
+    for (given, kept) in [(3, 3), (7, 7), (5, 7), (9, 9)] {
+        store.keep_snapshot(session.id, snapshot(given)).await.unwrap();
+        assert_eq!(store.snapshot(session.id).await.unwrap(), Some(snapshot(kept)));
+    }
+    store.keep_snapshot(Uuid::now_v7(), snapshot(1)).await.unwrap();
+}

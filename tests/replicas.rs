@@ -1,0 +1,279 @@
+//! Several servers on one PostgreSQL: they serve as one, and go on when a part of them fails.
+
+mod common;
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+use common::postgres::Cluster;
+use common::process::Process;
+use common::{Server, ball, create, problem};
+use futures::future::join_all;
+use reqwest::{Method, StatusCode};
+use serde_json::{Value, json};
+use stickslip::client::{Client, Error, Options};
+use stickslip::sessions::CAPACITY;
+use stickslip::simulation::{self, Stop};
+use stickslip::store::PostgresStore;
+use stickslip::wire::{self, ForkRequest, HistoryItem, Move, MoveReply, SimulateRequest, State};
+use uuid::Uuid;
+
+const SESSIONS: usize = 5;
+const CLIENTS: usize = 16;
+const MOVES: usize = 40;
+
+/// Moves whose order matters: relative ones, and every kind of target.
+fn step(index: usize) -> Move {
+    let turn = (index as f64 * 2.399).sin();
+    match index % 4 {
+        0 | 1 => Move { relative: true, ..Move::displacement(1e-7 * turn) },
+        2 => Move { indentation: Some(4.7e-7 * (1.0 + 0.4 * turn)), ..Move::displacement(1e-7 * turn) },
+        _ => Move::force(0.5 * turn),
+    }
+}
+
+/// What a client was told.
+struct Acknowledged {
+    id: Uuid,
+    step: Move,
+    reply: MoveReply,
+}
+
+/// Sends a move until it is acknowledged, each time to the next server; counts the refusals that name a code.
+async fn insist(servers: &[Client], first: usize, id: Uuid, step: Move, key: String, seen: &Seen) -> Acknowledged {
+    let options = Options { idempotency_key: Some(key), ..Options::default() };
+    let request = step.into();
+    for attempt in first.. {
+        let call = servers[attempt % servers.len()].apply(id, &request, &options);
+        match soon(call).await {
+            Ok(reply) => return Acknowledged { id, step, reply },
+            Err(Error::Transport(_)) => {}
+            Err(Error::Problem(problem)) if problem.status == 503 => {
+                seen.unavailable.fetch_add(1, Ordering::Relaxed);
+            }
+            Err(Error::Problem(problem)) if problem.code == "conflict" => {
+                seen.conflicts.fetch_add(1, Ordering::Relaxed);
+            }
+            Err(other) => panic!("{other}"),
+        }
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    unreachable!("there is always another attempt")
+}
+
+#[derive(Default)]
+struct Seen {
+    unavailable: AtomicUsize,
+    conflicts: AtomicUsize,
+    acknowledged: AtomicUsize,
+}
+
+#[tokio::test]
+async fn sixteen_clients_on_two_replicas_lose_nothing_while_one_is_killed_and_the_database_crashes() {
+    let cluster = Cluster::start();
+    let url = cluster.database().await;
+    let (here, there) = (Process::start(&url).await, Process::start(&url).await);
+    let servers = [here.client.clone(), there.client.clone()];
+    let ids =
+        join_all((0..SESSIONS).map(|_| async { servers[0].create(&create(), &Options::default()).await.unwrap().id }));
+    let ids = ids.await;
+
+    let seen = Seen::default();
+    let clients = join_all((0..CLIENTS).map(|client| {
+        let (servers, ids, seen) = (&servers, &ids, &seen);
+        async move {
+            let mut acknowledged = Vec::new();
+            for index in 0..MOVES {
+                let (id, key) = (ids[(client + index) % SESSIONS], format!("{client}-{index}"));
+                acknowledged.push(insist(servers, client + index, id, step(client * MOVES + index), key, seen).await);
+                seen.acknowledged.fetch_add(1, Ordering::Relaxed);
+            }
+            acknowledged
+        }
+    }));
+    let accidents = async {
+        let progress = async |parts: usize| {
+            while seen.acknowledged.load(Ordering::Relaxed) < CLIENTS * MOVES * parts / 3 {
+                tokio::time::sleep(Duration::from_millis(2)).await;
+            }
+        };
+        progress(1).await;
+        there.kill().await;
+        progress(2).await;
+        cluster.crash();
+        while seen.unavailable.load(Ordering::Relaxed) == 0 {
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        }
+        cluster.resume();
+    };
+    let (acknowledged, ()) = futures::join!(clients, accidents);
+    println!("refused: {} times 503, {} times 409", seen.unavailable.into_inner(), seen.conflicts.into_inner());
+
+    let mut by_session: HashMap<Uuid, Vec<Acknowledged>> = HashMap::new();
+    for one in acknowledged.into_iter().flatten() {
+        by_session.entry(one.id).or_default().push(one);
+    }
+    for id in ids {
+        let mut told = by_session.remove(&id).unwrap();
+        told.sort_by_key(|one| one.reply.sequence);
+        let past = history(&servers[0], id).await;
+        let sequences: Vec<u64> = past.iter().map(|item| item.sequence).collect();
+        assert_eq!(sequences, (1..=told.len() as u64).collect::<Vec<_>>());
+        for (item, one) in past.iter().zip(&told) {
+            assert_eq!((item.sequence, item.step, item.state), (one.reply.sequence, one.step, one.reply.state));
+        }
+        assert_eq!(past.iter().map(|item| item.state).collect::<Vec<_>>(), replay(&past));
+    }
+}
+
+async fn history(client: &Client, id: Uuid) -> Vec<HistoryItem> {
+    client.history(id, None, Some(1000)).await.unwrap().items
+}
+
+/// The states of the same moves, by the library and without a store.
+fn replay(past: &[HistoryItem]) -> Vec<State> {
+    let moves: Vec<Move> = past.iter().map(|item| item.step).collect();
+    let request = json!({"contact": ball(), "path": {"moves": moves}});
+    let request = wire::read::<SimulateRequest>(request.to_string().as_bytes()).unwrap();
+    simulation::simulate(&request, &Stop::default()).unwrap().steps
+}
+
+#[tokio::test]
+async fn a_reply_is_owed_after_a_restart_and_by_the_other_replica() {
+    let url = Cluster::shared().database().await;
+    let (here, there) = (Process::start(&url).await, Process::start(&url).await);
+    let http = reqwest::Client::new();
+    let post = async |base: &str, path: &str, key: &str, body: Value| {
+        let call = http.post(format!("{base}{path}")).header("idempotency-key", key).json(&body);
+        let response = soon(call.send()).await.unwrap();
+        (response.status(), response.headers().get("etag").cloned(), response.text().await.unwrap())
+    };
+    let made = post(&here.base, "/contacts", "make", ball()).await;
+    let id = serde_json::from_str::<Value>(&made.2).unwrap()["id"].as_str().unwrap().to_owned();
+    let (moved, forked) = (format!("/contacts/{id}/move"), format!("/contacts/{id}/fork"));
+    let step = || json!({"displacement": 1e-8, "relative": true});
+    let first = post(&here.base, &moved, "move", step()).await;
+    let fork = post(&there.base, &forked, "fork", json!({})).await;
+    post(&there.base, &moved, "on", step()).await;
+    here.kill().await;
+    let again = Process::start(&url).await;
+    for base in [&again.base, &there.base] {
+        assert_eq!(post(base, "/contacts", "make", ball()).await, made);
+        assert_eq!(post(base, &moved, "move", step()).await, first);
+        assert_eq!(post(base, &forked, "fork", json!({})).await, fork);
+        assert_eq!(post(base, &moved, "move", json!({"displacement": 0.0})).await.0, StatusCode::UNPROCESSABLE_ENTITY);
+    }
+    assert_eq!(again.client.contact(id.parse().unwrap()).await.unwrap().sequence, 2);
+    assert_eq!(again.client.contacts(None, None).await.unwrap().items.len(), 2);
+}
+
+/// Two servers in this process, each with a cache of its own, on one database.
+async fn pair() -> (Server, Server) {
+    let url = Cluster::shared().database().await;
+    let store = async || Arc::new(PostgresStore::open(&url).await.unwrap());
+    (Server::with(store().await, CAPACITY).await, Server::with(store().await, CAPACITY).await)
+}
+
+#[tokio::test]
+async fn what_one_replica_has_acknowledged_the_other_shows() {
+    let (here, there) = pair().await;
+    let plain = Options::default();
+    let id = here.client.create(&create(), &plain).await.unwrap().id;
+    let step = Move { relative: true, ..Move::displacement(1e-8) };
+    for round in 0..5 {
+        let (one, other) = if round % 2 == 0 { (&here, &there) } else { (&there, &here) };
+        let reply = one.client.apply(id, &step.into(), &plain).await.unwrap();
+        assert_eq!(other.client.contact(id).await.unwrap().state, reply.state);
+        one.client.apply(id, &step.into(), &plain).await.unwrap();
+        let stress = other.get(&format!("/contacts/{id}/stress?points=2")).await;
+        assert_eq!(stress.headers()["etag"], format!("\"{}\"", reply.sequence + 1));
+    }
+    // Moved here: what the cache there knows is too old to refuse the right sequence, or to accept the wrong one.
+    here.client.apply(id, &step.into(), &plain).await.unwrap();
+    let at = |sequence| Options { if_match: Some(sequence), ..Options::default() };
+    let stale = there.client.apply(id, &step.into(), &at(10)).await.unwrap_err();
+    assert_eq!(stale.problem().unwrap().code, "stale_sequence");
+    assert_eq!(there.client.apply(id, &step.into(), &at(11)).await.unwrap().sequence, 12);
+    assert_eq!(here.client.apply(id, &step.into(), &at(12)).await.unwrap().sequence, 13);
+    // Refused in the state that the cache there knows, but not in the one that is true.
+    let lifted = Move { indentation: Some(-1e-7), ..Move::default() };
+    there.client.apply(id, &lifted.into(), &plain).await.unwrap();
+    here.client.apply(id, &Move { indentation: Some(4.7e-7), ..Move::default() }.into(), &plain).await.unwrap();
+    there.client.apply(id, &Move::force(0.1).into(), &plain).await.unwrap();
+
+    here.client.apply(id, &step.into(), &plain).await.unwrap();
+    let fork = there.client.fork(id, &ForkRequest::default(), &plain).await.unwrap();
+    assert_eq!(history(&here.client, fork.id).await, history(&there.client, id).await);
+    here.client.apply(id, &step.into(), &plain).await.unwrap();
+    let stale = there.client.delete(id, &at(17)).await.unwrap_err();
+    assert_eq!(stale.problem().unwrap().code, "stale_sequence");
+    there.client.delete(id, &plain).await.unwrap();
+    for gone in [
+        here.get(&format!("/contacts/{id}")).await,
+        here.send(Method::POST, &format!("/contacts/{id}/move"), Some(r#"{"force": 0}"#), &[]).await,
+    ] {
+        assert_eq!(problem(gone).await.code, "contact_not_found");
+    }
+    assert_eq!(here.client.contact(fork.id).await.unwrap().sequence, 17);
+}
+
+#[tokio::test]
+async fn a_lost_database_is_admitted_and_found_again() {
+    let cluster = Cluster::start();
+    let store = PostgresStore::open(&cluster.database().await).await.unwrap();
+    let server = Server::with(Arc::new(store), CAPACITY).await;
+    let id = server.contact().await;
+    let moved = format!("/contacts/{id}/move");
+    let step = json!({"displacement": 1e-8, "relative": true});
+    assert_eq!(server.get("/readyz").await.status(), StatusCode::OK);
+    cluster.crash();
+    for _ in 0..2 {
+        for refused in [
+            server.get("/readyz").await,
+            server.post(&moved, &step).await,
+            server.post("/contacts", &ball()).await,
+            server.get(&format!("/contacts/{id}")).await,
+        ] {
+            assert_eq!(refused.status(), StatusCode::SERVICE_UNAVAILABLE);
+            assert!(refused.headers().contains_key("retry-after"));
+        }
+    }
+    assert_eq!(server.get("/healthz").await.status(), StatusCode::OK);
+    cluster.resume();
+    soon(async {
+        while server.get("/readyz").await.status() != StatusCode::OK {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    })
+    .await;
+    let reply: Value = server.post(&moved, &step).await.json().await.unwrap();
+    assert_eq!(reply["sequence"], 1);
+    // A short interruption goes by unnoticed: what is safe to repeat is repeated.
+    let stop = AtomicBool::new(false);
+    let (count, ()) = futures::join!(
+        async {
+            let mut count = 1;
+            while !stop.load(Ordering::Relaxed) {
+                assert_eq!(server.post(&moved, &step).await.status(), StatusCode::OK);
+                assert_eq!(server.get(&format!("/contacts/{id}")).await.status(), StatusCode::OK);
+                count += 1;
+            }
+            count
+        },
+        async {
+            for _ in 0..5 {
+                let end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'stickslip'";
+                cluster.execute("postgres", end).await;
+                tokio::time::sleep(Duration::from_millis(50)).await;
+            }
+            stop.store(true, Ordering::Relaxed);
+        }
+    );
+    assert_eq!(history(&server.client, id.parse().unwrap()).await.len(), count);
+}
+
+async fn soon<T>(future: impl Future<Output = T>) -> T {
+    tokio::time::timeout(Duration::from_secs(60), future).await.expect("nothing happened")
+}
