@@ -6,10 +6,10 @@ CREATE TABLE contacts (
     number INTEGER PRIMARY KEY,
     id TEXT NOT NULL UNIQUE,
     label TEXT,
-    definition TEXT NOT NULL,
     created_at INTEGER NOT NULL,
     initial_updated_at INTEGER NOT NULL,
-    inherited INTEGER NOT NULL
+    inherited INTEGER NOT NULL,
+    definition TEXT NOT NULL
 ) STRICT;
 CREATE TABLE moves (
     contact INTEGER NOT NULL,
@@ -44,8 +44,8 @@ CREATE TABLE receipts (
     at INTEGER NOT NULL
 ) STRICT;
 INSERT INTO contacts VALUES
-(1, '0199c0de-0000-7000-8000-000000000001', 'old', '{"profile":{"type":"sphere","radius":0.01},"material":{"bodies":[{"youngs_modulus":210000000000.0,"poisson_ratio":0.3},"rigid"]},"friction":0.3,"preload":{"normal_force":10.0}}', 1760000000000000001, 1760000000000000001, 0),
-(2, '0199c0de-0000-7000-8000-000000000002', NULL, '{"profile":{"type":"cone","slope":0.1},"material":{"effective":{"e_star":1000.0,"g_star":1000.0}},"friction":0.0,"preload":{"indentation":0.0}}', 1760000001000000000, 1760000002000000000, 0);
+(1, '0199c0de-0000-7000-8000-000000000001', 'old', 1760000000000000001, 1760000000000000001, 0, '{"profile":{"type":"sphere","radius":0.01},"material":{"bodies":[{"youngs_modulus":210000000000.0,"poisson_ratio":0.3},"rigid"]},"friction":0.3,"preload":{"normal_force":10.0}}'),
+(2, '0199c0de-0000-7000-8000-000000000002', NULL, 1760000001000000000, 1760000002000000000, 0, '{"profile":{"type":"cone","slope":0.1},"material":{"effective":{"e_star":1000.0,"g_star":1000.0}},"friction":0.0,"preload":{"indentation":0.0}}');
 INSERT INTO moves VALUES
 (1, 1, 1760000003000000007, 1e-7, NULL, NULL, NULL, 0, 1e-10, 1e-7, 0.5, 4.7e-7, 10.0, 6.8e-5, 5e-5, 'partial_slip', 1e-9, 2e-8, 2, 0),
 (1, 2, 1760000004000000000, NULL, 0.0, NULL, NULL, 0, 1e-10, 3e-9, 0.0, 4.7e-7, 10.0, 6.8e-5, 5e-5, 'partial_slip', 2e-9, 1e-9, 3, 2),

@@ -28,6 +28,7 @@ use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
 use super::{Answer, Changes, Receipt, Record, Session, Snapshot, Store, StoreError};
+use crate::wire::SessionSummary;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
 use rusqlite::Connection;
@@ -131,7 +132,7 @@ impl Store for SqliteStore {
         self.look(move |database| read::find(database, id))
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         self.look(move |database| read::list(database, after, limit))
     }
 
