@@ -93,6 +93,17 @@ fn fuzz<S: Strategy>(strategy: S, write: impl Fn(&S::Value) -> Vec<u8>) {
 }
 
 #[test]
+fn bodies_that_once_broke_a_law() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/harness/found");
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    assert!(!files.is_empty());
+    for file in files {
+        println!("{}", file.display());
+        assert_ne!(examine(&std::fs::read(file).unwrap()), Outcome::Dear);
+    }
+}
+
+#[test]
 fn raw_bytes() {
     fuzz(requests::raw(), Clone::clone);
 }

@@ -13,7 +13,7 @@ const MOVES: usize = 5;
 /// Parts of each.
 const PARTS: usize = 12;
 /// What a balance may be off by, relative to the friction limit times the way and the displacement of gross slip.
-const BALANCE: f64 = 1e-11;
+const BALANCE: f64 = 1e-9;
 
 /// # Panics
 /// If the work of the tangential force is not what has been stored and lost.
