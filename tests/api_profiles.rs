@@ -118,10 +118,76 @@ async fn what_a_shape_cannot_do_is_refused_by_name() {
             "invalid_input",
             "/contact/profile/exponent",
         ),
+        (
+            // So blunt that it touches all the world.
+            &json!({"type": "power_law", "exponent": 0.1, "coefficient": 1e-200}),
+            json!({"normal_force": 1}),
+            "invalid_input",
+            "/contact/preload/normal_force",
+        ),
     ] {
         let (status, reply) = post(&server.base, &request(profile, &preload)).await;
         assert_eq!((status, reply["code"].as_str()), (422, Some(code)), "{profile}: {reply}");
-        assert!(reply["errors"][0]["pointer"].as_str().unwrap().starts_with(pointer), "{reply}");
+        assert_eq!(reply["errors"][0]["pointer"], pointer, "{reply}");
+    }
+}
+
+#[tokio::test]
+async fn a_table_that_is_none_is_refused_at_the_number_that_is_wrong() {
+    let server = common::Server::start().await;
+    let rising = json!([0.0, 1e-9, 4e-9, 9e-9]);
+    for (r, z, code, pointer, word) in [
+        (json!([0, 2e-5, 1e-5, 3e-5]), rising.clone(), "invalid_input", "/contact/profile/r/2", "rise"),
+        (json!([0, 1e-5, 2e-5, 2e-5]), rising.clone(), "invalid_input", "/contact/profile/r/3", "rise"),
+        (json!([1e-6, 1e-5, 2e-5, 3e-5]), rising.clone(), "invalid_input", "/contact/profile/r/0", "begin at 0"),
+        (json!([0, 1e-5, 2e-5, 1e10]), rising.clone(), "invalid_input", "/contact/profile/r/3", "1e9 m"),
+        (json!([0, 1e-5, 2e-5]), rising, "invalid_input", "/contact/profile/z", "length"),
+        (json!([0, 1e-5, 2e-5]), json!([0, 1e-9, -1e10]), "invalid_input", "/contact/profile/z/2", "1e9 m"),
+        (json!([0, 1e-5, 2e-5]), json!([1e-9, 1e-9, 1e-9]), "invalid_input", "/contact/profile/z", "rise"),
+        (
+            json!([0, 1e-5, 2e-5]),
+            json!([0, -1e-9, -4e-9]),
+            "profile_not_convex_enough",
+            "/contact/profile",
+            "at the radius 0 m",
+        ),
+    ] {
+        let profile = json!({"type": "tabulated", "r": r, "z": z});
+        let (status, reply) = post(&server.base, &request(&profile, &json!({"normal_force": 1e-6}))).await;
+        assert_eq!((status, reply["code"].as_str()), (422, Some(code)), "{profile}: {reply}");
+        assert_eq!(reply["errors"][0]["pointer"], pointer, "{reply}");
+        assert!(reply["errors"][0]["detail"].as_str().unwrap().contains(word), "{reply}");
+    }
+}
+
+#[tokio::test]
+async fn a_profile_without_an_answer_beside_another_fault_is_one_of_two_faults() {
+    let server = common::Server::start().await;
+    let hollow = json!({"type": "tabulated", "r": [0, 1e-5, 2e-5], "z": [0, -1e-9, -4e-9]});
+    let mut body = request(&hollow, &json!({"normal_force": 1.0}));
+    body["tolerance"] = json!(1.0);
+    let (status, reply) = post(&server.base, &body).await;
+    assert_eq!((status, reply["code"].as_str()), (422, Some("invalid_input")), "{reply}");
+    assert_eq!(reply["errors"].as_array().unwrap().len(), 2, "{reply}");
+}
+
+#[tokio::test]
+async fn a_cutoff_outside_the_contact_is_refused_with_what_is_allowed() {
+    let server = common::Server::start().await;
+    let worn = json!({"type": "truncated_sphere", "radius": 0.01, "flat_radius": 5e-5});
+    for solver in [json!("exact"), json!({"springs": {"count": 100}})] {
+        for (cutoff, status) in [(6e-5, 200), (0.1, 422), (4e-5, 422)] {
+            let mut body = request(&worn, &json!({"contact_radius": 1e-4}));
+            body["path"] = json!({"equal_peaks": {"reversals": 3, "cutoff_radius": cutoff}});
+            body["solver"] = solver.clone();
+            let (found, reply) = post(&server.base, &body).await;
+            assert_eq!(found, status, "{cutoff} {solver}: {reply}");
+            if status == 422 {
+                assert_eq!(reply["code"], "invalid_input");
+                assert_eq!(reply["errors"][0]["pointer"], "/path/equal_peaks/cutoff_radius");
+                assert!(reply["errors"][0]["detail"].as_str().unwrap().contains("5e-5 to 1e-4 m"), "{reply}");
+            }
+        }
     }
 }
 

@@ -35,7 +35,7 @@ fn peaks(profile: &Profile, path: &[f64], beyond: f64) -> (f64, f64) {
 fn compared(profile: &Profile, reversals: usize) -> ((f64, f64), (f64, f64), f64) {
     let contact = pressed(profile.clone());
     let linear: Vec<f64> = falling_amplitude(reversals, contact.gross_slip_displacement()).collect();
-    let equal = equal_peaks(&contact, reversals, None);
+    let equal = equal_peaks(&contact, reversals, None).unwrap();
     assert_eq!(equal.displacements.len(), reversals + 1);
     assert!(equal.displacements[reversals].abs() <= 0.0, "the path ends at nought");
     assert!((equal.displacements[0] - contact.gross_slip_displacement()).abs() <= 0.0, "and starts with gross slip");
@@ -47,7 +47,7 @@ fn compared(profile: &Profile, reversals: usize) -> ((f64, f64), (f64, f64), f64
 fn on_a_sphere_the_law_is_the_linear_fall() {
     let contact = pressed(Profile::Sphere(Sphere::new(10.0).unwrap()));
     let full = contact.gross_slip_displacement();
-    let equal = equal_peaks(&contact, 20, None);
+    let equal = equal_peaks(&contact, 20, None).unwrap();
     for (found, expected) in equal.displacements.iter().zip(falling_amplitude(20, full)) {
         assert!((found - expected).abs() < 1e-6 * full, "{found:e} {expected:e}");
     }
@@ -92,6 +92,11 @@ fn where_the_slope_jumps_the_law_starts_from_a_cutoff() {
     let ((_, before), (_, after), cutoff) = compared(&cone, 50);
     assert!((cutoff - 0.1 * edge).abs() < 1e-15);
     assert!(before > 2.9 && after < 1.05, "{before} {after}");
-    let given = equal_peaks(&pressed(cone), 50, Some(0.3 * edge));
+    let given = equal_peaks(&pressed(cone.clone()), 50, Some(0.3 * edge)).unwrap();
     assert!((given.cutoff_radius - 0.3 * edge).abs() < 1e-15);
+    // At the edge itself there is just room for it, and beyond there is none.
+    assert!(equal_peaks(&pressed(cone.clone()), 5, Some(edge)).is_ok());
+    assert!(equal_peaks(&pressed(cone), 5, Some(edge.next_up())).is_err());
+    let worn = pressed(Profile::TruncatedSphere(TruncatedSphere::new(10.0, 0.2).unwrap()));
+    assert!(equal_peaks(&worn, 5, Some(0.2)).is_ok() && equal_peaks(&worn, 5, Some(0.19)).is_err());
 }

@@ -233,6 +233,7 @@ impl From<Rejection> for Problem {
         match rejection {
             Rejection::NotJson(_) => Problem::new(Kind::NotJson, detail),
             Rejection::Invalid(errors) => Problem { errors, ..Problem::new(Kind::InvalidInput, detail) },
+            Rejection::Refused { pointer, error } => Failure::Refused { pointer, error }.into(),
         }
     }
 }

@@ -64,7 +64,7 @@ impl Contact {
             Preload::ContactRadius(radius) => normal::indentation_at(&profile, range::CONTACT_RADIUS.check(radius)?)?,
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
-        profile.check_radius(profile.radius(indentation))?;
+        range::CONTACT_RADIUS.check(profile.check_radius(profile.radius(indentation))?)?;
         let memory = Memory::new(&profile, Double::from(indentation));
         let normal_force = match preload {
             Preload::NormalForce(force) => force,
@@ -164,7 +164,7 @@ impl Contact {
     fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
         range::INDENTATION.check(indentation)?;
         if indentation > 0.0 {
-            self.profile.check_radius(self.profile.radius(indentation))?;
+            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.radius(indentation))?)?;
         }
         Ok(())
     }
@@ -309,6 +309,8 @@ impl Contact {
     /// The state after the last move.
     #[must_use]
     pub fn state(&self) -> State {
+        #[cfg(test)]
+        super::profile::count::add(|calls| &mut calls.states);
         let edge = self.memory.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();

@@ -34,7 +34,7 @@ pub enum Error {
     /// A table that is not one.
     #[error("the table is not usable: {what} at index {index}")]
     Table {
-        /// What is wrong.
+        /// What is wrong; it begins with the name of the column, `r` or `z`.
         what: &'static str,
         /// The first point at which it is.
         index: usize,

@@ -6,7 +6,9 @@
 //! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
 
 use super::contact::Contact;
+use super::error::Error;
 use super::profile::Profile;
+use super::range::short;
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;
@@ -41,14 +43,21 @@ pub struct EqualPeaks {
 /// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made equal
 /// from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge. Profiles that
 /// need none have none unless it is given.
-#[must_use]
-pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
+pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
     let (edge, indentation) = (contact.contact_radius(), contact.indentation());
     let singular = contact.profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max);
-    let cutoff = match (cutoff_radius, singular) {
-        (Some(given), singular) => given.clamp(singular.unwrap_or(0.0), edge),
-        (None, Some(singular)) => singular + DEFAULT_CUTOFF * (edge - singular),
-        (None, None) => 0.0,
+    let least = singular.unwrap_or(0.0);
+    let cutoff = match cutoff_radius {
+        Some(given) if !(least..=edge).contains(&given) => {
+            let allowed = format!("{} to {} m, the contact radius", short(least), short(edge));
+            return Err(Error::OutOfRange { quantity: "cutoff_radius", value: given, allowed });
+        }
+        Some(given) => given,
+        None if singular.is_some() => least + DEFAULT_CUTOFF * (edge - least),
+        None => 0.0,
     };
     let spread = Spread::new(&contact.profile, cutoff, edge);
     let full = contact.gross_slip_displacement();
@@ -63,7 +72,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         }
     };
     let displacements = (0..=reversals).map(|index| alternating(index, size(index))).collect();
-    EqualPeaks { displacements, cutoff_radius: cutoff }
+    Ok(EqualPeaks { displacements, cutoff_radius: cutoff })
 }
 
 /// s(x) between two radii, tabulated.

@@ -53,7 +53,7 @@ pub const FRICTION: Range = Range { quantity: "friction", unit: "", min: 0.0, ma
 pub const LEAST_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
 pub const NORMAL_FORCE: Range = Range { quantity: "normal_force", unit: "N", min: 0.0, max: 1e18 };
-/// The contact radius that a preload may ask for; nought is a contact just touching.
+/// The contact radius, as a preload asks for it or as it comes of a load; nought is a contact just touching.
 pub const CONTACT_RADIUS: Range = Range { quantity: "contact_radius", unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a preload may ask for.
 pub const PRELOAD_INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: 0.0, max: 1e9 };

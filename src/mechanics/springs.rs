@@ -253,7 +253,9 @@ impl Springs {
         self.springs.iter().take_while(|spring| spring.level < self.indentation)
     }
 
-    fn contact_radius(&self) -> f64 {
+    /// Contact radius a, m.
+    #[must_use]
+    pub fn contact_radius(&self) -> f64 {
         if self.indentation < 0.0 { 0.0 } else { self.profile.radius(self.indentation) }
     }
 

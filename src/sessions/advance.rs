@@ -5,8 +5,7 @@ use std::sync::Arc;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::mechanics::protocol::equal_peaks;
-use crate::simulation::{Stop, Timer, accuracy, cost, follow, stresses};
+use crate::simulation::{Stop, Timer, accuracy, cost, follow, protocol, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
 use crate::wire::{MoveReply, PathReply, Plan, Steps, limits};
@@ -144,11 +143,10 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
-    let law = |reversals, cutoff_radius| equal_peaks(&live.contact, reversals, cutoff_radius);
-    let protocol = advance.plan.protocol(&law);
-    follow(&mut live.contact, &advance.plan, tolerance, stop, |step, state| {
+    let protocol = protocol(&advance.plan, &live.contact)?;
+    follow(&mut live.contact, &advance.plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         sequence += 1;
-        records.push(Record { sequence, step, tolerance, state, at: now });
+        records.push(Record { sequence, step, tolerance, state: contact.state().into(), at: now });
     })?;
     live.session.sequence = sequence;
     live.session.updated_at = now;

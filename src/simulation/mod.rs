@@ -9,10 +9,12 @@ mod pool;
 mod run;
 mod solver;
 mod stop;
+#[cfg(test)]
+mod tests;
 mod warnings;
 
 pub use pool::{LONGEST_WAIT, Pool, PoolError};
-pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
+pub use run::{Timer, accuracy, contact, follow, protocol, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
 pub use warnings::{Seen, warnings};

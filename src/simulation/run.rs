@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use crate::mechanics::protocol::equal_peaks;
-use crate::mechanics::{Contact, Estimate, Setup, Springs, springs};
+use crate::mechanics::{Contact, Estimate, Preload, Setup, Springs, springs};
 use crate::wire::reply::{Accuracy, State, finite};
 use crate::wire::simulate::Simulation;
-use crate::wire::{self, ContactDefinition, Move, Plan, Residual, Sampling, SimulateReply, Steps, Stress, limits};
+use crate::wire::{
+    self, ContactDefinition, Move, Plan, Protocol, Residual, Sampling, SimulateReply, Steps, Stress, limits,
+};
 
 use super::{
     Failure, LONGEST_WORK, Solver, Stop, cost, quantity,
@@ -45,11 +46,11 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
         Some(wire::Solver::Springs(wire::Springs { count })) => {
             let setup = &simulation.setup;
             let start = contact(setup.clone(), "/contact")?;
-            let law = |reversals, cutoff_radius| equal_peaks(&start, reversals, cutoff_radius);
-            let moves = simulation.plan.moves(start.gross_slip_displacement(), &law).map(|step| step.step());
+            // Only what has a normal target reaches further, and the law of equal peaks has none.
+            let moves = simulation.plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
             let reach = springs::reach(setup, &moves.collect::<Vec<_>>());
             let reach = reach.map_err(|error| Failure::Refused { pointer: "/path".to_owned(), error })?;
-            let springs = Springs::new(setup.clone(), count, reach).map_err(refused_at("/contact"))?;
+            let springs = Springs::new(setup.clone(), count, reach).map_err(refused_at("/contact", setup.preload))?;
             run(springs, simulation, timer, "as asked for", stop)
         }
     }
@@ -63,16 +64,19 @@ fn run<S: Solver>(
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
     let figures = solver.figures();
-    let protocol = simulation.plan.protocol(&|reversals, cutoff_radius| solver.equal_peaks(reversals, cutoff_radius));
+    let protocol = protocol(&simulation.plan, &solver)?;
     let mut largest = figures.contact_radius;
-    let mut steps = Vec::with_capacity(if simulation.steps == Steps::All { simulation.plan.length() } else { 1 });
-    follow(&mut solver, &simulation.plan, simulation.tolerance, stop, |_, state| {
-        largest = largest.max(state.contact_radius);
-        if simulation.steps == Steps::Last {
-            steps.clear();
+    let all = simulation.steps == Steps::All;
+    let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
+    follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
+        largest = largest.max(solver.contact_radius());
+        if all {
+            steps.push(solver.state().into());
         }
-        steps.push(state);
     })?;
+    if !all {
+        steps.push(solver.state().into());
+    }
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
     let accuracy = accuracy(&solver, timer, reason);
@@ -103,29 +107,40 @@ fn run<S: Solver>(
 /// # Errors
 /// [`Failure::Refused`] if the preload cannot be reached.
 pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
-    Contact::new(setup).map_err(refused_at(base))
+    let refused = refused_at(base, setup.preload);
+    Contact::new(setup).map_err(refused)
 }
 
-fn refused_at(base: &str) -> impl Fn(crate::mechanics::Error) -> Failure {
+fn refused_at(base: &str, preload: Preload) -> impl Fn(crate::mechanics::Error) -> Failure {
     move |error| {
-        let place = quantity(&error).map_or("", ContactDefinition::place_of);
+        let place = quantity(&error).map_or("", |quantity| ContactDefinition::place_of(quantity, &preload));
         Failure::Refused { pointer: format!("{base}{place}"), error }
     }
 }
 
-/// Makes the moves of a plan one after the other, and hands each with its state to `each`.
+/// The displacements of a plan that follows the law of equal peaks, on the contact as it stands.
+///
+/// # Errors
+/// [`Failure::Refused`] for a cut-off radius that the contact does not allow.
+pub fn protocol<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
+    plan.protocol(solver.exact())
+        .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })
+}
+
+/// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
+/// [`protocol()`] has found for the plan.
 ///
 /// # Errors
 /// [`Failure`] at the first move without an answer, with a pointer to it; the moves before it have been made.
 pub fn follow<S: Solver>(
     solver: &mut S,
     plan: &Plan,
+    protocol: Option<&Protocol>,
     tolerance: f64,
     stop: &Stop,
-    mut each: impl FnMut(Move, State),
+    mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
-    let gross_slip = solver.gross_slip_displacement();
-    let moves = plan.moves(gross_slip, &|reversals, cutoff_radius| solver.equal_peaks(reversals, cutoff_radius));
+    let moves = plan.moves(solver.gross_slip_displacement(), protocol);
     for (index, step) in moves.enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
@@ -140,7 +155,7 @@ pub fn follow<S: Solver>(
         if depth > limits::MEMORY_DEPTH {
             return Err(Failure::MemoryFull { pointer: plan.place_of(index, None), depth });
         }
-        each(step, solver.state().into());
+        each(step, solver);
     }
     Ok(())
 }

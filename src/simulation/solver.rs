@@ -1,6 +1,5 @@
 //! What the two solvers have in common.
 
-use crate::mechanics::protocol::{EqualPeaks, equal_peaks};
 use crate::mechanics::{Contact, Error, Estimate, Figures, Move, Residual, Springs, State};
 use crate::wire::SolverKind;
 
@@ -30,8 +29,10 @@ pub trait Solver {
     fn slip(&self, radius: f64) -> Option<f64>;
     /// Tangential displacement of the surface at a radius (m), m.
     fn surface_displacement(&self, radius: f64) -> f64;
-    /// The law of equal peaks for the profile and the load at hand.
-    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks;
+    /// The exact contact that the law of equal peaks is asked of.
+    fn exact(&self) -> &Contact;
+    /// Contact radius a, m.
+    fn contact_radius(&self) -> f64;
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
@@ -77,8 +78,12 @@ impl Solver for Contact {
         self.surface_displacement(radius)
     }
 
-    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
-        equal_peaks(self, reversals, cutoff_radius)
+    fn exact(&self) -> &Contact {
+        self
+    }
+
+    fn contact_radius(&self) -> f64 {
+        self.contact_radius()
     }
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
@@ -129,8 +134,12 @@ impl Solver for Springs {
         self.surface_displacement(radius)
     }
 
-    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> EqualPeaks {
-        equal_peaks(self.virgin(), reversals, cutoff_radius)
+    fn exact(&self) -> &Contact {
+        self.virgin()
+    }
+
+    fn contact_radius(&self) -> f64 {
+        self.contact_radius()
     }
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use crate::mechanics::{DEFAULT_TOLERANCE, range::Range};
+use crate::mechanics::{DEFAULT_TOLERANCE, Error, range::Range};
 
 use super::limits;
 use super::parse::Rejection;
@@ -67,6 +67,8 @@ pub fn escaped(name: &str) -> String {
 #[derive(Debug, Default)]
 pub struct Faults {
     found: Vec<Fault>,
+    /// What the mechanics has no answer to, and where: it has a kind of its own if nothing else is wrong.
+    unanswerable: Option<(String, Error)>,
 }
 
 impl Faults {
@@ -75,6 +77,11 @@ impl Faults {
         if self.found.len() < limits::FAULTS {
             self.found.push(Fault { pointer: at.to_string(), detail: detail.to_string() });
         }
+    }
+
+    /// Notes what the mechanics has no answer to, though every number of it is in its range.
+    pub fn unanswerable(&mut self, at: At<'_>, error: Error) {
+        self.unanswerable.get_or_insert_with(|| (at.to_string(), error));
     }
 
     /// Holds a number against the range of its quantity.
@@ -124,17 +131,23 @@ impl Faults {
     /// Whether nothing has been found.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.found.is_empty()
+        self.found.is_empty() && self.unanswerable.is_none()
     }
 
     /// The value if nothing was found, else the faults.
     ///
     /// # Errors
-    /// [`Rejection::Invalid`] with every fault noted.
-    pub fn done<T>(self, value: Option<T>) -> Result<T, Rejection> {
-        match value {
-            Some(value) if self.found.is_empty() => Ok(value),
-            _ => Err(Rejection::Invalid(self.found)),
+    /// [`Rejection::Invalid`] with every fault noted; [`Rejection::Refused`] if there is none but what the mechanics has no
+    /// answer to.
+    pub fn done<T>(mut self, value: Option<T>) -> Result<T, Rejection> {
+        match (value, self.unanswerable.take()) {
+            (Some(value), None) if self.found.is_empty() => Ok(value),
+            (_, Some((pointer, error))) if self.found.is_empty() => Err(Rejection::Refused { pointer, error }),
+            (_, Some((pointer, error))) => {
+                self.add(At::Pointer(&pointer), error);
+                Err(Rejection::Invalid(self.found))
+            }
+            (_, None) => Err(Rejection::Invalid(self.found)),
         }
     }
 }

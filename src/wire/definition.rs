@@ -129,14 +129,17 @@ impl ContactDefinition {
         Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })
     }
 
-    /// Where in a definition the quantity stands that the mechanics finds fault with.
+    /// Where in a definition with this preload the quantity stands that the mechanics finds fault with. A preload can be at
+    /// fault by what follows from it, such as the indentation under a force.
     #[must_use]
-    pub fn place_of(quantity: &str) -> &'static str {
+    pub fn place_of(quantity: &str, preload: &mechanics::Preload) -> &'static str {
         match quantity {
             "friction" => "/friction",
-            "normal_force" => "/preload/normal_force",
-            "indentation" => "/preload/indentation",
-            "contact_radius" => "/preload/contact_radius",
+            "normal_force" | "indentation" | "contact_radius" => match preload {
+                mechanics::Preload::NormalForce(_) => "/preload/normal_force",
+                mechanics::Preload::Indentation(_) => "/preload/indentation",
+                mechanics::Preload::ContactRadius(_) => "/preload/contact_radius",
+            },
             "e_star" => "/material/effective/e_star",
             "g_star" => "/material/effective/g_star",
             "youngs_modulus" | "poisson_ratio" => "/material/bodies",

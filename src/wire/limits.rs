@@ -3,6 +3,8 @@
 
 use std::ops::RangeInclusive;
 
+use crate::mechanics::range::{self, Range};
+
 /// Moves in one path.
 pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
 /// Reversals of a falling amplitude; each is one move, and one more ends the path at nought.
@@ -25,6 +27,11 @@ pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
 /// Faults that one reply lists; a body can hold a great many.
 pub const FAULTS: usize = 100;
 /// Profiles in one sum.
-pub const SUM_PARTS: RangeInclusive<usize> = 1..=16;
+pub const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
 /// Points of a tabulated profile.
-pub const TABLE_POINTS: RangeInclusive<usize> = 3..=10_000;
+pub const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
+
+/// The range of a count that the mechanics has among its quantities.
+const fn count(range: &Range) -> RangeInclusive<usize> {
+    RangeInclusive::new(range.min as usize, range.max as usize)
+}

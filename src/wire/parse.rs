@@ -3,13 +3,15 @@
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_path_to_error::{Deserializer, Path, Segment, Track};
 
+use crate::mechanics;
+
 use super::check::{Fault, escaped};
 
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;
 
 /// Why a body is refused.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejection {
     /// It is not JSON at all.
     #[error("the body is not JSON: {0}")]
@@ -17,6 +19,14 @@ pub enum Rejection {
     /// It is JSON, but not what this call takes.
     #[error("{}", summary(.0))]
     Invalid(Vec<Fault>),
+    /// Every number is in its range, but the mechanics has no answer to what they are together.
+    #[error("{pointer}: {error}")]
+    Refused {
+        /// JSON pointer to what it has no answer to.
+        pointer: String,
+        /// Why.
+        error: mechanics::Error,
+    },
 }
 
 fn summary(faults: &[Fault]) -> String {
@@ -36,7 +46,7 @@ pub trait Document: DeserializeOwned {
     /// The second gate.
     ///
     /// # Errors
-    /// [`Rejection::Invalid`] with every fault.
+    /// [`Rejection::Invalid`] with every fault, or [`Rejection::Refused`].
     fn check(self) -> Result<Self::Checked, Rejection>;
 }
 
@@ -76,13 +86,17 @@ fn well_formed(body: &[u8]) -> Result<(), String> {
 fn fault(path: &Path, message: &str) -> Fault {
     let message = message.rsplit_once(" at line ").map_or(message, |(text, _)| text);
     let mut pointer = pointer(path);
+    // An unknown member is mostly part of the path already; its name may hold any character.
+    let unknown = match path.iter().last() {
+        Some(Segment::Map { key }) => message.starts_with(&format!("unknown field `{key}`")),
+        _ => false,
+    };
     // serde reports these three at the object; the member is the better place.
     for prefix in ["missing field `", "duplicate field `", "unknown field `"] {
-        if let Some((name, _)) = message.strip_prefix(prefix).and_then(|rest| rest.split_once('`')) {
-            let member = format!("/{}", escaped(name));
-            if !(prefix.starts_with("unknown") && pointer.ends_with(&member)) {
-                pointer.push_str(&member);
-            }
+        if let Some((name, _)) = message.strip_prefix(prefix).and_then(|rest| rest.split_once('`'))
+            && !unknown
+        {
+            pointer.push_str(&format!("/{}", escaped(name)));
         }
     }
     Fault { pointer: shortened(pointer), detail: shortened(in_json_terms(message)) }
@@ -158,6 +172,7 @@ mod tests {
             (with(r#"{"radius":"x","type":"sphere"}"#, r#"{"force":[1]}"#), "/contact/profile/radius", "a number"),
             (with(r#"{"type":"cube","radius":1}"#, r#"{"force":[1]}"#), "/contact/profile/type", "sphere"),
             (with(r#"{"type":"sphere","radius":1,"a/b":2}"#, "{}"), "/contact/profile/a~1b", "unknown field"),
+            (with(r#"{"type":"sphere","radius":1,"`x":2}"#, "{}"), "/contact/profile/`x", "unknown field"),
             (with(r#"{"type":"sphere","radius":1,"radius":2}"#, "{}"), "/contact/profile/radius", "duplicate"),
             (with(sphere, r#"{"displacement":[0,1e999]}"#), "/path/displacement/1", "out of range"),
             (with(sphere, r#"{"moves":[{"force":1},{"force":null}]}"#), "/path/moves/1/force", "null"),

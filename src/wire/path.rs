@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::mechanics::{self, Normal, Tangential, protocol, range, range::Range};
+use crate::mechanics::{self, Contact, Normal, Tangential, protocol, range, range::Range};
 
 use super::check::{At, Faults};
 use super::limits;
@@ -66,15 +66,13 @@ one_key!(Path {
 pub struct EqualPeaks {
     /// Number of reversals N_R; the path has one move more.
     pub reversals: usize,
-    /// Radius from which on the peaks are equal, m. The law needs one where the slope of the profile jumps (the tip of a
-    /// cone, the rim of a flat); left out, it is there a tenth of the way from that radius to the edge, else nought.
+    /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the profile
+    /// jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the way from that
+    /// radius to the edge, else nought.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
     #[schema(nullable = false)]
     pub cutoff_radius: Option<f64>,
 }
-
-/// The law of equal peaks of a contact: displacements for a number of reversals and perhaps a cut-off radius, m.
-pub type Law<'a> = &'a dyn Fn(usize, Option<f64>) -> protocol::EqualPeaks;
 
 /// A tangential oscillation that dies away; it ends at displacement nought.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -243,17 +241,24 @@ impl Plan {
         }
     }
 
-    /// The amplitudes that the law of equal peaks gives, if the path follows it.
-    #[must_use]
-    pub fn protocol(&self, law: Law<'_>) -> Option<Protocol> {
-        let Plan::EqualPeaks(peaks) = self else { return None };
-        let protocol::EqualPeaks { displacements, cutoff_radius } = law(peaks.reversals, peaks.cutoff_radius);
-        Some(Protocol { displacement: displacements, cutoff_radius })
+    /// The displacements that the law of equal peaks gives on `contact`, if the path follows it.
+    ///
+    /// # Errors
+    /// That of [`protocol::equal_peaks`].
+    pub fn protocol(&self, contact: &Contact) -> Result<Option<Protocol>, mechanics::Error> {
+        let Plan::EqualPeaks(peaks) = self else { return Ok(None) };
+        let protocol::EqualPeaks { displacements, cutoff_radius } =
+            protocol::equal_peaks(contact, peaks.reversals, peaks.cutoff_radius)?;
+        Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
     }
 
-    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and `law` its law
-    /// of equal peaks.
-    pub fn moves(&self, gross_slip: f64, law: Law<'_>) -> Box<dyn Iterator<Item = Move> + Send + '_> {
+    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and `protocol` what
+    /// [`Plan::protocol`] has found for it.
+    pub fn moves<'a>(
+        &'a self,
+        gross_slip: f64,
+        protocol: Option<&'a Protocol>,
+    ) -> Box<dyn Iterator<Item = Move> + Send + 'a> {
         match self {
             Plan::Moves(moves) => Box::new(moves.iter().copied()),
             Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
@@ -263,8 +268,8 @@ impl Plan {
                 Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
             }
             Plan::EqualPeaks(_) => {
-                let displacements = self.protocol(law).map_or_else(Vec::new, |protocol| protocol.displacement);
-                Box::new(displacements.into_iter().map(Move::displacement))
+                let displacements = protocol.into_iter().flat_map(|protocol| &protocol.displacement);
+                Box::new(displacements.copied().map(Move::displacement))
             }
             Plan::Single(step) => Box::new(std::iter::once(*step)),
         }
@@ -279,6 +284,7 @@ impl Plan {
             Plan::Displacement(_) => format!("/path/displacement/{index}"),
             Plan::Force(_) => format!("/path/force/{index}"),
             Plan::FallingAmplitude(_) => "/path/falling_amplitude".to_owned(),
+            Plan::EqualPeaks(_) if quantity == "/cutoff_radius" => format!("/path/equal_peaks{quantity}"),
             Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
             Plan::Single(_) => quantity,
         }

@@ -225,12 +225,19 @@ fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape
 
 /// The shape, or a note of what is wrong with numbers that are each in their range.
 fn noted(shape: Result<Shape, Error>, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
-    if let Err(error) = &shape
-        && faults.is_empty()
-    {
-        faults.add(at, error);
+    match shape {
+        Ok(shape) => return Some(shape),
+        // It follows from a fault that is known already.
+        Err(_) if !faults.is_empty() => {}
+        Err(error @ (Error::NotConvexEnough { .. } | Error::BeyondProfile { .. })) => faults.unanswerable(at, error),
+        Err(Error::Table { what, index }) => match what.split_once(' ') {
+            // One radius is out of order; the heights, and the two lengths, are at fault as a whole.
+            Some(("r", rest)) if !rest.starts_with("and") => faults.add(at.member("r").index(index), what),
+            _ => faults.add(at.member("z"), what),
+        },
+        Err(error) => faults.add(at, error),
     }
-    shape.ok()
+    None
 }
 
 /// The names of the families.

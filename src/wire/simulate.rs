@@ -71,7 +71,8 @@ pub enum Steps {
 pub enum Solver {
     /// The exact memory of turning points.
     Exact,
-    /// The spring foundation of the paper: a yardstick, slower and approximate.
+    /// The spring foundation of the paper: a yardstick, slower and approximate. It follows a tangential force only at
+    /// constant indentation, and a normal force only without a tangential target (else `unsupported_move`).
     Springs(Springs),
 }
 one_key!(Solver { "springs" => Springs } or { "exact" => Exact });

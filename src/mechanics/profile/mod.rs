@@ -8,6 +8,8 @@
 mod angle;
 mod chart;
 mod cone;
+#[cfg(test)]
+pub(crate) mod count;
 mod exact_sphere;
 mod flat_punch;
 mod gauss;
@@ -183,6 +185,8 @@ impl Profile {
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
     #[must_use]
     pub fn moments(&self, ring: &Ring) -> Moments {
+        #[cfg(test)]
+        count::add(|calls| &mut calls.moments);
         each!(self, shape => {
             let span = shape.span(ring);
             Moments::stack(shape.moments(&span), Moments::default(), span.edge)
@@ -194,6 +198,8 @@ impl Profile {
     /// Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.
     #[must_use]
     pub fn kernel(&self, at: &At, ring: &Ring) -> f64 {
+        #[cfg(test)]
+        count::add(|calls| &mut calls.kernel);
         each!(self, shape => {
             let span = shape.span(ring);
             let face = shape.kernel(at, &span);
@@ -204,6 +210,8 @@ impl Profile {
     /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner radius.
     #[must_use]
     pub fn kernel_slope(&self, at: &At, ring: &Ring) -> f64 {
+        #[cfg(test)]
+        count::add(|calls| &mut calls.kernel_slope);
         each!(self, shape => {
             let span = shape.span(ring);
             let face = shape.kernel_slope(at, &span);
@@ -215,6 +223,8 @@ impl Profile {
     /// of the surface at r.
     #[must_use]
     pub fn lift(&self, at: &At, ring: &Ring) -> f64 {
+        #[cfg(test)]
+        count::add(|calls| &mut calls.lift);
         each!(self, shape => {
             let span = shape.span(ring);
             let face = shape.lift(at, &span);

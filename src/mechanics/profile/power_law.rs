@@ -183,6 +183,11 @@ impl Shape for PowerLaw {
     }
 
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        let plain = (ring.outer.square - ring.inner.square).value();
+        if plain > 0.5 * ring.outer.square.value() {
+            // A low inner level is lost in the depth.
+            return plain;
+        }
         let decades = -(-(depth / ring.outer.level.value()).min(1.0)).ln_1p() / self.exponent;
         let width = -ring.outer.radius * (-decades).exp_m1();
         width * (2.0 * ring.outer.radius - width)

@@ -32,17 +32,20 @@ pub(super) trait Shape {
     /// Difference of the squares of the radii of a ring of this depth. [`Shape::rise`] undone, by Newton's steps.
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
         let outer = ring.outer;
-        let square = outer.square.value();
         let plain = (outer.square - ring.inner.square).value();
-        if plain > 0.3 * square {
+        if plain > 0.3 * outer.square.value() || ring.inner.level <= Double::ZERO {
             return plain;
         }
+        // No ring reaches into a flat core, over which the rise tells nothing.
+        let square = (outer.square - Double::square_of(self.radius(0.0))).value();
         let steepness = |radius: f64| self.slope(radius) / (2.0 * radius);
         let start = depth / steepness(outer.radius);
         let start = if plain > 1e-6 * square { plain } else { start.min(0.5 * square) };
         increasing(start, |gap| {
             let span = Span::under(outer.square, outer.radius, gap.min(square));
-            (self.rise(&span) - depth, steepness(span.inner_radius.max(f64::MIN_POSITIVE)))
+            let (rise, steepness) = (self.rise(&span), steepness(span.inner_radius.max(f64::MIN_POSITIVE)));
+            // Where f' jumps the slope is infinite, and a step of Newton's would go nowhere.
+            (rise - depth, if steepness.is_finite() { steepness } else { rise / gap })
         })
         .min(square)
     }

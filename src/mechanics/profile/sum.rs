@@ -3,11 +3,17 @@
 //! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there by a
 //! bracketed method. A flat punch among the parts ends the sum in its vertical edge.
 
+use super::super::double::Double;
 use super::super::error::Error;
 use super::super::range;
 use super::roots::increasing;
 use super::shape::Shape;
-use super::{At, Profile, Span};
+use super::{At, Point, Profile, Ring, Span};
+
+/// How far beyond a kink, relative to its radius, a radius still lacks digits that a level has.
+const NEAR: f64 = 1e-2;
+/// Newton's steps for the level that carries a load there, each of which gains two digits at the least.
+const POLISH: usize = 5;
 
 /// A sum of profiles, none of them a sum.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +73,20 @@ impl Sum {
         &self.parts
     }
 
+    /// The kink that a radius is so little beyond that what it is beyond it must be known on its own.
+    fn near_kink(&self, radius: f64) -> Option<f64> {
+        let above = self.kinks.partition_point(|&kink| kink <= radius);
+        let kink = *self.kinks.get(above.checked_sub(1)?)?;
+        (radius - kink < NEAR * kink).then_some(kink)
+    }
+
+    /// The stretch from a kink outward whose squares differ by `gap`.
+    fn beyond(kink: f64, gap: f64) -> Span {
+        let inner = Double::square_of(kink);
+        let outer = inner + Double::from(gap);
+        Span { inner, outer, inner_radius: kink, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
+    }
+
     fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }
@@ -115,6 +135,24 @@ impl Shape for Sum {
         }
     }
 
+    fn square(&self, level: Double) -> Double {
+        let radius = self.radius(level.value());
+        let plain = Double::square_of(radius);
+        let at_rim = self.rim.is_some_and(|(_, top)| level.value() >= top);
+        let Some(kink) = self.near_kink(radius).filter(|_| !at_rim) else { return plain };
+        let above = (level - Double::from(self.level(kink))).value();
+        if above <= 0.0 {
+            return plain;
+        }
+        let gap = increasing((radius - kink) * (radius + kink), |gap| {
+            let span = Sum::beyond(kink, gap);
+            let rise = self.rise(&span);
+            let steepness = Shape::slope(self, span.outer_radius) / (2.0 * span.outer_radius);
+            (rise - above, if steepness.is_finite() { steepness } else { rise / gap })
+        });
+        Sum::beyond(kink, gap).outer
+    }
+
     fn load(&self, radius: f64) -> f64 {
         self.total(|part| part.load(radius))
     }
@@ -127,7 +165,22 @@ impl Shape for Sum {
             }
         }
         let radius = |part: &Profile, load: f64| part.radius(part.indentation_for(load));
-        self.level(self.inverse(load, radius, Shape::load, |x| x * Shape::slope(self, x)))
+        let found = self.inverse(load, radius, Shape::load, |x| x * Shape::slope(self, x));
+        let mut level = self.level(found);
+        if load > 0.0 && self.near_kink(found).is_some() {
+            // int_0^d X dy, whose slope X hardly changes here.
+            let core = self.radius(0.0);
+            let point = |level: f64| {
+                let (level, square) = (Double::from(level), self.square(Double::from(level)));
+                Point { level, radius: square.value().sqrt(), square }
+            };
+            for _ in 0..POLISH {
+                let ring = Ring::between(point(0.0), point(level));
+                let carried = core * level + self.moments(&self.span(&ring)).first;
+                level = (level + (load - carried) / ring.outer.radius).max(0.0);
+            }
+        }
+        level
     }
 
     fn rise(&self, span: &Span) -> f64 {

@@ -1,0 +1,36 @@
+//! How often the costly functions are called, counted in tests alone.
+
+use std::cell::Cell;
+
+/// Calls since the count began, on this thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Calls {
+    /// Integrals over a ring: what a move costs.
+    pub(crate) moments: usize,
+    /// Shares of a stress.
+    pub(crate) kernel: usize,
+    /// Their slopes: what the search for extrema costs.
+    pub(crate) kernel_slope: usize,
+    /// Shares of a displacement of the surface.
+    pub(crate) lift: usize,
+    /// States of a contact.
+    pub(crate) states: usize,
+}
+
+thread_local! {
+    static CALLS: Cell<Calls> = const { Cell::new(Calls { moments: 0, kernel: 0, kernel_slope: 0, lift: 0, states: 0 }) };
+}
+
+/// Counts a call.
+pub(crate) fn add(which: impl Fn(&mut Calls) -> &mut usize) {
+    let mut calls = CALLS.get();
+    *which(&mut calls) += 1;
+    CALLS.set(calls);
+}
+
+/// What `work` calls.
+pub(crate) fn during<T>(work: impl FnOnce() -> T) -> (Calls, T) {
+    CALLS.set(Calls::default());
+    let result = work();
+    (CALLS.get(), result)
+}

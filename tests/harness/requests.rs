@@ -1,0 +1,552 @@
+//! Random requests, shrinkable: scenes over all that can be asked for, written down and then damaged.
+
+use proptest::prelude::*;
+use proptest::sample::select;
+use serde_json::{Map, Value, json};
+use stickslip::mechanics::range::{self, Range};
+use stickslip::simulation::{Stop, simulate};
+use stickslip::wire::{SimulateRequest, read};
+
+/// A number of a path, in units of what the contact at hand can bear, or as it stands.
+#[derive(Clone, Copy, Debug)]
+pub enum Target {
+    /// So many units.
+    Units(f64),
+    /// As it stands.
+    Plain(f64),
+    /// The number so many numbers ago.
+    Again(usize),
+    /// Its negative.
+    Mirror(usize),
+    /// So many units in the last place off it.
+    Near(usize, i64),
+}
+
+/// A move of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Whether the tangential target is a force, and what it is.
+    tangential: Option<(bool, Target)>,
+    normal: Option<(bool, Target)>,
+    relative: bool,
+}
+
+/// A path of a scene.
+#[derive(Clone, Debug)]
+pub enum Way {
+    Moves(Vec<Step>),
+    Displacement(Vec<Target>),
+    Force(Vec<Target>),
+    Falling(usize, Option<Target>),
+    Equal(usize, Option<f64>),
+}
+
+/// All of a request.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    contact: Value,
+    way: Way,
+    /// Radii in units of the contact radius, or a number of points.
+    radii: Option<Result<Vec<f64>, usize>>,
+    fields: Option<Vec<&'static str>>,
+    residual: bool,
+    last: bool,
+    solver: Option<Value>,
+    tolerance: Option<f64>,
+}
+
+/// Any magnitude that a double has.
+fn wild() -> impl Strategy<Value = f64> {
+    let special =
+        select(vec![0.0, -0.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, -1.0, 1.0, f64::EPSILON, 1e300, 1e-300, -1e-300]);
+    let power = (any::<bool>(), -300.0..300.0_f64);
+    prop_oneof![special, power.prop_map(|(up, power)| 10_f64.powf(power).copysign(if up { 1.0 } else { -1.0 }))]
+}
+
+/// A quantity of a definition: mostly of ordinary size, now and then from one end of its range to the other, or none at all.
+fn quantity(range: &'static Range, low: f64, high: f64) -> impl Strategy<Value = f64> {
+    let (least, most) = (range.min.max(1e-300).log10(), range.max.log10());
+    let ends = vec![range.min, range.max, range.min.next_up(), range.max.next_down(), range.max.next_up()];
+    prop_oneof![
+        30 => (low..high).prop_map(|power| 10_f64.powf(power)),
+        8 => (least..most).prop_map(|power| 10_f64.powf(power)),
+        1 => select(ends),
+        1 => wild(),
+    ]
+}
+
+fn family() -> impl Strategy<Value = Value> {
+    let radius = || quantity(&range::RADIUS, -5.0, 0.0);
+    let flat = || quantity(&range::FLAT_RADIUS, -7.0, -3.0);
+    let slope = || quantity(&range::SLOPE, -4.0, 0.3);
+    let exponent = prop_oneof![
+        4 => 0.1..5.0_f64,
+        2 => (1..9_u8).prop_map(f64::from),
+        1 => quantity(&range::EXPONENT, 0.0, 2.9),
+    ];
+    prop_oneof![
+        3 => radius().prop_map(|radius| json!({"type": "sphere", "radius": radius})),
+        2 => radius().prop_map(|radius| json!({"type": "exact_sphere", "radius": radius})),
+        2 => slope().prop_map(|slope| json!({"type": "cone", "slope": slope})),
+        3 => (exponent, quantity(&range::COEFFICIENT, -3.0, 3.0))
+            .prop_map(|(n, c)| json!({"type": "power_law", "exponent": n, "coefficient": c})),
+        2 => flat().prop_map(|radius| json!({"type": "flat_punch", "radius": radius})),
+        2 => (slope(), flat()).prop_map(|(k, b)| json!({"type": "truncated_cone", "slope": k, "flat_radius": b})),
+        2 => (radius(), flat()).prop_map(|(r, b)| json!({"type": "truncated_sphere", "radius": r, "flat_radius": b})),
+        2 => (flat(), quantity(&range::EDGE_RADIUS, -5.0, 0.0))
+            .prop_map(|(b, r)| json!({"type": "rounded_punch", "flat_radius": b, "edge_radius": r})),
+        2 => (slope(), quantity(&range::TIP_RADIUS, -7.0, -3.0))
+            .prop_map(|(k, b)| json!({"type": "rounded_cone", "slope": k, "tip_radius": b})),
+        3 => table(),
+    ]
+}
+
+/// Heights of a power law with some noise over radii that are even, crowded or repeated.
+fn table() -> impl Strategy<Value = Value> {
+    let steps = prop::collection::vec(
+        prop_oneof![6 => 0.5..1.5_f64, 1 => 1e-9..1e3_f64, 1 => Just(1.0), 1 => Just(0.0)],
+        2..24,
+    );
+    let shape = (prop_oneof![4 => -6.0..-3.0_f64, 1 => -12.0..6.0_f64], -6.0..1.0_f64, 0.5..4.0_f64);
+    let noise =
+        (prop_oneof![3 => Just(0.0), 1 => 1e-6..0.5_f64], prop::collection::vec(-1.0..1.0_f64, 24), any::<bool>());
+    (steps, shape, noise).prop_map(|(steps, (length, height, power), (noise, each, rare))| {
+        // Steps that do not rise are kept in a few tables alone: such a table is refused.
+        let steps: Vec<f64> =
+            steps.iter().map(|step| if *step > 0.0 || (rare && noise > 0.3) { *step } else { 1.0 }).collect();
+        let total: f64 = steps.iter().sum();
+        let (length, height) = (10_f64.powf(length), 10_f64.powf(length + height));
+        let mut at = 0.0;
+        let (mut r, mut z) = (vec![0.0], vec![0.0]);
+        for (step, wobble) in steps.iter().zip(&each) {
+            at += step / total;
+            r.push(length * at);
+            z.push(height * (at.powf(power) + noise * wobble * at * step / total));
+        }
+        json!({"type": "tabulated", "r": r, "z": z})
+    })
+}
+
+fn profile() -> impl Strategy<Value = Value> {
+    prop_oneof![
+        8 => family(),
+        1 => prop::collection::vec(family(), 1..4).prop_map(|parts| json!({"type": "sum", "parts": parts})),
+    ]
+}
+
+fn contact() -> impl Strategy<Value = Value> {
+    let poisson = || prop_oneof![6 => 0.0..0.5_f64, 2 => -0.99..0.0_f64, 1 => Just(0.5), 1 => wild()];
+    let body = || {
+        (quantity(&range::YOUNGS_MODULUS, 6.0, 12.0), poisson())
+            .prop_map(|(e, nu)| json!({"youngs_modulus": e, "poisson_ratio": nu}))
+    };
+    let either = move || prop_oneof![4 => body(), 1 => Just(json!("rigid"))];
+    let material = prop_oneof![
+        1 => (body(), either()).prop_map(|(one, other)| json!({"bodies": [one, other]})),
+        2 => (quantity(&range::E_STAR, 6.0, 12.0), quantity(&range::G_STAR, 6.0, 12.0))
+            .prop_map(|(e, g)| json!({"effective": {"e_star": e, "g_star": g}})),
+    ];
+    let friction = prop_oneof![
+        10 => 0.01..2.0_f64,
+        2 => quantity(&range::FRICTION, -9.0, 2.0),
+        2 => Just(0.0),
+        1 => select(vec![1e-9, 1e-9_f64.next_down(), 100.0, 1e-3]),
+    ];
+    let preload = prop_oneof![
+        3 => quantity(&range::NORMAL_FORCE, -3.0, 3.0).prop_map(|value| json!({"normal_force": value})),
+        3 => quantity(&range::PRELOAD_INDENTATION, -9.0, -4.0).prop_map(|value| json!({"indentation": value})),
+        3 => quantity(&range::CONTACT_RADIUS, -6.0, -2.0).prop_map(|value| json!({"contact_radius": value})),
+        1 => select(vec!["normal_force", "indentation", "contact_radius"]).prop_map(|name| json!({name: 0.0})),
+    ];
+    (profile(), material, friction, preload).prop_map(|(profile, material, friction, preload)| {
+        json!({"profile": profile, "material": material, "friction": friction, "preload": preload})
+    })
+}
+
+fn target() -> impl Strategy<Value = Target> {
+    let tiny = (any::<bool>(), -18.0..-1.0_f64);
+    prop_oneof![
+        12 => (-1.2..1.2_f64).prop_map(Target::Units),
+        2 => select(vec![0.0, 1.0, -1.0, 0.5, 2.0, 1.0 - 1e-15, 1.0 - f64::EPSILON, 1.0 + 1e-12]).prop_map(Target::Units),
+        2 => tiny.prop_map(|(up, power)| Target::Units(10_f64.powf(power).copysign(if up { 1.0 } else { -1.0 }))),
+        1 => (1.0..1e6_f64).prop_map(Target::Units),
+        3 => (1..6_usize).prop_map(Target::Again),
+        2 => (1..6_usize).prop_map(Target::Mirror),
+        2 => (1..6_usize, -3..4_i64).prop_map(|(ago, off)| Target::Near(ago, off)),
+        1 => wild().prop_map(Target::Plain),
+    ]
+}
+
+/// A normal target: mostly a load that presses.
+fn load() -> impl Strategy<Value = Target> {
+    prop_oneof![
+        6 => (0.05..1.8_f64).prop_map(Target::Units),
+        3 => target(),
+        1 => select(vec![0.0, 1.0, 1e-9, 3.0]).prop_map(Target::Units),
+    ]
+}
+
+fn step() -> impl Strategy<Value = Step> {
+    let tangential = prop_oneof![
+        5 => target().prop_map(|target| Some((false, target))),
+        3 => target().prop_map(|target| Some((true, target))),
+        2 => Just(None),
+    ];
+    let normal = prop_oneof![
+        5 => Just(None),
+        3 => load().prop_map(|target| Some((false, target))),
+        2 => load().prop_map(|target| Some((true, target))),
+    ];
+    (tangential, normal, prop::bool::weighted(0.25)).prop_map(|(tangential, normal, relative)| Step {
+        tangential,
+        normal,
+        relative,
+    })
+}
+
+fn way() -> impl Strategy<Value = Way> {
+    prop_oneof![
+        6 => prop::collection::vec(step(), 1..7).prop_map(Way::Moves),
+        4 => prop::collection::vec(target(), 1..12).prop_map(Way::Displacement),
+        2 => prop::collection::vec(target(), 1..8).prop_map(Way::Force),
+        2 => (1..30_usize, prop::option::of(target())).prop_map(|(count, size)| Way::Falling(count, size)),
+        1 => (1..20_usize, prop::option::of(prop_oneof![4 => 0.0..1.0_f64, 1 => wild()]))
+            .prop_map(|(count, cutoff)| Way::Equal(count, cutoff)),
+    ]
+}
+
+/// A scene.
+pub fn scene() -> impl Strategy<Value = Scene> {
+    let radius = prop_oneof![
+        6 => 0.0..1.2_f64,
+        2 => select(vec![0.0, 1.0, 1.0 - f64::EPSILON, 1.0 + f64::EPSILON, 1e-12, 0.5]),
+        1 => (-17.0..3.0_f64).prop_map(|power| 10_f64.powf(power)),
+        1 => wild(),
+    ];
+    let radii =
+        prop::option::of(prop_oneof![prop::collection::vec(radius, 1..8).prop_map(Ok), (2..8_usize).prop_map(Err),]);
+    let fields =
+        prop::option::of(prop::collection::vec(select(vec!["pressure", "shear", "slip", "displacement"]), 1..5));
+    let solver = prop_oneof![
+        8 => Just(None),
+        1 => Just(Some(json!("exact"))),
+        1 => (2..60_usize).prop_map(|count| Some(json!({"springs": {"count": count}}))),
+    ];
+    let tolerance = prop_oneof![
+        3 => Just(None),
+        9 => (-9.0..-2.0_f64).prop_map(|power| Some(10_f64.powf(power))),
+        1 => Just(Some(1e-11)),
+    ];
+    let asked = (radii, fields, prop::bool::weighted(0.3), any::<bool>());
+    (contact(), way(), asked, solver, tolerance).prop_map(
+        |(contact, way, (radii, fields, residual, last), solver, tolerance)| Scene {
+            contact,
+            way,
+            radii,
+            fields,
+            residual,
+            last,
+            solver,
+            tolerance,
+        },
+    )
+}
+
+/// The units of a contact: displacement of gross slip, mu F_N, indentation, F_N, contact radius.
+fn units(contact: &Value) -> [f64; 5] {
+    let body = json!({"contact": contact, "path": {"displacement": [0.0]}, "steps": "last"});
+    let simulation = read::<SimulateRequest>(body.to_string().as_bytes()).ok();
+    let figures =
+        simulation.and_then(|simulation| simulate(&simulation, &Stop::default()).ok()).map(|reply| reply.contact);
+    let units = figures.map_or([1e-6, 1.0, 1e-6, 1.0, 1e-4], |figures| {
+        let (slide, sink) = (figures.gross_slip_displacement, figures.indentation);
+        [slide, figures.gross_slip_force, sink, figures.normal_force, figures.contact_radius]
+    });
+    units.map(|unit| if unit > 0.0 { unit } else { 1e-6 })
+}
+
+impl Scene {
+    /// The scene as a request.
+    pub fn write(&self) -> Value {
+        let [slide, push, sink, press, radius] = units(&self.contact);
+        let mut past: Vec<f64> = Vec::new();
+        let mut number = |target: Target, unit: f64| {
+            let ago = |count: usize, past: &[f64]| past.len().checked_sub(count).map_or(unit, |index| past[index]);
+            let value = match target {
+                Target::Units(units) => units * unit,
+                Target::Plain(value) => value,
+                Target::Again(count) => ago(count, &past),
+                Target::Mirror(count) => -ago(count, &past),
+                Target::Near(count, off) => {
+                    let value = ago(count, &past);
+                    (0..off.abs()).fold(value, |value, _| if off > 0 { value.next_up() } else { value.next_down() })
+                }
+            };
+            let value = if value.is_finite() { value } else { 0.0 };
+            past.push(value);
+            value
+        };
+        let path = match &self.way {
+            Way::Displacement(targets) => {
+                json!({"displacement": targets.iter().map(|target| number(*target, slide)).collect::<Vec<_>>()})
+            }
+            Way::Force(targets) => {
+                json!({"force": targets.iter().map(|target| number(*target, push)).collect::<Vec<_>>()})
+            }
+            Way::Falling(count, size) => {
+                let mut fall = json!({"reversals": count});
+                if let Some(size) = size {
+                    fall["amplitude"] = json!(number(*size, slide));
+                }
+                json!({"falling_amplitude": fall})
+            }
+            Way::Equal(count, cutoff) => {
+                let mut equal = json!({"reversals": count});
+                if let Some(part) = cutoff {
+                    equal["cutoff_radius"] = json!(part * radius);
+                }
+                json!({"equal_peaks": equal})
+            }
+            Way::Moves(steps) => {
+                let moves = steps.iter().map(|step| {
+                    let mut written = Map::new();
+                    let pairs = [
+                        (step.tangential, ["displacement", "force"], [slide, push]),
+                        (step.normal, ["indentation", "normal_force"], [sink, press]),
+                    ];
+                    for (target, names, units) in pairs {
+                        if let Some((force, target)) = target {
+                            let index = usize::from(force);
+                            written.insert(names[index].to_owned(), json!(number(target, units[index])));
+                        }
+                    }
+                    if step.relative {
+                        written.insert("relative".to_owned(), json!(true));
+                    }
+                    Value::Object(written)
+                });
+                json!({"moves": moves.collect::<Vec<_>>()})
+            }
+        };
+        let mut request = json!({"contact": self.contact, "path": path, "residual": self.residual});
+        if let Some(radii) = &self.radii {
+            request["stress"] = match radii {
+                Ok(parts) => json!({"radii": parts.iter().map(|part| part * radius).collect::<Vec<_>>()}),
+                Err(points) => json!({"points": points}),
+            };
+            if let Some(fields) = &self.fields {
+                request["stress"]["fields"] = json!(fields);
+            }
+        }
+        if self.last {
+            request["steps"] = json!("last");
+        }
+        if let Some(solver) = &self.solver {
+            request["solver"] = solver.clone();
+        }
+        if let Some(tolerance) = self.tolerance {
+            request["tolerance"] = json!(tolerance);
+        }
+        request
+    }
+}
+
+/// A damage to the text of a request.
+#[derive(Clone, Debug)]
+pub enum Damage {
+    /// Another byte at a place, a part of the whole.
+    Byte(f64, u8),
+    /// A stretch is cut out.
+    Cut(f64, usize),
+    /// A stretch is there twice.
+    Double(f64, usize),
+    /// A word is put in.
+    Insert(f64, &'static str),
+    /// The n-th number becomes something else.
+    Number(usize, &'static str),
+    /// The n-th value of the document becomes something else.
+    Replace(usize, &'static str),
+    /// The n-th value of the document is left out.
+    Remove(usize),
+}
+
+const WORDS: [&str; 24] = [
+    "null",
+    "true",
+    "{}",
+    "[]",
+    "\"rigid\"",
+    "\"exact\"",
+    "1e999",
+    "-1e999",
+    "1e-999",
+    "-0.0",
+    "5e-324",
+    "1e308",
+    "0",
+    "-1",
+    "9007199254740993",
+    "18446744073709551616",
+    "0.1",
+    "1e-15",
+    "\"\"",
+    "\"a/b~c\"",
+    "\"\\u0000\"",
+    "[[]]",
+    "{\"displacement\":1e-7}",
+    "[0,1e-9,1e-9]",
+];
+
+fn damage() -> impl Strategy<Value = Damage> {
+    let place = || 0.0..1.0_f64;
+    let word = || select(WORDS.to_vec());
+    prop_oneof![
+        2 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
+        1 => (place(), 1..20_usize).prop_map(|(place, length)| Damage::Cut(place, length)),
+        1 => (place(), 1..40_usize).prop_map(|(place, length)| Damage::Double(place, length)),
+        1 => (place(), word()).prop_map(|(place, word)| Damage::Insert(place, word)),
+        4 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Number(index, word)),
+        3 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Replace(index, word)),
+        2 => (0..60_usize).prop_map(Damage::Remove),
+    ]
+}
+
+/// A request with a few damages.
+pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
+    (scene(), prop::collection::vec(damage(), 1..4)).prop_map(|(scene, damages)| {
+        let text = scene.write().to_string().into_bytes();
+        damages.iter().fold(text, |text, damage| damage.done_to(text))
+    })
+}
+
+impl Damage {
+    fn done_to(&self, mut text: Vec<u8>) -> Vec<u8> {
+        let length = text.len();
+        let at = |place: f64| ((place * length as f64) as usize).min(length.saturating_sub(1));
+        match *self {
+            _ if text.is_empty() => {}
+            Damage::Byte(place, byte) => text[at(place)] = byte,
+            Damage::Cut(place, count) => drop(text.drain(at(place)..(at(place) + count).min(length))),
+            Damage::Double(place, count) => {
+                let stretch = text[at(place)..(at(place) + count).min(length)].to_vec();
+                text.splice(at(place)..at(place), stretch);
+            }
+            Damage::Insert(place, word) => drop(text.splice(at(place)..at(place), word.bytes())),
+            Damage::Number(index, word) => {
+                let numbers = numbers(&text);
+                if let Some(stretch) = numbers.get(index % numbers.len().max(1)) {
+                    text.splice(stretch.clone(), word.bytes());
+                }
+            }
+            Damage::Replace(index, word) => {
+                if let (Ok(mut document), Ok(word)) = (serde_json::from_slice(&text), serde_json::from_str(word)) {
+                    let count = count(&document);
+                    change(&mut document, &mut (index % count), &mut Some(word));
+                    text = document.to_string().into_bytes();
+                }
+            }
+            Damage::Remove(index) => {
+                if let Ok(mut document) = serde_json::from_slice(&text) {
+                    let count = count(&document);
+                    change(&mut document, &mut (index % count), &mut None);
+                    text = document.to_string().into_bytes();
+                }
+            }
+        }
+        text
+    }
+}
+
+/// Where the numbers of a text are.
+fn numbers(text: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let belongs = |byte: u8| byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.' | b'e');
+    let mut found = Vec::new();
+    let mut index = 0;
+    while index < text.len() {
+        let end = text[index..].iter().position(|byte| !belongs(*byte)).map_or(text.len(), |more| index + more);
+        if text[index..end].iter().any(u8::is_ascii_digit) {
+            found.push(index..end);
+        }
+        index = end + 1;
+    }
+    found
+}
+
+fn count(value: &Value) -> usize {
+    1 + match value {
+        Value::Array(elements) => elements.iter().map(count).sum(),
+        Value::Object(members) => members.values().map(count).sum(),
+        _ => 0,
+    }
+}
+
+/// Replaces the value of that number, or leaves it out; says whether it was the one.
+fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
+    if *left == 0 {
+        *value = by.take().unwrap_or(Value::Null);
+        return true;
+    }
+    *left -= 1;
+    match value {
+        Value::Array(elements) => {
+            for index in 0..elements.len() {
+                if *left == 0 && by.is_none() {
+                    elements.remove(index);
+                    return true;
+                }
+                if change(&mut elements[index], left, by) {
+                    return true;
+                }
+            }
+        }
+        Value::Object(members) => {
+            let names: Vec<String> = members.keys().cloned().collect();
+            for name in names {
+                if *left == 0 && by.is_none() {
+                    members.remove(&name);
+                    return true;
+                }
+                if members.get_mut(&name).is_some_and(|member| change(member, left, by)) {
+                    return true;
+                }
+            }
+        }
+        _ => {}
+    }
+    false
+}
+
+/// Bytes of no kind, and words of JSON in no order.
+pub fn raw() -> impl Strategy<Value = Vec<u8>> {
+    const NAMES: [&str; 24] = [
+        "{",
+        "}",
+        "[",
+        "]",
+        ":",
+        ",",
+        "\"contact\"",
+        "\"profile\"",
+        "\"type\"",
+        "\"sphere\"",
+        "\"radius\"",
+        "\"material\"",
+        "\"effective\"",
+        "\"friction\"",
+        "\"preload\"",
+        "\"path\"",
+        "\"moves\"",
+        "\"stress\"",
+        "\"sum\"",
+        "\"parts\"",
+        "\"tabulated\"",
+        "\"r\"",
+        "\"z\"",
+        "\"force\"",
+    ];
+    let soup = prop_oneof![3 => select(NAMES.to_vec()), 1 => select(WORDS.to_vec())];
+    prop_oneof![
+        prop::collection::vec(any::<u8>(), 0..200),
+        prop::collection::vec(soup, 0..60).prop_map(|words| words.concat().into_bytes()),
+    ]
+}
