@@ -15,14 +15,17 @@
 //! # }
 //! ```
 
+use eventsource_stream::{EventStreamError, Eventsource as _};
+use futures::{Stream, StreamExt as _};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::wire::{
-    CreateRequest, ForkRequest, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
-    ProblemDocument, SessionPage, SessionReply, SimulateReply, SimulateRequest, StressReply, StressRequest,
+    CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply,
+    PathRequest, ProblemDocument, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
+    StressRequest,
 };
 
 /// A handle on a service; clones share its connections.
@@ -39,6 +42,15 @@ pub struct Options {
     pub if_match: Option<u64>,
     /// A name for the request: a repetition with the same name gets the first reply again.
     pub idempotency_key: Option<String>,
+}
+
+/// What a service tells those who follow a contact.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// The contact is in this state.
+    State(Box<StateEvent>),
+    /// There are no more events.
+    End(EndReason),
 }
 
 /// Why a call came to nothing.
@@ -148,6 +160,29 @@ impl Client {
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
+    /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The stream
+    /// ends when the service or the connection does; go on from the sequence of the last state then.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call; within the stream too.
+    pub async fn events(
+        &self,
+        id: Uuid,
+        after: Option<u64>,
+    ) -> Result<impl Stream<Item = Result<Event, Error>> + Send + use<>, Error> {
+        let mut call = self.call(Method::GET, &format!("/contacts/{id}/events"));
+        if let Some(after) = after {
+            call = call.header("last-event-id", after);
+        }
+        let response = call.send().await?;
+        let status = response.status();
+        if !status.is_success() {
+            return Err(refusal(status, &response.bytes().await?));
+        }
+        let events = response.bytes_stream().eventsource();
+        Ok(events.filter_map(move |event| std::future::ready(event_of(status, event))))
+    }
+
     /// `POST /contacts/{id}/fork`.
     ///
     /// # Errors
@@ -220,13 +255,33 @@ async fn sent(call: RequestBuilder) -> Result<(StatusCode, Vec<u8>), Error> {
     let response = call.send().await?;
     let status = response.status();
     let body = response.bytes().await?.to_vec();
-    if status.is_success() {
-        return Ok((status, body));
-    }
-    Err(match serde_json::from_slice(&body) {
+    if status.is_success() { Ok((status, body)) } else { Err(refusal(status, &body)) }
+}
+
+fn refusal(status: StatusCode, body: &[u8]) -> Error {
+    match serde_json::from_slice(body) {
         Ok(problem) => Error::Problem(Box::new(problem)),
         Err(error) => Error::Unexpected { status, detail: error.to_string() },
-    })
+    }
+}
+
+/// An event as it came, unless it is of a kind that later services may have.
+fn event_of(
+    status: StatusCode,
+    event: Result<eventsource_stream::Event, EventStreamError<reqwest::Error>>,
+) -> Option<Result<Event, Error>> {
+    let unexpected = |error: &dyn std::fmt::Display| Error::Unexpected { status, detail: error.to_string() };
+    let event = match event {
+        Ok(event) => event,
+        Err(EventStreamError::Transport(error)) => return Some(Err(error.into())),
+        Err(other) => return Some(Err(unexpected(&other))),
+    };
+    let read = match event.event.as_str() {
+        "state" => serde_json::from_str(&event.data).map(|state| Event::State(Box::new(state))),
+        "end" => serde_json::from_str(&event.data).map(|EndEvent { reason }| Event::End(reason)),
+        _ => return None,
+    };
+    Some(read.map_err(|error| unexpected(&error)))
 }
 
 async fn json<T: DeserializeOwned>(call: RequestBuilder) -> Result<T, Error> {

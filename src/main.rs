@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
+use bytesize::ByteSize;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::api::{self, App, Problem};
 use stickslip::client::Client;
@@ -24,6 +25,9 @@ const LAST_WORK: Duration = Duration::from_millis(500);
 
 /// How long a service may take to say that it is well.
 const LONGEST_ANSWER: Duration = Duration::from_secs(2);
+
+/// The shortest time after which an idle contact may expire.
+const SHORTEST_IDLE_TIME: Duration = Duration::from_secs(1);
 
 /// Frictional contact with memory, exactly: a service, and the same on the command line.
 #[derive(Parser)]
@@ -69,6 +73,12 @@ struct Serve {
     /// `memory:` in this process until it ends.
     #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
     store: String,
+    /// Bytes of memory for the states of contacts, such as 64MiB. A state that is not at hand is replayed when needed.
+    #[arg(long, env = "STICKSLIP_CACHE_BYTES", default_value_t = ByteSize::b(sessions::CAPACITY as u64))]
+    cache_bytes: ByteSize,
+    /// Delete contacts that have not moved for so long, such as 30d or 12h; left out, they stay.
+    #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = idle_time)]
+    expire_after: Option<Duration>,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info")]
     log: String,
@@ -156,14 +166,20 @@ fn serve(options: Serve) -> Result<(), String> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
-    let served = runtime.block_on(listen(options.listen, Arc::clone(&store)));
+    let served = runtime.block_on(listen(&options, Arc::clone(&store)));
     runtime.shutdown_timeout(LAST_WORK);
     // The last handle, now that no request holds one: the store is closed before the process ends.
     drop(store);
     served
 }
 
-async fn listen(address: SocketAddr, store: Arc<dyn Store>) -> Result<(), String> {
+fn idle_time(text: &str) -> Result<Duration, String> {
+    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
+    if time < SHORTEST_IDLE_TIME { Err(format!("at least {SHORTEST_IDLE_TIME:?}")) } else { Ok(time) }
+}
+
+async fn listen(options: &Serve, store: Arc<dyn Store>) -> Result<(), String> {
+    let address = options.listen;
     let listener = TcpListener::bind(address).await.map_err(|error| format!("cannot listen on {address}: {error}"))?;
     let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
     let signals = (signal(SignalKind::terminate()), signal(SignalKind::interrupt()));
@@ -177,7 +193,9 @@ async fn listen(address: SocketAddr, store: Arc<dyn Store>) -> Result<(), String
         }
     };
     let pool = Pool::of_the_machine();
-    let sessions = Sessions::new(store, pool.clone(), sessions::CAPACITY);
+    let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
+    let sessions = Sessions::new(store, pool.clone(), capacity);
+    tokio::spawn(sessions.clone().keep_house(options.expire_after));
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
-    api::serve(listener, api::router(App { sessions, pool }), stop).await.map_err(|error| format!("stopped: {error}"))
+    api::serve(listener, App { sessions, pool }, stop).await.map_err(|error| format!("stopped: {error}"))
 }

@@ -32,6 +32,9 @@ pub struct ContactId(pub Uuid);
 /// The sequence that the client expects by `If-Match`; none if it does not say, or says `*`.
 pub struct Expected(pub Option<u64>);
 
+/// The last event that the client has seen by `Last-Event-ID`; none if it does not say.
+pub struct LastEventId(pub Option<u64>);
+
 impl<T: Document + 'static> FromRequest<App> for Command<T> {
     type Rejection = Problem;
 
@@ -143,5 +146,19 @@ impl FromRequestParts<App> for Expected {
             (_, Some(Ok(sequence))) => Ok(Expected(Some(sequence))),
             _ => Err(Problem::new(Kind::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
         }
+    }
+}
+
+impl FromRequestParts<App> for LastEventId {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Problem> {
+        let Some(value) = parts.headers.get("last-event-id") else {
+            return Ok(LastEventId(None));
+        };
+        let sequence = value.to_str().ok().and_then(|text| text.trim().parse().ok());
+        let refusal = "Last-Event-ID must be the number of a move, such as 3";
+        let refused = || Problem::at(Kind::InvalidInput, "/Last-Event-ID", refusal);
+        sequence.map(|sequence| LastEventId(Some(sequence))).ok_or_else(refused)
     }
 }

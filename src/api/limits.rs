@@ -19,3 +19,5 @@ pub const REQUEST_ID_LENGTH: usize = 128;
 pub const RETRY_AFTER: Duration = Duration::from_secs(1);
 /// How long open connections may take to finish once the server has been told to stop.
 pub const GRACE: Duration = Duration::from_secs(3);
+/// How often a comment tells that a stream without events is alive.
+pub const KEEP_ALIVE: Duration = Duration::from_secs(15);

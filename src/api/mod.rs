@@ -1,6 +1,7 @@
 //! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 mod contacts;
+mod events;
 mod extract;
 pub mod limits;
 mod meta;
@@ -57,6 +58,7 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(moves::path))
         .routes(routes!(contacts::stress))
         .routes(routes!(contacts::history))
+        .routes(routes!(events::events))
         .routes(routes!(meta::openapi))
         .routes(routes!(meta::problem))
         .routes(routes!(meta::healthz))

@@ -8,7 +8,7 @@ use uuid::Uuid;
 
 use crate::mechanics::DEFAULT_TOLERANCE;
 use crate::mechanics::range::{self, Range};
-use crate::wire::{ProblemDocument, limits};
+use crate::wire::{EndEvent, ProblemDocument, limits};
 
 use super::limits as server;
 use super::problem::MEDIA_TYPE;
@@ -46,7 +46,7 @@ pub struct IdempotencyKey {
 #[derive(OpenApi)]
 #[openapi(
     info(title = "stickslip"),
-    components(schemas(ProblemDocument)),
+    components(schemas(ProblemDocument, EndEvent)),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "contacts", description = "Contacts that live on the server and remember"),
@@ -270,6 +270,7 @@ fn write_refusals(document: &mut Value) {
             let refusals = [
                 (method == "post", "400", "The body is not JSON"),
                 (path.contains('{'), "404", "There is no such thing"),
+                (path.contains("/{id}"), "410", "The contact was idle for so long that it has expired"),
                 (changes_contact, "409", "The state of the contact forbids this"),
                 (changes_contact, "412", "The contact is not at the sequence given in If-Match"),
                 (method == "post", "413", "The body is too large"),

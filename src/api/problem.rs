@@ -276,6 +276,8 @@ impl From<SessionError> for Problem {
             SessionError::NotFound(_) => Problem::new(Kind::ContactNotFound, detail),
             SessionError::Stale { .. } => Problem::new(Kind::StaleSequence, detail),
             SessionError::Overtaken { .. } => Problem::new(Kind::Conflict, detail),
+            SessionError::Ahead { .. } => Problem::at(Kind::InvalidInput, "/Last-Event-ID", detail),
+            SessionError::TooManyStreams => Problem::new(Kind::Overloaded, detail),
             SessionError::KeyReused => Problem::new(Kind::IdempotencyKeyReused, detail),
             SessionError::Failure(failure) => failure.into(),
             SessionError::Pool(error) => error.into(),

@@ -3,24 +3,20 @@
 use std::future::Future;
 use std::io;
 
-use axum::Router;
 use axum::serve::ListenerExt as _;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
 use tokio::time::sleep;
 
 use super::limits::GRACE;
+use super::{App, router};
 
-/// Serves on `listener` until `stop` is done. Requests under way may then finish within [`GRACE`]; what is still open
-/// after that is closed, and its work stopped.
+/// Serves on `listener` until `stop` is done. Then events end, and other requests under way may finish within [`GRACE`]; what
+/// is still open after that is closed, and its work stopped.
 ///
 /// # Errors
 /// What the operating system has against accepting connections.
-pub async fn serve(
-    listener: TcpListener,
-    router: Router,
-    stop: impl Future<Output = ()> + Send + 'static,
-) -> io::Result<()> {
+pub async fn serve(listener: TcpListener, app: App, stop: impl Future<Output = ()> + Send + 'static) -> io::Result<()> {
     // Replies are short and whole: waiting to fill a packet would only delay them.
     let listener = listener.tap_io(|stream| {
         if let Err(error) = stream.set_nodelay(true) {
@@ -28,9 +24,12 @@ pub async fn serve(
         }
     });
     let (announce, announced) = oneshot::channel();
-    let graceful = axum::serve(listener, router).with_graceful_shutdown(async move {
+    let sessions = app.sessions.clone();
+    let graceful = axum::serve(listener, router(app)).with_graceful_shutdown(async move {
         stop.await;
         tracing::info!(grace_ms = GRACE.as_millis() as u64, "stopping");
+        // A client that follows a contact would never be done.
+        sessions.end_events();
         // Nobody listens only if serving has ended already.
         let _ = announce.send(());
     });

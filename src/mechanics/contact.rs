@@ -36,15 +36,15 @@ pub struct Contact {
     pub(super) elasticity: Elasticity,
     pub(super) friction: f64,
     pub(super) memory: Memory,
-    displacement: Double,
+    pub(super) displacement: Double,
     /// As asked for or, under a prescribed indentation, as it follows: rounding it twice would move the friction limit.
-    normal_force: f64,
-    dissipated: Double,
-    initial: Figures,
+    pub(super) normal_force: f64,
+    pub(super) dissipated: Double,
+    pub(super) initial: Figures,
     pub(super) path_error: f64,
     pub(super) path_kernel: f64,
     /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
-    inverse_scale: Double,
+    pub(super) inverse_scale: Double,
 }
 
 impl Contact {

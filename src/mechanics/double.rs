@@ -72,6 +72,12 @@ impl Double {
         (self.hi, self.lo)
     }
 
+    /// What [`Double::parts`] gave, put together again bit for bit; nothing is added up, so that not even a sign of nought
+    /// is lost.
+    pub(super) fn from_parts(hi: f64, lo: f64) -> Double {
+        Double { hi, lo }
+    }
+
     /// The magnitude.
     #[must_use]
     pub fn abs(self) -> Double {

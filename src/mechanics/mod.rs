@@ -31,7 +31,7 @@
 //!
 //! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
 //! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `surface`, `accuracy`: what is
-//! asked of it. [`protocol`]: paths. [`springs`]: the
+//! asked of it. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
 //! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
 
 mod accuracy;
@@ -42,6 +42,7 @@ mod error;
 mod force;
 mod memory;
 mod normal;
+mod packed;
 pub mod profile;
 pub mod protocol;
 pub mod range;
@@ -58,6 +59,7 @@ pub use double::Double;
 pub use elasticity::{Body, Elasticity};
 pub use error::Error;
 pub use normal::{Figures, Preload};
+pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};
 pub use route::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use springs::Springs;

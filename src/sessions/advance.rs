@@ -1,6 +1,7 @@
 //! Moving a session on: the one place where it changes.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use jiff::Timestamp;
 use uuid::Uuid;
@@ -10,7 +11,9 @@ use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
 use crate::wire::{MoveReply, PathReply, Plan, Steps, limits};
 
-use super::{ATTEMPTS, Guard, Live, SessionError, Sessions, agree, idempotency, written};
+use super::cache::Guard;
+use super::live::Live;
+use super::{ATTEMPTS, SessionError, Sessions, idempotency, written};
 
 /// Why the exact solver answers for a session.
 const REASON: &str = "a session keeps its exact memory";
@@ -41,80 +44,85 @@ impl Sessions {
             return Ok(reply);
         }
         // Whoever hangs up in the queue has left it.
-        let guard = self.lock(id).await;
+        let guard = self.cache.lock(id).await;
         let (stop, _raised_at_the_end) = Stop::guarded();
-        let (sessions, advance) = (self.clone(), Arc::new(advance));
-        let task = tokio::spawn(async move { sessions.advance_locked(id, advance, expected, key, guard, stop).await });
+        let sessions = self.clone();
+        let task =
+            tokio::spawn(async move { sessions.advance_locked(advance.into(), expected, key, guard, stop).await });
         task.await.unwrap_or_else(|_| Err(SessionError::Broken("a move panicked".to_owned())))
     }
 
     async fn advance_locked(
         &self,
-        id: Uuid,
         advance: Arc<Advance>,
         expected: Option<u64>,
         key: Option<RequestKey>,
         mut guard: Guard,
         stop: Stop,
     ) -> Result<Reply, SessionError> {
-        let (mut found, mut checked) = (0, false);
+        // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
+        let mut certain = guard.live.is_none();
+        let mut found = 0;
         for _ in 0..ATTEMPTS {
             // Again, now that a twin of this request that stood before it in the queue, here or elsewhere, is done.
             if let Some(reply) = self.earlier(key.as_ref()).await? {
                 return Ok(reply);
             }
-            let cached = self.present(id, &mut guard).await?.session.sequence;
-            checked |= expected.is_some_and(|expected| expected != cached);
-            let live = if checked { self.current(id, &mut guard).await? } else { self.present(id, &mut guard).await? };
+            let live = if certain { self.present(&mut guard).await? } else { self.at_hand(&mut guard).await? };
             let sequence = live.session.sequence;
-            agree(expected, sequence)?;
-            let (live, Done { records, reply }) = match self.compute(id, &advance, &mut guard, &stop).await {
-                Err(SessionError::Failure(_))
-                    if !std::mem::replace(&mut checked, true)
-                        && self.current(id, &mut guard).await?.session.sequence != sequence =>
-                {
-                    // Refused because of a state of the past.
+            if let Some(expected) = expected.filter(|expected| *expected != sequence) {
+                if !certain {
+                    certain = true;
                     continue;
                 }
-                computed => computed?,
+                return Err(SessionError::Stale { expected, found: sequence });
+            }
+            let (mut live, Done { records, reply }) = match self.compute(&advance, &mut guard, &stop).await {
+                Ok(done) => done,
+                Err(SessionError::Failure(_)) if !certain && self.catch_up(&mut guard).await? => {
+                    certain = true;
+                    continue;
+                }
+                Err(error) => return Err(error),
             };
-
-            // Between here and the end the state is in doubt. The slot stays empty meanwhile: whoever finds it so, because
-            // the store failed or this task died, asks the store what is true.
-            let before = guard.take();
+            // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
+            // nothing: whoever finds it so, because the store failed or this task died, asks the store what is true.
             let receipt = idempotency::receipt(key.clone(), &reply);
-            match self.store.append(id, sequence, records, receipt).await {
+            match self.store.append(guard.id(), sequence, records, receipt).await {
                 Ok(()) => {
-                    *guard = Some(live);
+                    self.offer_snapshot(&mut live);
+                    guard.live = Some(live);
                     return Ok(reply);
                 }
-                Err(StoreError::Stale { found: sequence }) => found = sequence,
-                Err(error @ (StoreError::NotFound | StoreError::Expired)) => return Err(self.failed(id, error)),
+                Err(error @ (StoreError::NotFound | StoreError::Expired)) => {
+                    return Err(self.failed(&mut guard, error));
+                }
+                Err(StoreError::Stale { found: moved }) => {
+                    (certain, found) = (true, moved);
+                    self.present(&mut guard).await?.shared = true;
+                }
                 Err(other) => return self.lost(other, key).await,
             }
-            // Another process was faster, and its moves come first.
-            (*guard, checked) = (before, true);
         }
         Err(SessionError::Overtaken { found })
     }
 
-    /// Computes the moves. A failure leaves the slot with the state before them, or, at worst, empty.
+    /// Computes the moves. The guard keeps the state before them, or, if it has been used up, nothing.
     async fn compute(
         &self,
-        id: Uuid,
         advance: &Arc<Advance>,
         guard: &mut Guard,
         stop: &Stop,
     ) -> Result<(Live, Done), SessionError> {
-        let depth = guard.as_ref().map_or(0, |live| live.contact.memory_depth());
+        let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
-        // copy costs as much as the memory is deep. Where others may be faster, the move may be for nothing.
-        let in_place = !self.store.is_shared()
-            && matches!(advance.plan, Plan::Single(step) if !step.is_curved())
+        // copy costs as much as the memory is deep. A move that may come too late is another matter.
+        let in_place = matches!(advance.plan, Plan::Single(step) if !step.is_curved())
             && advance.stress.is_none()
-            && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH;
-        let live = if in_place { guard.take() } else { (**guard).clone() };
-        let live = live.ok_or(SessionError::NotFound(id))?;
+            && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
+            && guard.live.as_ref().is_some_and(|live| !live.shared);
+        let live = if in_place { guard.live.take() } else { guard.live.clone() };
+        let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let cost = cost::estimated_cost(advance.plan.length(), advance.plan.curved(), depth, radii, false);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
@@ -123,7 +131,7 @@ impl Sessions {
             Ok(done) => Ok((live, done)),
             Err(error) => {
                 if in_place && matches!(error, SessionError::Failure(_)) {
-                    **guard = Some(live);
+                    guard.live = Some(live);
                 }
                 Err(error)
             }
@@ -144,10 +152,12 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
     let protocol = protocol(&advance.plan, &live.contact)?;
+    let begin = Instant::now();
     follow(&mut live.contact, &advance.plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         sequence += 1;
         records.push(Record { sequence, step, tolerance, state: contact.state().into(), at: now });
     })?;
+    live.beyond.add(records.len(), begin.elapsed());
     live.session.sequence = sequence;
     live.session.updated_at = now;
     let stress = advance.stress.as_ref().map(|sampling| stresses(&live.contact, sampling, stop)).transpose()?;

@@ -1,79 +1,147 @@
-//! The states at hand, each behind the lock of its session.
+//! The states at hand, least recently used out, and the lock of each session that somebody works on.
+//!
+//! Whoever works on a session takes its state out of the cache, and puts it back at the end with the size that it has then.
+//! A session that nobody works on has no lock, and one that is not at hand takes no memory: asking for identifiers that do
+//! not exist leaves nothing behind, and a million idle sessions are the store's alone.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use tokio::sync::Mutex as SessionLock;
+use hashlink::LruCache;
+use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
-use super::Live;
+use super::live::Live;
 
-/// How many states are kept at hand by default.
-pub const CAPACITY: usize = 10_000;
+/// How many bytes of states are kept at hand by default.
+pub const CAPACITY: usize = 256 * 1024 * 1024;
 
-/// One session: its lock, and its state unless it has to be replayed. The lock is fair, so that moves apply in the
-/// order of their arrival.
-pub(super) type Slot = Arc<SessionLock<Option<Live>>>;
-
-/// Slots by session. A slot that anybody holds is never dropped, so that a session has one lock at a time.
+/// States and locks.
 pub(super) struct Cache {
-    // A std mutex: held for a lookup, never across an await.
-    slots: Mutex<Slots>,
+    // Std mutexes both: held for a lookup, never across an await.
+    desks: Mutex<HashMap<Uuid, Desk>>,
+    states: Mutex<States>,
     capacity: usize,
 }
 
+/// A session that somebody works on or waits for. It goes with the last of them, so that a session has one lock at a time.
 #[derive(Default)]
-struct Slots {
-    by_id: HashMap<Uuid, (Slot, u64)>,
-    // Counts the calls, to tell what has been used last.
-    clock: u64,
+struct Desk {
+    // The lock is fair, so that moves apply in the order of their arrival.
+    lock: Arc<SessionLock<()>>,
+    users: usize,
+}
+
+/// States that nobody works on, with their bytes.
+struct States {
+    by_id: LruCache<Uuid, (Live, usize)>,
+    bytes: usize,
+}
+
+/// A session that is one's own until the guard is dropped, when its state goes back to the cache.
+pub(super) struct Guard {
+    /// The state, if it is at hand: that after some move that is stored, though perhaps not the last.
+    pub(super) live: Option<Live>,
+    // Declared, and so released, before the desk is left: whoever comes in between finds the desk and waits at it.
+    _lock: OwnedMutexGuard<()>,
+    place: Place,
+}
+
+/// One of the users of a desk.
+struct Place {
+    cache: Arc<Cache>,
+    id: Uuid,
 }
 
 impl Cache {
+    /// A cache of at most so many bytes.
     pub(super) fn new(capacity: usize) -> Cache {
-        Cache { slots: Mutex::default(), capacity: capacity.max(1) }
+        let states = States { by_id: LruCache::new_unbounded(), bytes: 0 };
+        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity }
     }
 
-    /// The slot of a session, empty if it is not at hand.
-    pub(super) fn slot(&self, id: Uuid) -> Slot {
-        self.enter(id, Slot::default)
+    /// Waits until the session is one's own. Whoever gives up waiting has left.
+    pub(super) async fn lock(self: &Arc<Self>, id: Uuid) -> Guard {
+        let (lock, place) = self.enter(id);
+        let lock = lock.lock_owned().await;
+        Guard { live: self.take(id), _lock: lock, place }
     }
 
-    /// Puts a session just made at hand.
-    pub(super) fn insert(&self, live: Live) {
-        self.enter(live.session.id, || Arc::new(SessionLock::new(Some(live))));
+    /// Bytes of the states at hand, and how many they are.
+    pub(super) fn held(&self) -> (usize, usize) {
+        let states = self.states();
+        (states.bytes, states.by_id.len())
     }
 
-    /// Drops a session that is gone from the store.
-    pub(super) fn forget(&self, id: Uuid) {
-        self.lock().by_id.remove(&id);
+    fn enter(self: &Arc<Self>, id: Uuid) -> (Arc<SessionLock<()>>, Place) {
+        let mut desks = self.desks();
+        let desk = desks.entry(id).or_default();
+        desk.users += 1;
+        (Arc::clone(&desk.lock), Place { cache: Arc::clone(self), id })
     }
 
-    fn enter(&self, id: Uuid, slot: impl FnOnce() -> Slot) -> Slot {
-        let mut slots = self.lock();
-        slots.clock += 1;
-        let now = slots.clock;
-        if slots.by_id.len() >= self.capacity && !slots.by_id.contains_key(&id) {
-            slots.make_room(self.capacity);
+    fn take(&self, id: Uuid) -> Option<Live> {
+        let mut states = self.states();
+        let (live, bytes) = states.by_id.remove(&id)?;
+        states.bytes -= bytes;
+        Some(live)
+    }
+
+    fn put(&self, live: Live) {
+        let bytes = live.bytes();
+        if bytes > self.capacity {
+            // It would drive out all others and go with them.
+            return;
         }
-        let (slot, used) = slots.by_id.entry(id).or_insert_with(|| (slot(), now));
-        *used = now;
-        Arc::clone(slot)
+        let mut gone = Vec::new();
+        let mut states = self.states();
+        states.bytes += bytes;
+        if let Some((_, bytes)) = states.by_id.insert(live.session.id, (live, bytes)) {
+            states.bytes -= bytes;
+        }
+        while states.bytes > self.capacity
+            && let Some((_, (live, bytes))) = states.by_id.remove_lru()
+        {
+            states.bytes -= bytes;
+            gone.push(live);
+        }
+        // Freed once others can get at the cache again.
+        drop(states);
+        drop(gone);
     }
 
-    fn lock(&self) -> MutexGuard<'_, Slots> {
-        self.slots.lock().unwrap_or_else(PoisonError::into_inner)
+    fn desks(&self) -> MutexGuard<'_, HashMap<Uuid, Desk>> {
+        self.desks.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn states(&self) -> MutexGuard<'_, States> {
+        self.states.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Slots {
-    /// Drops the quarter that has been idle longest, so that the search is paid once for many entries.
-    fn make_room(&mut self, capacity: usize) {
-        let idle = self.by_id.iter().filter(|(_, (slot, _))| Arc::strong_count(slot) == 1);
-        let mut idle: Vec<(u64, Uuid)> = idle.map(|(id, (_, used))| (*used, *id)).collect();
-        idle.sort_unstable();
-        for (_, id) in idle.into_iter().take(capacity.div_ceil(4)) {
-            self.by_id.remove(&id);
+impl Guard {
+    /// The session.
+    pub(super) fn id(&self) -> Uuid {
+        self.place.id
+    }
+}
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        if let Some(live) = self.live.take() {
+            self.place.cache.put(live);
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let mut desks = self.cache.desks();
+        if let Some(desk) = desks.get_mut(&self.id) {
+            desk.users -= 1;
+            if desk.users == 0 {
+                desks.remove(&self.id);
+            }
         }
     }
 }

@@ -5,16 +5,17 @@ use uuid::Uuid;
 use crate::simulation::{self, Stop, cost, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
+use super::replay::refused;
 use super::{SessionError, Sessions, written};
 
 impl Sessions {
     /// A session with its state.
     ///
     /// # Errors
-    /// [`SessionError::NotFound`], or a failure of the store.
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
-        let mut guard = self.lock(id).await;
-        let live = self.current(id, &mut guard).await?;
+        let mut guard = self.cache.lock(id).await;
+        let live = self.present(&mut guard).await?;
         Ok(SessionReply {
             id,
             label: live.session.label.clone(),
@@ -29,13 +30,13 @@ impl Sessions {
     /// The stresses of a session, as JSON, with the sequence that they belong to.
     ///
     /// # Errors
-    /// [`SessionError::NotFound`], or a failure of the store or of the pool.
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn stress(&self, id: Uuid, sampling: Sampling, residual: bool) -> Result<(u64, Vec<u8>), SessionError> {
         let (stop, _guard) = Stop::guarded();
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence) = {
-            let mut guard = self.lock(id).await;
-            let live = self.current(id, &mut guard).await?;
+            let mut guard = self.cache.lock(id).await;
+            let live = self.present(&mut guard).await?;
             (live.contact.clone(), live.session.sequence)
         };
         let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
@@ -69,10 +70,9 @@ impl Sessions {
     /// A page of a session's past, oldest first.
     ///
     /// # Errors
-    /// [`SessionError::NotFound`], or a failure of the store.
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let found = self.store.history(id, after, limit + 1).await;
-        let mut found = found.map_err(|error| self.failed(id, error))?;
+        let mut found = self.store.history(id, after, limit + 1).await.map_err(|error| refused(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

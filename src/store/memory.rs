@@ -140,6 +140,11 @@ impl Store for MemoryStore {
         answer(inner.sessions.get(&id).map(|stored| stored.session.clone()).ok_or_else(|| inner.missing(id)))
     }
 
+    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
+        let inner = self.lock();
+        answer(inner.sessions.get(&id).map(|stored| stored.session.sequence).ok_or_else(|| inner.missing(id)))
+    }
+
     fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         use std::ops::Bound::{Excluded, Unbounded};
         let inner = self.lock();

@@ -142,6 +142,9 @@ pub trait Store: Send + Sync + 'static {
     /// The session.
     fn find(&self, id: Uuid) -> Answer<'_, Session>;
 
+    /// The sequence of a session: all that somebody who knows the rest has to ask.
+    fn sequence(&self, id: Uuid) -> Answer<'_, u64>;
+
     /// At most `limit` sessions with identifiers beyond `after`, in order. Without their definitions: a page of those could
     /// be larger than the memory.
     fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>>;
@@ -174,14 +177,4 @@ pub trait Store: Send + Sync + 'static {
 
     /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
     fn changes(&self) -> &Changes;
-
-    /// Whether other processes may change the same sessions, so that what is known of one may be out of date.
-    fn is_shared(&self) -> bool {
-        false
-    }
-
-    /// The sequence of a session: all of it that a cache has to know.
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
-        Box::pin(async move { Ok(self.find(id).await?.sequence) })
-    }
 }

@@ -9,6 +9,7 @@
 
 pub mod check;
 pub mod definition;
+pub mod event;
 pub mod limits;
 mod one_key;
 pub mod parse;
@@ -22,6 +23,7 @@ pub mod stress;
 
 pub use check::{At, Fault, Faults};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
+pub use event::{EndEvent, EndReason, StateEvent};
 pub use parse::{Document, Rejection, parse, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
 pub use problem::ProblemDocument;

@@ -30,14 +30,18 @@ impl Server {
         Server::with(Arc::new(MemoryStore::new()), CAPACITY).await
     }
 
-    /// A server over a store, with so many states at hand.
+    /// A server over a store, with so many bytes of states at hand.
     pub async fn with(store: Arc<dyn Store>, capacity: usize) -> Server {
         let pool = Pool::of_the_machine();
         let sessions = Sessions::new(store, pool.clone(), capacity);
-        let router = api::router(App { sessions, pool });
+        Server::over(sessions, pool).await
+    }
+
+    /// A server over sessions that the test has its hands on too.
+    pub async fn over(sessions: Sessions, pool: Pool) -> Server {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let base = format!("http://{}", listener.local_addr().unwrap());
-        tokio::spawn(api::serve(listener, router, std::future::pending()));
+        tokio::spawn(api::serve(listener, App { sessions, pool }, std::future::pending()));
         Server { client: Client::new(&base), base, http: reqwest::Client::new() }
     }
 

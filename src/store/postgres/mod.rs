@@ -219,10 +219,6 @@ impl Store for PostgresStore {
         &self.changes
     }
 
-    fn is_shared(&self) -> bool {
-        true
-    }
-
     fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
         async move {
             match self.link.row(sql::SEQUENCE, &[&id]).await? {

@@ -131,6 +131,10 @@ impl Store for SqliteStore {
         self.look(move |database| read::find(database, id))
     }
 
+    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
+        self.look(move |database| read::sequence(database, id))
+    }
+
     fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         self.look(move |database| read::list(database, after, limit))
     }

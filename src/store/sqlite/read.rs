@@ -27,6 +27,12 @@ pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, ReadError
     found.map_or_else(|| Err(missing(database, id)?), Ok)
 }
 
+pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, ReadError> {
+    let number = number(database, id)?;
+    let mut statement = database.prepare_cached("SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = ?1")?;
+    Ok(statement.query_row([number], |row| natural(row, 0))?)
+}
+
 pub(super) fn list(database: &Connection, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>, ReadError> {
     // Every identifier comes after the empty text.
     let after = after.map_or_else(String::new, |id| id.to_string());

@@ -11,6 +11,8 @@
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
 
+mod packed;
+
 use super::double::Double;
 use super::profile::{Point, Profile, Ring};
 use super::release::{self, Slipping};

@@ -1,0 +1,83 @@
+//! What it takes to open a session that is not at hand: `cargo bench --bench sessions`.
+//!
+//! A session of a million moves, its memory some ten pieces deep and a hundred thousand, opened from its snapshot and the
+//! moves beyond it; and the same without a snapshot, from the first move on.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use stickslip::sessions::Sessions;
+use stickslip::simulation::Pool;
+use stickslip::store::{MemoryStore, Snapshot, Store};
+use stickslip::wire::session::Advance;
+use stickslip::wire::{CreateRequest, Plan, Steps};
+use uuid::Uuid;
+
+const MOVES: usize = 1_000_000;
+/// Moves of one path.
+const PATH: usize = 100_000;
+/// Displacement of gross slip, m, roughly.
+const SLIDE: f64 = 2e-7;
+
+fn sessions(store: &Arc<MemoryStore>) -> Sessions {
+    Sessions::new(store.clone(), Pool::of_the_machine(), 0)
+}
+
+/// To and fro at random, the first `turns` of the turning points ever closer together and the rest within them.
+fn displacements(turns: usize) -> Vec<f64> {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        2.0 * ((seed >> 11) as f64 / (1_u64 << 53) as f64) - 1.0
+    };
+    let turn = |index: usize| if index.is_multiple_of(2) { SLIDE } else { -SLIDE };
+    let inside = if turns > 0 { 0.1 } else { 1.0 };
+    let falling = (0..turns).map(|index| turn(index) * (1.0 - 0.9 * index as f64 / turns as f64)).collect::<Vec<f64>>();
+    falling.into_iter().chain(std::iter::repeat_with(|| inside * SLIDE * next())).take(MOVES).collect()
+}
+
+async fn make(store: &Arc<MemoryStore>, turns: usize) -> Uuid {
+    let sessions = Sessions::new(store.clone(), Pool::of_the_machine(), usize::MAX);
+    let body = br#"{"profile": {"type": "sphere", "radius": 0.01}, "friction": 0.3, "preload": {"normal_force": 10.0},
+        "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}}}"#;
+    let creation = stickslip::wire::read::<CreateRequest>(body).expect("a valid definition");
+    let id = sessions.create(creation, None).await.expect("room").created.expect("a new session");
+    for path in displacements(turns).chunks(PATH) {
+        let plan = Plan::Displacement(path.to_vec());
+        let advance = Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10 };
+        sessions.advance(id, advance, None, None).await.expect("a displacement has no limit");
+        // The snapshot is kept behind the reply.
+        tokio::time::sleep(Duration::from_millis(200)).await;
+    }
+    id
+}
+
+fn opening(criterion: &mut Criterion) {
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("threads are to be had");
+    let mut group = criterion.benchmark_group("open a session of a million moves");
+    group.sample_size(10);
+    for turns in [0, PATH] {
+        let store = Arc::new(MemoryStore::new());
+        let id = runtime.block_on(make(&store, turns));
+        let cold = sessions(&store);
+        let session = runtime.block_on(cold.get(id)).expect("it is there");
+        let kept = runtime.block_on(store.snapshot(id)).expect("it is there").expect("a snapshot");
+        println!("snapshot of {} bytes, {} moves before the end", kept.state.len(), session.sequence - kept.sequence);
+        group.bench_function(format!("{} pieces deep", session.state.memory_depth), |bencher| {
+            bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
+        });
+        if turns == 0 {
+            // Bytes that are no snapshot are ignored.
+            let nothing = Snapshot { sequence: session.sequence + 1, state: Vec::new() };
+            runtime.block_on(store.keep_snapshot(id, nothing)).expect("it is there");
+            group.bench_function("without a snapshot", |bencher| {
+                bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, opening);
+criterion_main!(benches);

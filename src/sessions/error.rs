@@ -1,0 +1,57 @@
+//! Why a session did not do what it was asked for.
+
+use uuid::Uuid;
+
+use crate::simulation::{self, PoolError};
+use crate::store::StoreError;
+
+/// Why a session did not do what it was asked for. Nothing has changed then.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// There is no such session.
+    #[error("there is no contact {0}")]
+    NotFound(Uuid),
+    /// There was such a session, and it has expired.
+    #[error("the contact {0} has expired")]
+    Expired(Uuid),
+    /// The sequence is not the one that the client expects.
+    #[error("the contact is at sequence {found}, not at {expected}")]
+    Stale {
+        /// What the client expects.
+        expected: u64,
+        /// What it is.
+        found: u64,
+    },
+    /// Other processes have moved the session on, again and again.
+    #[error("the contact has moved on to sequence {found} meanwhile")]
+    Overtaken {
+        /// What its sequence is.
+        found: u64,
+    },
+    /// Events are asked for from a move on that has not been made.
+    #[error("the contact is at sequence {found}, and has had no event {after} yet")]
+    Ahead {
+        /// The event that the client says it has seen.
+        after: u64,
+        /// The sequence of the session.
+        found: u64,
+    },
+    /// As many clients listen to events as may.
+    #[error("{} clients listen to events, and no more may", super::STREAMS)]
+    TooManyStreams,
+    /// The mechanics has no answer, or nobody waits for it.
+    #[error(transparent)]
+    Failure(#[from] simulation::Failure),
+    /// The idempotency key belongs to another request.
+    #[error("the idempotency key has been used for another request")]
+    KeyReused,
+    /// No solver is free, or one failed.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// The storage failed.
+    #[error(transparent)]
+    Store(StoreError),
+    /// What is stored cannot be replayed, or a reply not be written: a fault of this program.
+    #[error("{0}")]
+    Broken(String),
+}

@@ -1,0 +1,39 @@
+//! What is done from time to time, whoever asks: idle sessions expire, and receipts go.
+
+use std::time::Duration;
+
+use jiff::Timestamp;
+
+use super::{SessionError, Sessions};
+
+/// How often at least and at most.
+const PERIODS: (Duration, Duration) = (Duration::from_millis(100), Duration::from_secs(60));
+/// An idle session outlives its time by this share at the most, within [`PERIODS`].
+const SHARE: u32 = 10;
+
+impl Sessions {
+    /// Deletes sessions that have not moved for so long, if a time is given, and replies that are no longer owed to retries.
+    /// Says how many sessions went.
+    ///
+    /// # Errors
+    /// A failure of the store.
+    pub async fn sweep(&self, expire_after: Option<Duration>) -> Result<u64, SessionError> {
+        let now = Timestamp::now();
+        let idle_since = expire_after.map(|idle| now.checked_sub(idle).unwrap_or(Timestamp::MIN));
+        self.store.sweep(idle_since).await.map_err(SessionError::Store)
+    }
+
+    /// Sweeps again and again, and never ends.
+    pub async fn keep_house(self, expire_after: Option<Duration>) {
+        let (least, most) = PERIODS;
+        let period = expire_after.map_or(most, |idle| (idle / SHARE).clamp(least, most));
+        loop {
+            match self.sweep(expire_after).await {
+                Ok(0) => {}
+                Ok(expired) => tracing::info!(expired, "idle contacts have expired"),
+                Err(error) => tracing::warn!(%error, "nothing was swept; another attempt follows"),
+            }
+            tokio::time::sleep(period).await;
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! A session as it is worked on: its state, and what it takes of memory.
+
+use std::sync::Arc;
+
+use crate::mechanics::{Contact, Setup};
+use crate::simulation::{self, Seen, warnings};
+use crate::store::{Reply, Session};
+use crate::wire::profile::{Profile, SumProfile, TabulatedProfile};
+use crate::wire::{ContactDefinition, Figures, NewSession, Warning};
+
+use super::snapshot::Beyond;
+use super::{SessionError, written};
+
+/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache.
+const FIXED: usize = 2 * 1024;
+/// Bytes of a point of a table: its two numbers, and the series that the mechanics makes between it and the next.
+const TABLE_POINT: usize = 2 * 1024;
+
+/// A session with its state.
+#[derive(Clone)]
+pub(super) struct Live {
+    pub(super) session: Session,
+    pub(super) about: Arc<About>,
+    pub(super) contact: Contact,
+    /// The way from the last snapshot.
+    pub(super) beyond: Beyond,
+    /// Whether other processes have been seen to move it, so that a move is likely to come too late.
+    pub(super) shared: bool,
+}
+
+/// What follows from the definition and never changes.
+pub(super) struct About {
+    pub(super) figures: Figures,
+    pub(super) warnings: Vec<Warning>,
+}
+
+impl Live {
+    /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state is
+    /// that before the first move.
+    pub(super) fn start(session: Session, setup: Setup) -> Result<Live, simulation::Failure> {
+        let elasticity = setup.elasticity;
+        let contact = simulation::contact(setup, "")?;
+        let figures: Figures = contact.initial_figures().into();
+        let Figures { contact_radius, e_star, indentation, .. } = figures;
+        let noise = contact.profile().noise(contact_radius);
+        let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
+        let warnings = warnings(&session.definition.profile, &elasticity, &seen);
+        let about = Arc::new(About { figures, warnings });
+        Ok(Live { session, about, contact, beyond: Beyond::default(), shared: false })
+    }
+
+    /// Bytes of memory, rather too many than too few: what forks share is counted for each.
+    pub(super) fn bytes(&self) -> usize {
+        let label = self.session.label.as_ref().map_or(0, String::capacity);
+        let warnings: usize = self.about.warnings.iter().map(|warning| warning.message.capacity()).sum();
+        FIXED + self.contact.memory_bytes() + label + warnings + definition_bytes(&self.session.definition)
+    }
+
+    /// The reply that presents a session just made.
+    pub(super) fn introduce(&self) -> Result<Reply, SessionError> {
+        let Session { id, label, sequence, .. } = &self.session;
+        let new = NewSession {
+            id: *id,
+            label: label.clone(),
+            sequence: *sequence,
+            contact: self.about.figures.clone(),
+            state: self.contact.state().into(),
+            warnings: self.about.warnings.clone(),
+        };
+        Ok(Reply { created: Some(*id), sequence: *sequence, body: written(&new)? })
+    }
+}
+
+fn definition_bytes(definition: &ContactDefinition) -> usize {
+    fn table_points(profile: &Profile) -> usize {
+        match profile {
+            Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
+            Profile::Sum(SumProfile { parts }) => parts.iter().map(table_points).sum(),
+            _ => 0,
+        }
+    }
+    table_points(&definition.profile) * TABLE_POINT
+}

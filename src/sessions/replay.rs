@@ -1,0 +1,142 @@
+//! From what is stored to a state: the newest snapshot, and the moves beyond it.
+
+use std::time::Instant;
+
+use uuid::Uuid;
+
+use crate::simulation::cost;
+use crate::store::{Record, StoreError};
+use crate::wire::{At, Faults};
+
+use super::cache::Guard;
+use super::live::Live;
+use super::{SessionError, Sessions};
+
+/// Moves that are fetched from the store at a time.
+const PAGE: usize = 10_000;
+
+impl Sessions {
+    /// The session as it is at hand, or else as it is stored. Other processes may have moved it on, or deleted it: what comes
+    /// of it is to be held against the store.
+    pub(super) async fn at_hand<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut Live, SessionError> {
+        if guard.live.is_none() {
+            self.open(guard).await?;
+        }
+        let id = guard.id();
+        guard.live.as_mut().ok_or(SessionError::NotFound(id))
+    }
+
+    /// The session as it is stored: with what other processes have done to it up to now.
+    pub(super) async fn present<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut Live, SessionError> {
+        if let Some(at_hand) = guard.live.as_ref().map(|live| live.session.sequence) {
+            let stored = self.store.sequence(guard.id()).await.map_err(|error| self.failed(guard, error))?;
+            if stored > at_hand {
+                self.catch_up(guard).await?;
+            } else if stored < at_hand {
+                // The store has been put back to an earlier time.
+                guard.live = None;
+            }
+        }
+        self.at_hand(guard).await
+    }
+
+    /// Makes the moves that are stored beyond the state at hand; says whether there were any.
+    pub(super) async fn catch_up(&self, guard: &mut Guard) -> Result<bool, SessionError> {
+        let id = guard.id();
+        let mut moved = false;
+        while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence) {
+            let page = match self.store.history(id, sequence, PAGE).await {
+                Ok(page) => page,
+                Err(error) => return Err(self.failed(guard, error)),
+            };
+            let (first, last_page) = (page.first().map(|record| record.sequence), page.len() < PAGE);
+            if let Some(first) = first
+                && first != sequence + 1
+            {
+                return Err(broken(guard, &format_args!("move {} is missing", sequence + 1)));
+            }
+            if first.is_some()
+                && let Some(live) = guard.live.take()
+            {
+                guard.live = Some(self.follow(live, page).await?);
+                moved = true;
+            }
+            if last_page {
+                break;
+            }
+        }
+        if let Some(live) = guard.live.as_mut().filter(|_| moved) {
+            live.shared = true;
+            self.offer_snapshot(live);
+        }
+        Ok(moved)
+    }
+
+    /// Brings a session that is not at hand from the store.
+    async fn open(&self, guard: &mut Guard) -> Result<(), SessionError> {
+        let id = guard.id();
+        // The snapshot first: taken later, it might be of a move that the session found has not made yet.
+        let snapshot = self.store.snapshot(id).await;
+        let session = self.store.find(id).await.map_err(|error| self.failed(guard, error))?;
+        let (sequence, updated_at) = (session.sequence, session.updated_at);
+        let mut faults = Faults::default();
+        let setup = session.definition.check(At::Root, &mut faults);
+        let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;
+        let mut live = Live::start(session, setup).map_err(|error| broken(guard, &error))?;
+        (live.contact, live.session.sequence) = self.newest(snapshot, live.contact, sequence).await?;
+        guard.live = Some(live);
+        self.catch_up(guard).await?;
+        if let Some(live) = guard.live.as_mut() {
+            let reached = live.session.sequence;
+            if reached < sequence {
+                guard.live = None;
+                return Err(broken(guard, &format_args!("moves are missing after {reached}")));
+            }
+            if reached == sequence {
+                live.session.updated_at = updated_at;
+            }
+            live.shared = false;
+        }
+        Ok(())
+    }
+
+    /// Makes moves of the past.
+    async fn follow(&self, mut live: Live, page: Vec<Record>) -> Result<Live, SessionError> {
+        let curved = page.iter().filter(|record| record.step.is_curved()).count();
+        let cost = cost::estimated_cost(page.len(), curved, 0, 0, false);
+        let replayed = self.pool.run(cost, move || {
+            let begin = Instant::now();
+            for record in &page {
+                live.contact.apply_within(&record.step.step(), record.tolerance)?;
+                live.session.sequence = record.sequence;
+                live.session.updated_at = record.at;
+            }
+            live.beyond.add(page.len(), begin.elapsed());
+            Ok(live)
+        });
+        replayed.await?.map_err(|error: crate::mechanics::Error| {
+            SessionError::Broken(format!("a stored move cannot be made again: {error}"))
+        })
+    }
+
+    /// What a failure of the store means for a client. Where the session is gone, its state goes too.
+    pub(super) fn failed(&self, guard: &mut Guard, error: StoreError) -> SessionError {
+        if matches!(error, StoreError::NotFound | StoreError::Expired) {
+            guard.live = None;
+        }
+        refused(guard.id(), error)
+    }
+}
+
+/// What a failure of the store means for a client.
+pub(super) fn refused(id: Uuid, error: StoreError) -> SessionError {
+    match error {
+        StoreError::NotFound => SessionError::NotFound(id),
+        StoreError::Expired => SessionError::Expired(id),
+        other => SessionError::Store(other),
+    }
+}
+
+fn broken(guard: &Guard, error: &dyn std::fmt::Display) -> SessionError {
+    SessionError::Broken(format!("contact {} cannot be replayed: {error}", guard.id()))
+}

@@ -1,0 +1,120 @@
+//! Snapshots: states kept in the store, so that opening a session need not replay all of its moves.
+//!
+//! A snapshot is a cache and never a truth: one that is damaged, or of another version of the engine, is ignored, and the
+//! session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and read,
+//! which bounds both the time to open a session and the bytes written for a move.
+
+use std::time::Duration;
+
+use crate::mechanics::Contact;
+use crate::store::{Snapshot, StoreError};
+
+use super::live::Live;
+use super::{SessionError, Sessions};
+
+/// Snapshots that are being kept at a time. A session for which there is no room tries again with its next move.
+pub(super) const AT_ONCE: usize = 2;
+/// No replay shorter than this is worth a snapshot.
+const LEAST: Duration = Duration::from_millis(20);
+/// What it takes to fetch a move from the store, roughly: 10 000 moves come to [`LEAST`].
+const FETCH: Duration = Duration::from_micros(2);
+/// What it takes to write and read a byte of a snapshot, roughly.
+const BYTE: Duration = Duration::from_nanos(3);
+/// Bytes of the checksum at the end.
+const CHECKSUM: usize = 4;
+
+/// The way that a replay would have to go beyond the last snapshot.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Beyond {
+    moves: u32,
+    work: Duration,
+}
+
+impl Beyond {
+    /// Adds moves that took so long to compute.
+    pub(super) fn add(&mut self, moves: usize, work: Duration) {
+        self.moves = self.moves.saturating_add(u32::try_from(moves).unwrap_or(u32::MAX));
+        self.work = self.work.saturating_add(work);
+    }
+
+    /// Whether a snapshot of so many bytes is worth its while.
+    fn is_long(self, bytes: usize) -> bool {
+        let spared = self.work.saturating_add(FETCH.saturating_mul(self.moves));
+        spared >= LEAST.max(BYTE.saturating_mul(u32::try_from(bytes).unwrap_or(u32::MAX)))
+    }
+}
+
+impl Sessions {
+    /// Has a snapshot of a stored state kept in the background, if one is due.
+    pub(super) fn offer_snapshot(&self, live: &mut Live) {
+        if !live.beyond.is_long(live.contact.packed_length()) {
+            return;
+        }
+        let Ok(permit) = self.snapshots.clone().try_acquire_owned() else { return };
+        live.beyond = Beyond::default();
+        let (store, contact) = (self.store.clone(), live.contact.clone());
+        let (id, sequence) = (live.session.id, live.session.sequence);
+        tokio::spawn(async move {
+            let _permit = permit;
+            let Ok(state) = tokio::task::spawn_blocking(move || sealed(&contact)).await else { return };
+            // The session loses nothing by it but time.
+            if let Err(error) = store.keep_snapshot(id, Snapshot { sequence, state }).await {
+                tracing::warn!(%id, sequence, %error, "a snapshot was not kept");
+            }
+        });
+    }
+
+    /// The contact after some stored move and the number of that move; `virgin` and nought if there is no snapshot to read.
+    pub(super) async fn newest(
+        &self,
+        snapshot: Result<Option<Snapshot>, StoreError>,
+        virgin: Contact,
+        last: u64,
+    ) -> Result<(Contact, u64), SessionError> {
+        let snapshot = match snapshot {
+            Ok(Some(snapshot)) if snapshot.sequence <= last => snapshot,
+            Ok(_) => return Ok((virgin, 0)),
+            Err(error) => {
+                tracing::warn!(%error, "a snapshot was not read");
+                return Ok((virgin, 0));
+            }
+        };
+        // Reading a byte is below a nanosecond.
+        let cost = snapshot.state.len() as u64;
+        let read = self.pool.run(cost, move || match unsealed(&virgin, &snapshot.state) {
+            Some(contact) => (contact, snapshot.sequence),
+            None => (virgin, 0),
+        });
+        Ok(read.await?)
+    }
+}
+
+fn sealed(contact: &Contact) -> Vec<u8> {
+    let mut bytes = contact.pack();
+    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
+    bytes
+}
+
+fn unsealed(virgin: &Contact, bytes: &[u8]) -> Option<Contact> {
+    let (state, checksum) = bytes.split_last_chunk::<CHECKSUM>()?;
+    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| virgin.unpack(state))?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Beyond;
+    use std::time::Duration;
+
+    #[test]
+    fn snapshots_are_rare_where_they_are_large_and_frequent_where_moves_are_dear() {
+        let after = |moves, micros| {
+            let mut beyond = Beyond::default();
+            beyond.add(moves, Duration::from_micros(micros));
+            beyond
+        };
+        assert!(!after(5_000, 2_000).is_long(1_000));
+        assert!(after(10_000, 0).is_long(1_000));
+        assert!(after(10, 30_000).is_long(1_000) && !after(10, 30_000).is_long(20_000_000));
+        assert!(after(usize::MAX, u64::MAX).is_long(usize::MAX));
+    }
+}

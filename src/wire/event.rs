@@ -1,0 +1,45 @@
+//! What `/contacts/{id}/events` sends.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use super::path::Move;
+use super::reply::State;
+
+/// The data of an event `state`: a move that has been applied, with the state after it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StateEvent {
+    /// The session.
+    pub id: Uuid,
+    /// The number of the move, and of moves so far; the identifier of the event.
+    pub sequence: u64,
+    /// The move as it was given; left out before the first.
+    #[serde(rename = "move", default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub step: Option<Move>,
+    /// The state after it.
+    pub state: State,
+    /// When it was applied, or the session made (ISO 8601, UTC).
+    pub at: Timestamp,
+}
+
+/// The data of the event `end`, the last one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct EndEvent {
+    /// Why there are no more.
+    pub reason: EndReason,
+}
+
+/// Why there are no more events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EndReason {
+    /// The contact has been deleted.
+    Deleted,
+    /// The contact has been idle for so long that it has expired.
+    Expired,
+    /// The server stops; another, or the same when it is back, goes on from `Last-Event-ID`.
+    Stopping,
+}

@@ -1,0 +1,294 @@
+//! The session layer over a store: snapshots that change nothing but time, a cache of bounded bytes, expiry.
+
+mod common;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use common::{Server, ball, create, problem};
+use futures::StreamExt as _;
+use futures::future::join_all;
+use reqwest::Method;
+use serde_json::json;
+use stickslip::client::{Client, Event, Options};
+use stickslip::mechanics::Contact;
+use stickslip::sessions::Sessions;
+use stickslip::simulation::Pool;
+use stickslip::store::{MemoryStore, Snapshot, Store};
+use stickslip::wire::{
+    At, CreateRequest, EndReason, Faults, ForkRequest, Move, Path, PathRequest, State, Steps, StressRequest,
+};
+use uuid::Uuid;
+
+/// Nothing stays at hand.
+const NO_CACHE: usize = 0;
+
+/// Moves of all kinds, some of them curved, many small ones among them that leave a deep memory.
+fn wandering(count: usize, seed: f64) -> Vec<Move> {
+    let turn = |index: usize| (seed + index as f64 * 2.399).sin();
+    let step = |index: usize| match index % 97 {
+        0 => Move { indentation: Some(4.7e-7 * (1.0 + 0.3 * turn(index))), ..Move::displacement(5e-8 * turn(index)) },
+        31 => Move { normal_force: Some(10.0 + 2.0 * turn(index)), ..Move::default() },
+        62 => Move { normal_force: Some(10.0 + 2.0 * turn(index)), ..Move::force(0.5 * turn(index)) },
+        _ => Move::displacement(2e-7 * turn(index) * (1.0 - (index % 97) as f64 / 100.0)),
+    };
+    (0..count).map(step).collect()
+}
+
+fn along(moves: Vec<Move>) -> PathRequest {
+    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::Last, tolerance: Some(1e-6) }
+}
+
+/// Every move of a session made again from its definition, with nothing of the session layer.
+async fn replayed(store: &dyn Store, id: Uuid) -> Contact {
+    let session = store.find(id).await.unwrap();
+    let setup = session.definition.check(At::Root, &mut Faults::default()).unwrap();
+    let mut contact = Contact::new(setup).unwrap();
+    for record in store.history(id, 0, usize::MAX).await.unwrap() {
+        contact.apply_within(&record.step.step(), record.tolerance).unwrap();
+        assert_eq!(bits(&contact.state().into()), bits(&record.state));
+    }
+    contact
+}
+
+fn bits(state: &State) -> [u64; 8] {
+    [
+        state.displacement,
+        state.force,
+        state.indentation,
+        state.normal_force,
+        state.contact_radius,
+        state.stick_radius,
+        state.dissipated_energy,
+        state.elastic_energy,
+    ]
+    .map(f64::to_bits)
+}
+
+async fn shear(client: &Client, id: Uuid, contact: &Contact) {
+    let asked = StressRequest { points: Some(50), ..StressRequest::default() };
+    let stress = client.stress(id, &asked, false).await.unwrap();
+    for (radius, shear) in stress.radius.iter().zip(stress.shear.unwrap()) {
+        assert_eq!(shear.unwrap().to_bits(), contact.shear(*radius).to_bits());
+    }
+}
+
+/// Waits for the snapshot after the move `sequence`, which is kept in the background.
+async fn snapshot(store: &dyn Store, id: Uuid, sequence: u64) -> Snapshot {
+    let kept = async {
+        loop {
+            match store.snapshot(id).await.unwrap() {
+                Some(snapshot) if snapshot.sequence >= sequence => return snapshot,
+                _ => tokio::time::sleep(Duration::from_millis(5)).await,
+            }
+        }
+    };
+    tokio::time::timeout(Duration::from_secs(30), kept).await.expect("no snapshot was kept")
+}
+
+#[tokio::test]
+async fn a_session_opened_from_a_snapshot_is_the_same_to_the_last_bit() {
+    let store = Arc::new(MemoryStore::new());
+    let server = Server::with(store.clone(), NO_CACHE).await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    client.path(id, &along(wandering(11_000, 0.0)), &options).await.unwrap();
+    snapshot(&*store, id, 11_000).await;
+    // Beyond the snapshot, straight and curved, each call from the store.
+    let fork = client.fork(id, &ForkRequest::default(), &options).await.unwrap().id;
+    for id in [id, fork] {
+        client.path(id, &along(wandering(200, 1.0)), &options).await.unwrap();
+        let contact = replayed(&*store, id).await;
+        let shown = client.contact(id).await.unwrap();
+        assert_eq!((shown.sequence, bits(&shown.state)), (11_200, bits(&contact.state().into())));
+        shear(client, id, &contact).await;
+    }
+    assert_eq!(store.snapshot(fork).await.unwrap().unwrap().sequence, 11_000);
+}
+
+#[tokio::test]
+async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
+    let store = Arc::new(MemoryStore::new());
+    let server = Server::with(store.clone(), NO_CACHE).await;
+    let (client, options) = (&server.client, Options::default());
+    let (one, other) =
+        (client.create(&create(), &options).await.unwrap().id, client.create(&create(), &options).await.unwrap().id);
+    client.path(one, &along(wandering(10_000, 0.0)), &options).await.unwrap();
+    client.path(other, &along(wandering(9_000, 5.0)), &options).await.unwrap();
+    let taken = snapshot(&*store, one, 10_000).await;
+    let truth = client.contact(other).await.unwrap();
+
+    // Damaged, cut short, of nothing, and of a move that has not been made: the session is replayed.
+    let mut damaged = taken.state.clone();
+    damaged[taken.state.len() / 2] ^= 0x10;
+    let cut = taken.state[..taken.state.len() - 8].to_vec();
+    for (sequence, state) in [(8_001, damaged), (8_002, cut), (8_003, Vec::new()), (9_001, taken.state.clone())] {
+        store.keep_snapshot(other, Snapshot { sequence, state }).await.unwrap();
+        assert_eq!(client.contact(other).await.unwrap(), truth);
+    }
+    // A sound one is not held against the moves: that would be the replay that it spares.
+    let third = client.create(&create(), &options).await.unwrap().id;
+    client.apply(third, &Move::displacement(1e-9).into(), &options).await.unwrap();
+    store.keep_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
+    let (found, expected) = (client.contact(third).await.unwrap(), client.contact(one).await.unwrap());
+    assert_eq!((found.sequence, bits(&found.state)), (1, bits(&expected.state)));
+}
+
+fn table(points: usize) -> CreateRequest {
+    let r: Vec<f64> = (0..points).map(|index| 1e-3 * index as f64 / points as f64).collect();
+    let z: Vec<f64> = r.iter().map(|r| r * r / 0.02).collect();
+    let mut definition = ball();
+    definition["profile"] = json!({"type": "tabulated", "r": r, "z": z});
+    definition["label"] = json!("a table");
+    serde_json::from_value(definition).unwrap()
+}
+
+#[tokio::test]
+async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() {
+    let budget = 150_000;
+    let store = Arc::new(MemoryStore::new());
+    let pool = Pool::of_the_machine();
+    let sessions = Sessions::new(store.clone(), pool.clone(), budget);
+    let server = Server::over(sessions.clone(), pool).await;
+    let (client, options) = (&server.client, Options::default());
+    let mut ids = Vec::new();
+    for index in 0..60 {
+        let definition = if index % 20 == 0 { table(5 + index) } else { create() };
+        ids.push(client.create(&definition, &options).await.unwrap().id);
+    }
+    let walks = ids.iter().enumerate().map(|(index, &id)| {
+        let (options, sessions) = (options.clone(), sessions.clone());
+        async move {
+            for round in 0..6 {
+                let seed = (index * 7 + round) as f64;
+                for step in wandering(4, seed) {
+                    client.apply(id, &step.into(), &options).await.unwrap();
+                }
+                client.path(id, &along(wandering(30, seed)), &options).await.unwrap();
+                client.contact(id).await.unwrap();
+                assert!(client.contact(Uuid::now_v7()).await.is_err());
+                assert!(sessions.held().0 <= budget);
+            }
+        }
+    });
+    join_all(walks).await;
+    let (bytes, held) = sessions.held();
+    assert!(bytes <= budget && (1..40).contains(&held), "{held} sessions in {bytes} bytes");
+    for &id in &ids {
+        let (shown, contact) = (client.contact(id).await.unwrap(), replayed(&*store, id).await);
+        assert_eq!((shown.sequence, bits(&shown.state)), (6 * 34, bits(&contact.state().into())));
+    }
+}
+
+#[tokio::test]
+async fn what_is_not_touched_and_what_does_not_exist_takes_no_room() {
+    let store = Arc::new(MemoryStore::new());
+    let pool = Pool::of_the_machine();
+    let (client, options) = {
+        let server = Server::with(store.clone(), NO_CACHE).await;
+        (server.client, Options::default())
+    };
+    let mut ids = Vec::new();
+    for _ in 0..200 {
+        ids.push(client.create(&create(), &options).await.unwrap().id);
+    }
+    // The same store, as after a restart.
+    let sessions = Sessions::new(store, pool.clone(), 1 << 20);
+    let server = Server::over(sessions.clone(), pool).await;
+    let listed = server.client.contacts(None, Some(1_000)).await.unwrap();
+    assert_eq!((listed.items.len(), sessions.held()), (200, (0, 0)));
+    for _ in 0..200 {
+        assert!(server.client.contact(Uuid::now_v7()).await.is_err());
+    }
+    assert_eq!(sessions.held(), (0, 0));
+    server.client.contact(ids[0]).await.unwrap();
+    let (small, held) = sessions.held();
+    assert_eq!(held, 1);
+    // Grown by its moves, it takes more room; deleted, none.
+    let peak = PathRequest {
+        path: serde_json::from_value(json!({"falling_amplitude": {"reversals": 2000}})).unwrap(),
+        ..along(Vec::new())
+    };
+    let depth = server.client.path(ids[0], &peak, &options).await.unwrap().steps[0].memory_depth;
+    let (large, held) = sessions.held();
+    assert!(held == 1 && large >= small + 100 * depth, "{small} {large} {depth}");
+    server.client.delete(ids[0], &options).await.unwrap();
+    assert_eq!(sessions.held(), (0, 0));
+}
+
+#[tokio::test]
+async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_hand() {
+    let store = Arc::new(MemoryStore::new());
+    let pool = Pool::of_the_machine();
+    let sessions = Sessions::new(store, pool.clone(), 1 << 20);
+    let server = Server::over(sessions.clone(), pool).await;
+    let (client, options) = (&server.client, Options::default());
+    let idle = client.create(&create(), &options).await.unwrap().id;
+    let mut events = Box::pin(client.events(idle, Some(0)).await.unwrap());
+    tokio::time::sleep(Duration::from_millis(1_100)).await;
+    let busy = client.create(&create(), &options).await.unwrap().id;
+    assert_eq!(sessions.sweep(None).await.unwrap(), 0);
+    client.contact(idle).await.unwrap();
+    assert_eq!(sessions.sweep(Some(Duration::from_secs(1))).await.unwrap(), 1);
+
+    assert_eq!(events.next().await.unwrap().unwrap(), Event::End(EndReason::Expired));
+    let place = format!("/contacts/{idle}");
+    let (step, path) = (json!({"force": 1.0}), json!({"path": {"force": [1.0]}}));
+    for refused in [
+        server.post(&format!("{place}/move"), &step).await,
+        server.get(&place).await,
+        server.post(&format!("{place}/move"), &step).await,
+        server.post(&format!("{place}/path"), &path).await,
+        server.post(&format!("{place}/fork"), &json!({})).await,
+        server.get(&format!("{place}/stress?points=5")).await,
+        server.get(&format!("{place}/history")).await,
+        server.get(&format!("{place}/events")).await,
+        server.send(Method::DELETE, &place, None, &[]).await,
+    ] {
+        let refused = problem(refused).await;
+        assert_eq!((refused.status, refused.code.as_str()), (410, "contact_expired"));
+    }
+    client.contact(busy).await.unwrap();
+    assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 1);
+}
+
+/// Two session layers over one store stand for two processes: neither knows what the other has at hand.
+#[tokio::test]
+async fn processes_that_share_a_store_see_each_others_moves() {
+    let store = Arc::new(MemoryStore::new());
+    let servers = [Server::with(store.clone(), 1 << 20).await, Server::with(store.clone(), 1 << 20).await];
+    let [here, there] = [&servers[0].client, &servers[1].client];
+    let options = Options::default();
+    let id = here.create(&create(), &options).await.unwrap().id;
+    here.apply(id, &Move::displacement(1e-7).into(), &options).await.unwrap();
+    assert_eq!(there.contact(id).await.unwrap(), here.contact(id).await.unwrap());
+    let moved = there.apply(id, &Move { normal_force: Some(20.0), ..Move::default() }.into(), &options).await.unwrap();
+    assert_eq!(here.contact(id).await.unwrap().state, moved.state);
+
+    // What friction can hold is decided by the load that the other has set, and so is the sequence.
+    there.apply(id, &Move { normal_force: Some(30.0), ..Move::default() }.into(), &options).await.unwrap();
+    let strong = here.apply(id, &Move::force(8.0).into(), &options).await.unwrap();
+    assert_eq!(strong.sequence, 4);
+    let expecting = |sequence| Options { if_match: Some(sequence), ..Options::default() };
+    there.apply(id, &Move::force(1.0).into(), &expecting(4)).await.unwrap();
+    let stale = here.apply(id, &Move::force(1.0).into(), &expecting(4)).await.unwrap_err();
+    assert_eq!(stale.problem().unwrap().code, "stale_sequence");
+    assert_eq!(there.fork(id, &ForkRequest::default(), &options).await.unwrap().sequence, 5);
+
+    // Sixteen at once, over both.
+    let writes = (0..160).map(|index| {
+        let (client, options) = (servers[index % 2].client.clone(), options.clone());
+        let step = Move { relative: true, ..Move::displacement(1e-9 * (index as f64).sin()) };
+        async move { client.apply(id, &step.into(), &options).await.unwrap().sequence }
+    });
+    let mut sequences = join_all(writes).await;
+    sequences.sort_unstable();
+    assert_eq!(sequences, (6..=165).collect::<Vec<u64>>());
+    let contact = replayed(&*store, id).await;
+    for client in [here, there] {
+        assert_eq!(bits(&client.contact(id).await.unwrap().state), bits(&contact.state().into()));
+    }
+    // Deleted there, it is gone here.
+    there.delete(id, &options).await.unwrap();
+    assert_eq!(here.contact(id).await.unwrap_err().problem().unwrap().status, 404);
+}
