@@ -1,7 +1,7 @@
 //! What it takes to open a session that is not at hand: `cargo bench --bench sessions`.
 //!
 //! A session of a million moves, its memory some ten pieces deep and a hundred thousand, opened from its snapshot and the
-//! moves beyond it; and the same without a snapshot, from the first move on.
+//! moves beyond it, nearly as many as there can be; and the same without a snapshot, from the first move on.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -11,12 +11,14 @@ use stickslip::sessions::Sessions;
 use stickslip::simulation::Pool;
 use stickslip::store::{MemoryStore, Snapshot, Store};
 use stickslip::wire::session::Advance;
-use stickslip::wire::{CreateRequest, Plan, Steps};
+use stickslip::wire::{CreateRequest, Plan, Steps, read};
 use uuid::Uuid;
 
 const MOVES: usize = 1_000_000;
 /// Moves of one path.
 const PATH: usize = 100_000;
+/// Moves after the last snapshot: a little fewer than call for another.
+const TAIL: usize = 8_000;
 /// Displacement of gross slip, m, roughly.
 const SLIDE: f64 = 2e-7;
 
@@ -39,11 +41,14 @@ fn displacements(turns: usize) -> Vec<f64> {
 
 async fn make(store: &Arc<MemoryStore>, turns: usize) -> Uuid {
     let sessions = Sessions::new(store.clone(), Pool::of_the_machine(), usize::MAX);
-    let body = br#"{"profile": {"type": "sphere", "radius": 0.01}, "friction": 0.3, "preload": {"normal_force": 10.0},
+    let definition =
+        br#"{"profile": {"type": "sphere", "radius": 0.01}, "friction": 0.3, "preload": {"normal_force": 10.0},
         "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}}}"#;
-    let creation = stickslip::wire::read::<CreateRequest>(body).expect("a valid definition");
+    let creation = read::<CreateRequest>(definition).expect("a valid definition");
     let id = sessions.create(creation, None).await.expect("room").created.expect("a new session");
-    for path in displacements(turns).chunks(PATH) {
+    let displacements = displacements(turns);
+    let (body, tail) = displacements.split_at(MOVES - TAIL);
+    for path in body.chunks(PATH).chain([tail]) {
         let plan = Plan::Displacement(path.to_vec());
         let advance = Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10 };
         sessions.advance(id, advance, None, None).await.expect("a displacement has no limit");

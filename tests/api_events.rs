@@ -2,13 +2,13 @@
 
 mod common;
 
-use std::io::{BufRead as _, BufReader};
+use std::io::Read as _;
 use std::pin::pin;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Server, ball, create, problem};
+use common::{Binary, Server, create, problem};
 use futures::future::join_all;
 use futures::{Stream, StreamExt as _};
 use reqwest::Method;
@@ -199,32 +199,28 @@ async fn there_are_so_many_listeners_and_no_more() {
 
 #[tokio::test]
 async fn a_graceful_stop_ends_the_events_and_is_not_held_up_by_them() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
-        .args(["--listen", "127.0.0.1:0", "--store", "memory:"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut line = String::new();
-    BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
-    let client = Client::new(base);
-    let id = client.create(&serde_json::from_value(ball()).unwrap(), &Options::default()).await.unwrap().id;
+    let mut binary = Binary::start(&[]);
+    let client = &binary.client;
+    let id = client.create(&create(), &Options::default()).await.unwrap().id;
     let mut listeners = Vec::new();
     for _ in 0..5 {
-        let mut events = listen(&client, id, None).await;
+        let mut events = listen(client, id, None).await;
         assert_eq!(next_state(&mut events).await.sequence, 0);
         listeners.push(events);
     }
-    let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    let sent = Command::new("kill").args(["-TERM", &binary.child.id().to_string()]).status().unwrap();
     assert!(sent.success());
     for events in &mut listeners {
         assert_eq!(next(events).await, Event::End(EndReason::Stopping));
         assert!(events.next().await.is_none());
     }
-    let output = tokio::task::spawn_blocking(move || child.wait_with_output().unwrap()).await.unwrap();
-    assert!(output.status.success());
+    let ended = tokio::task::spawn_blocking(move || {
+        let mut log = String::new();
+        binary.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();
+        (binary.child.wait().unwrap(), log)
+    });
+    let (status, log) = ended.await.unwrap();
+    assert!(status.success(), "{status}");
     // Otherwise the streams would have been closed by force when the grace was over.
-    let log = String::from_utf8(output.stderr).unwrap();
     assert!(log.contains("stopping") && !log.contains("still open"), "{log}");
 }

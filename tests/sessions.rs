@@ -2,10 +2,11 @@
 
 mod common;
 
+use std::process::Command;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Server, ball, create, problem};
+use common::{Binary, Server, ball, create, problem};
 use futures::StreamExt as _;
 use futures::future::join_all;
 use reqwest::Method;
@@ -114,7 +115,9 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     let (one, other) =
         (client.create(&create(), &options).await.unwrap().id, client.create(&create(), &options).await.unwrap().id);
     client.path(one, &along(wandering(10_000, 0.0)), &options).await.unwrap();
-    client.path(other, &along(wandering(9_000, 5.0)), &options).await.unwrap();
+    // Too few moves for a snapshot of its own.
+    let few = (0..500).map(|index| Move::displacement(2e-7 * f64::from(index).sin())).collect();
+    client.path(other, &along(few), &options).await.unwrap();
     let taken = snapshot(&*store, one, 10_000).await;
     let truth = client.contact(other).await.unwrap();
 
@@ -122,8 +125,9 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     let mut damaged = taken.state.clone();
     damaged[taken.state.len() / 2] ^= 0x10;
     let cut = taken.state[..taken.state.len() - 8].to_vec();
-    for (sequence, state) in [(8_001, damaged), (8_002, cut), (8_003, Vec::new()), (9_001, taken.state.clone())] {
+    for (sequence, state) in [(401, damaged), (402, cut), (403, Vec::new()), (501, taken.state.clone())] {
         store.keep_snapshot(other, Snapshot { sequence, state }).await.unwrap();
+        assert_eq!(store.snapshot(other).await.unwrap().unwrap().sequence, sequence);
         assert_eq!(client.contact(other).await.unwrap(), truth);
     }
     // A sound one is not held against the moves: that would be the replay that it spares.
@@ -231,7 +235,8 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_
     client.contact(idle).await.unwrap();
     assert_eq!(sessions.sweep(Some(Duration::from_secs(1))).await.unwrap(), 1);
 
-    assert_eq!(events.next().await.unwrap().unwrap(), Event::End(EndReason::Expired));
+    let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("the events did not end");
+    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
     let place = format!("/contacts/{idle}");
     let (step, path) = (json!({"force": 1.0}), json!({"path": {"force": [1.0]}}));
     for refused in [
@@ -250,6 +255,21 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_
     }
     client.contact(busy).await.unwrap();
     assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 1);
+}
+
+#[tokio::test]
+async fn the_binary_lets_idle_contacts_expire_when_it_is_told_to() {
+    for nonsense in [["--expire-after", "0s"], ["--expire-after", "soon"], ["--cache-bytes", "-1"]] {
+        let refused = Command::new(env!("CARGO_BIN_EXE_stickslip")).args(nonsense).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{nonsense:?}");
+    }
+    let binary = Binary::start(&["--expire-after", "1s", "--cache-bytes", "1MiB"]);
+    let client = &binary.client;
+    let id = client.create(&create(), &Options::default()).await.unwrap().id;
+    let mut events = Box::pin(client.events(id, Some(0)).await.unwrap());
+    let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("it did not expire");
+    assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
+    assert_eq!(client.contact(id).await.unwrap_err().problem().unwrap().status, 410);
 }
 
 /// Two session layers over one store stand for two processes: neither knows what the other has at hand.

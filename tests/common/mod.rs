@@ -6,6 +6,8 @@ pub mod kill;
 pub mod postgres;
 pub mod process;
 
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 
 use reqwest::{Method, Response};
@@ -69,6 +71,37 @@ impl Server {
     pub async fn contact(&self) -> String {
         let reply: Value = self.post("/contacts", &ball()).await.json().await.unwrap();
         reply["id"].as_str().unwrap().to_owned()
+    }
+}
+
+/// The real binary with a server in it; killed when it is dropped.
+pub struct Binary {
+    pub child: Child,
+    pub client: Client,
+}
+
+impl Binary {
+    /// Starts it on a free port, and waits until it listens. The log goes to standard error.
+    pub fn start(arguments: &[&str]) -> Binary {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
+            .args(["--listen", "127.0.0.1:0", "--store", "memory:"])
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
+        Binary { child, client: Client::new(base) }
+    }
+}
+
+impl Drop for Binary {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 
