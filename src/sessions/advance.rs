@@ -71,7 +71,8 @@ impl Sessions {
             agree(expected, sequence)?;
             let (live, Done { records, reply }) = match self.compute(id, &advance, &mut guard, &stop).await {
                 Err(SessionError::Failure(_))
-                    if !std::mem::replace(&mut checked, true)
+                    if self.store.is_shared()
+                        && !std::mem::replace(&mut checked, true)
                         && self.current(id, &mut guard).await?.session.sequence != sequence =>
                 {
                     // Refused because of a state of the past.
