@@ -116,20 +116,27 @@ async fn one_that_fails_does_not_fail_those_beside_it() {
     let other = session();
     store.create(other.clone(), None).await.unwrap();
     // Started together, they wait for the same transaction.
-    let (a, b, c, d, e) = futures::join!(
+    let (a, b, c, d) = futures::join!(
         store.append(good.id, 0, vec![record(1, 1.0)], receipt("fresh")),
         store.append(stale.id, 7, vec![record(8, 1.0)], receipt("unused")),
-        store.append(other.id, 0, vec![record(1, 1.0)], receipt("taken")),
-        store.append(Uuid::now_v7(), 0, vec![record(1, 1.0)], None),
+        store.append(Uuid::now_v7(), 0, vec![record(1, 1.0)], receipt("unused too")),
         store.create(session(), None),
     );
-    assert!(a.is_ok() && e.is_ok(), "{a:?} {e:?}");
+    assert!(a.is_ok() && d.is_ok(), "{a:?} {d:?}");
     assert!(matches!(b, Err(StoreError::Stale { found: 0 })), "{b:?}");
-    assert!(matches!(c, Err(StoreError::KeyTaken)), "{c:?}");
-    assert!(matches!(d, Err(StoreError::NotFound)), "{d:?}");
+    assert!(matches!(c, Err(StoreError::NotFound)), "{c:?}");
+    // A taken key undoes the transaction.
+    let (a, b, c) = futures::join!(
+        store.append(good.id, 1, vec![record(2, 1.0)], None),
+        store.append(other.id, 0, vec![record(1, 1.0)], receipt("taken")),
+        store.create(session(), receipt("another")),
+    );
+    assert!(a.is_ok() && c.is_ok(), "{a:?} {c:?}");
+    assert!(matches!(b, Err(StoreError::KeyTaken)), "{b:?}");
     assert_eq!(store.find(other.id).await.unwrap().sequence, 0);
     assert!(store.history(other.id, 0, 10).await.unwrap().is_empty());
     assert_eq!(store.receipt("unused").await.unwrap(), None);
+    assert_eq!(store.receipt("unused too").await.unwrap(), None);
     assert_eq!(store.receipt("fresh").await.unwrap(), receipt("fresh"));
 }
 

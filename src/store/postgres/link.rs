@@ -22,7 +22,8 @@ const PATIENCE_FOR_CONNECTION: Duration = Duration::from_secs(5);
 pub(super) const ANSWER: Duration = Duration::from_secs(15);
 /// The same for statements that copy or delete whole pasts.
 pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
-/// How often two transactions may get in each other's way before the client is told.
+/// How often work is begun anew on the whole, and because two transactions got in each other's way.
+const TRIES: usize = 12;
 const COLLISIONS: usize = 5;
 
 /// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use any
@@ -118,13 +119,15 @@ impl Link {
 pub(super) struct Tries {
     pauses: Pauses,
     collisions: usize,
+    count: usize,
 }
 
 impl Tries {
     /// Waits before another try, or says that there is to be none.
     pub(super) async fn bear(&mut self, outage: &Outage, fault: Fault) -> Result<(), StoreError> {
+        self.count += 1;
         match &fault {
-            Fault::Lost(text) if outage.bearable(text) => {}
+            Fault::Lost(text) if outage.bearable(text) && self.count < TRIES => {}
             Fault::Again(_) if self.collisions < COLLISIONS => self.collisions += 1,
             _ => return Err(fault.finally()),
         }

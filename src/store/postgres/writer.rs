@@ -23,6 +23,8 @@ const QUEUE: usize = 4096;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// How often a batch may collide with what others do before its clients are told.
 const COLLISIONS: usize = 8;
+/// How often a connection may be lost under one batch: perhaps it is the batch that the engine does not bear.
+const LOSSES: usize = 4;
 
 /// Where changes are handed in.
 pub(super) struct Writer {
@@ -81,7 +83,7 @@ impl Desk {
     /// Sees to it that each of the changes is made or refused, and answers them; `in_doubt` if an earlier attempt may have
     /// been committed.
     async fn settle(&mut self, mut batch: Vec<Job>, mut in_doubt: bool) {
-        let (mut pauses, mut collisions) = (Pauses::default(), 0);
+        let (mut pauses, mut collisions, mut losses) = (Pauses::default(), 0, 0);
         while !batch.is_empty() {
             let fault = match self.line().await {
                 Ok(line) => match line.fly(&batch).await {
@@ -93,7 +95,9 @@ impl Desk {
                         return;
                     }
                     Err(fault) => {
-                        in_doubt |= matches!(fault, Fault::Lost(_));
+                        if matches!(fault, Fault::Lost(_)) {
+                            (in_doubt, losses) = (true, losses + 1);
+                        }
                         fault
                     }
                 },
@@ -102,7 +106,7 @@ impl Desk {
             match fault {
                 Fault::Lost(text) => {
                     self.line = None;
-                    if !self.link.outage.bearable(&text) {
+                    if !self.link.outage.bearable(&text) || losses > LOSSES {
                         return answer_all(batch, || StoreError::Unavailable(text.clone()));
                     }
                     pauses.pause().await;
