@@ -3,7 +3,7 @@
 use uuid::Uuid;
 
 use crate::simulation::{self, Stop, cost, stresses};
-use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, SessionSummary, StressReply};
+use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
 use super::{SessionError, Sessions, written};
 
@@ -63,14 +63,7 @@ impl Sessions {
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);
-        let items = found.into_iter().map(|session| SessionSummary {
-            id: session.id,
-            label: session.label,
-            sequence: session.sequence,
-            created_at: session.created_at,
-            updated_at: session.updated_at,
-        });
-        Ok(SessionPage { items: items.collect(), next })
+        Ok(SessionPage { items: found, next })
     }
 
     /// A page of a session's past, oldest first.

@@ -8,6 +8,8 @@ use futures::FutureExt as _;
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use crate::wire::SessionSummary;
+
 use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
 
 /// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
@@ -111,6 +113,11 @@ fn size(receipt: &Receipt) -> usize {
     RECEIPT_OVERHEAD + receipt.reply.body.len() + 2 * receipt.request.key.len()
 }
 
+fn summary(session: &Session) -> SessionSummary {
+    let Session { id, ref label, sequence, created_at, updated_at, .. } = *session;
+    SessionSummary { id, label: label.clone(), sequence, created_at, updated_at }
+}
+
 fn answer<'a, T: Send + 'a>(result: Result<T, StoreError>) -> Answer<'a, T> {
     std::future::ready(result).boxed()
 }
@@ -133,11 +140,11 @@ impl Store for MemoryStore {
         answer(inner.sessions.get(&id).map(|stored| stored.session.clone()).ok_or_else(|| inner.missing(id)))
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         use std::ops::Bound::{Excluded, Unbounded};
         let inner = self.lock();
         let beyond = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
-        answer(Ok(beyond.take(limit).map(|(_, stored)| stored.session.clone()).collect()))
+        answer(Ok(beyond.take(limit).map(|(_, stored)| summary(&stored.session)).collect()))
     }
 
     fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {

@@ -17,7 +17,7 @@ use futures::future::BoxFuture;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::wire::{ContactDefinition, Move, State};
+use crate::wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
 pub use memory::MemoryStore;
@@ -142,8 +142,9 @@ pub trait Store: Send + Sync + 'static {
     /// The session.
     fn find(&self, id: Uuid) -> Answer<'_, Session>;
 
-    /// At most `limit` sessions with identifiers beyond `after`, in order.
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>>;
+    /// At most `limit` sessions with identifiers beyond `after`, in order. Without their definitions: a page of those could
+    /// be larger than the memory.
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.

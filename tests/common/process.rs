@@ -13,8 +13,11 @@ pub struct Process {
     pub client: Client,
 }
 
-fn command(store: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+fn command(prefix: &[String], store: &str) -> Command {
+    let binary = [env!("CARGO_BIN_EXE_stickslip").to_owned()];
+    let mut words = prefix.iter().chain(&binary);
+    let mut command = Command::new(words.next().unwrap());
+    command.args(words);
     command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
     command
 }
@@ -22,7 +25,12 @@ fn command(store: &str) -> Command {
 impl Process {
     /// Starts a server over a store and waits until it listens.
     pub async fn start(store: &str) -> Process {
-        let mut child = command(store).stdout(Stdio::piped()).spawn().unwrap();
+        Process::start_by(&[], store).await
+    }
+
+    /// The same by way of a program that becomes it, such as `nsenter` with its arguments.
+    pub async fn start_by(prefix: &[String], store: &str) -> Process {
+        let mut child = command(prefix, store).stdout(Stdio::piped()).spawn().unwrap();
         let stdout = child.stdout.take().unwrap();
         let read = move || BufReader::new(stdout).lines().next();
         let line = tokio::task::spawn_blocking(read).await.unwrap();
@@ -62,7 +70,7 @@ impl Drop for Process {
 
 /// What a server says that cannot start: its output, once it has ended by itself.
 pub fn refused(store: &str) -> Output {
-    let mut child = command(store).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = command(&[], store).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     for _ in 0..1000 {
         if child.try_wait().unwrap().is_some() {
             return child.wait_with_output().unwrap();

@@ -1,10 +1,9 @@
 //! Everything in one SQLite file: durable when it is acknowledged, for one process at a time.
 //!
-//! One thread writes ([`writer`]): requests that wait share a transaction and its wait for the disk. Reads have connections
-//! of their own ([`readers`]) and wait for nobody. Long work, such as the copy of a million moves, is done in small steps
-//! between the transactions of others ([`fork`]). The tables are in [`schema`], and explained in `docs/storage.md`.
-//!
-//! Among all that may fail, a full disk changes nothing and passes by itself; see [`fault`].
+//! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have connections
+//! of their own (`readers.rs`) and wait for nobody. Long work, such as the copy of a million moves, is done in small steps
+//! between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in `docs/storage.md`. What may
+//! fail, and what it means then, is in `fault.rs`.
 
 mod change;
 mod fault;
@@ -28,6 +27,7 @@ use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
 use super::{Answer, Changes, Receipt, Record, Session, Snapshot, Store, StoreError};
+use crate::wire::SessionSummary;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
 use rusqlite::Connection;
@@ -131,7 +131,7 @@ impl Store for SqliteStore {
         self.look(move |database| read::find(database, id))
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         self.look(move |database| read::list(database, after, limit))
     }
 

@@ -5,10 +5,11 @@ use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Session, Snapshot, StoreError};
+use crate::wire::SessionSummary;
 
 use super::readers::ReadError;
 use super::rows::{
-    MOVE_COLUMNS, SESSION_COLUMNS, SESSIONS, bound, identifier, integer, natural, receipt, record, session,
+    MOVE_COLUMNS, SESSION_COLUMNS, SESSIONS, bound, identifier, integer, natural, receipt, record, session, summary,
 };
 
 /// Sessions that one look for idle ones passes.
@@ -21,17 +22,17 @@ pub(super) fn alive(database: &Connection) -> Result<(), ReadError> {
 
 pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, ReadError> {
     let mut statement =
-        database.prepare_cached(&format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE c.id = ?1"))?;
+        database.prepare_cached(&format!("SELECT {SESSION_COLUMNS}, c.definition FROM {SESSIONS} WHERE c.id = ?1"))?;
     let found = statement.query_row([id.to_string()], session).optional()?;
     found.map_or_else(|| Err(missing(database, id)?), Ok)
 }
 
-pub(super) fn list(database: &Connection, after: Option<Uuid>, limit: usize) -> Result<Vec<Session>, ReadError> {
+pub(super) fn list(database: &Connection, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>, ReadError> {
     // Every identifier comes after the empty text.
     let after = after.map_or_else(String::new, |id| id.to_string());
     let sql = format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE c.id > ?1 ORDER BY c.id LIMIT ?2");
     let mut statement = database.prepare_cached(&sql)?;
-    let found = statement.query_map(params![after, integer(limit as u64)?], session)?;
+    let found = statement.query_map(params![after, integer(limit as u64)?], summary)?;
     Ok(found.collect::<Result<_, _>>()?)
 }
 

@@ -8,15 +8,15 @@ use rusqlite::{CachedStatement, Row, params, types::Type};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Reply, RequestKey, Session};
-use crate::wire::{Move, Regime, State};
+use crate::wire::{Move, Regime, SessionSummary, State};
 
 /// The columns of a move beside its session, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, relative, \
      tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy, \
      elastic_energy, memory_depth, negative_zeros";
 
-/// The columns that [`session`] reads, of contacts `c` with their last moves `m`.
-pub(super) const SESSION_COLUMNS: &str = "c.id, c.label, c.definition, c.created_at, coalesce(m.sequence, 0), \
+/// The columns that [`summary`] reads, of contacts `c` with their last moves `m`.
+pub(super) const SESSION_COLUMNS: &str = "c.id, c.label, coalesce(m.sequence, 0), c.created_at, \
      iif(m.sequence > c.inherited, m.at, c.initial_updated_at)";
 
 /// Contacts `c`, each with its last move `m`.
@@ -115,17 +115,22 @@ fn negative_zeros(record: &Record) -> i64 {
     numbers(&mut copy).into_iter().enumerate().map(|(index, number)| i64::from(flag(number)) << index).sum()
 }
 
-/// The session of a row that begins with [`SESSION_COLUMNS`].
-pub(super) fn session(row: &Row<'_>) -> rusqlite::Result<Session> {
-    let definition = serde_json::from_str(row.get_ref(2)?.as_str()?).map_err(|error| unreadable(2, error))?;
-    Ok(Session {
+/// The session of a row of [`SESSION_COLUMNS`].
+pub(super) fn summary(row: &Row<'_>) -> rusqlite::Result<SessionSummary> {
+    Ok(SessionSummary {
         id: identifier(row, 0)?,
         label: row.get(1)?,
-        definition: Arc::new(definition),
-        sequence: natural(row, 4)?,
+        sequence: natural(row, 2)?,
         created_at: timestamp(row, 3)?,
-        updated_at: timestamp(row, 5)?,
+        updated_at: timestamp(row, 4)?,
     })
+}
+
+/// The session of a row of [`SESSION_COLUMNS`] and its definition.
+pub(super) fn session(row: &Row<'_>) -> rusqlite::Result<Session> {
+    let definition = serde_json::from_str(row.get_ref(5)?.as_str()?).map_err(|error| unreadable(5, error))?;
+    let SessionSummary { id, label, sequence, created_at, updated_at } = summary(row)?;
+    Ok(Session { id, label, definition: Arc::new(definition), sequence, created_at, updated_at })
 }
 
 /// The receipt of a row of key, fingerprint, created, sequence and body.

@@ -17,15 +17,16 @@ pub(super) const NEWEST: i32 = VERSIONS.len() as i32;
 ///
 /// Moves refer to sessions by a short number. There is no foreign key between them, as the past of a deleted session is
 /// removed bit by bit after it. What a session's last move says is not repeated beside the session: a move writes one row.
+/// A definition, which may be long, stands last, so that nobody else has to pass it.
 const VERSION_1: &str = "
 CREATE TABLE contacts (
     number INTEGER PRIMARY KEY,
     id TEXT NOT NULL UNIQUE,
     label TEXT,
-    definition TEXT NOT NULL,
     created_at INTEGER NOT NULL,
     initial_updated_at INTEGER NOT NULL,
-    inherited INTEGER NOT NULL
+    inherited INTEGER NOT NULL,
+    definition TEXT NOT NULL
 ) STRICT;
 CREATE TABLE moves (
     contact INTEGER NOT NULL,

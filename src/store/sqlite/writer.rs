@@ -105,7 +105,6 @@ impl Writer {
                 }
             }
             Err(Failure { error, stage }) => {
-                tracing::error!(%error, requests = batch.len(), "the database does not take changes");
                 for request in batch {
                     answer(request.reply, Err(store_error(&error, stage)));
                 }
