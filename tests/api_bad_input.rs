@@ -76,6 +76,15 @@ async fn every_fault_is_named_at_its_place() {
 }
 
 #[tokio::test]
+async fn a_label_holds_no_character_that_ends_a_text_in_a_database() {
+    let server = Server::start().await;
+    let mut body = ball();
+    body["label"] = json!("before\0after");
+    let refused = problem(server.post("/contacts", &body).await).await;
+    assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/label"));
+}
+
+#[tokio::test]
 async fn all_ranges_are_reported_at_once() {
     let server = Server::start().await;
     let mut body = with("/contact/friction", json!(-1.0));

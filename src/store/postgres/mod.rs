@@ -28,6 +28,8 @@ use jiff::Timestamp;
 use tokio::task::AbortHandle;
 use uuid::Uuid;
 
+use crate::wire::SessionSummary;
+
 use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
 
 use fault::{Fault, Pauses};
@@ -148,12 +150,12 @@ impl Store for PostgresStore {
         .boxed()
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<Session>> {
+    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         async move {
             // Nothing lies before the nil identifier, and no session has it.
             let after = after.unwrap_or(Uuid::nil());
             let found = self.link.rows(sql::LIST, &[&after, &counted(limit as u64)]).await?;
-            found.iter().map(rows::session).collect()
+            found.iter().map(rows::summary).collect()
         }
         .boxed()
     }

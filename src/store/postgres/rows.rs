@@ -10,7 +10,7 @@ use tokio_postgres::Row;
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError};
-use crate::wire::{Move, Regime, State};
+use crate::wire::{Move, Regime, SessionSummary, State};
 
 /// A timestamp as two columns.
 pub(super) fn split(at: Timestamp) -> (SystemTime, i16) {
@@ -48,6 +48,17 @@ pub(super) fn session(row: &Row) -> Result<Session, StoreError> {
         sequence: count(row.get(3)),
         created_at: joined(row.get(4), row.get(5))?,
         updated_at: joined(row.get(6), row.get(7))?,
+    })
+}
+
+/// A line of a list from the columns of [`super::sql::LIST`].
+pub(super) fn summary(row: &Row) -> Result<SessionSummary, StoreError> {
+    Ok(SessionSummary {
+        id: row.get(0),
+        label: row.get(1),
+        sequence: count(row.get(2)),
+        created_at: joined(row.get(3), row.get(4))?,
+        updated_at: joined(row.get(5), row.get(6))?,
     })
 }
 

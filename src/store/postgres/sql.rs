@@ -90,7 +90,7 @@ pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 pub(super) const EXPIRED: &str = "SELECT EXISTS (SELECT 1 FROM expired WHERE id = $1)";
 
 pub(super) const LIST: &str = "
-SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns
+SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
 FROM contacts WHERE id > $1 ORDER BY id LIMIT $2";
 
 pub(super) const HISTORY: &str = "
