@@ -239,3 +239,27 @@ fn a_gap_closes_before_the_normal_force_rises() {
     fresh.apply(&forces(2.0, LOAD)).unwrap();
     assert_eq!(contact.state(), fresh.state());
 }
+
+#[test]
+fn the_default_tolerance_is_met_from_no_load_on() {
+    // Straight from no load: the contact radius grows like the cube root of the force, steepest at first.
+    let touching = || ball(0.0);
+    let slide = |target: f64| Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
+    let load = Some(Normal::NormalForce(LOAD));
+    let mut contact = touching();
+    contact.apply(&Move { normal: load, ..slide(1e-9) }).unwrap();
+    // A displacement that grows with the force keeps U/F, and dU/dd falls with d: nothing slips where U is this small beside d,
+    // and F = 2 G* int a dU = 2 G* (3/2 a) U - G* U a: with a ~ F^(1/3) and U ~ F, int a dU = (3/4) a U.
+    let expected = 2.0 * G_STAR * 0.75 * contact_radius(LOAD) * 1e-9;
+    assert!((contact.force() - expected).abs() < 1e-10 * FRICTION * LOAD, "{:e}", contact.force() - expected);
+    let error = contact.accuracy().path_error;
+    assert!(error <= 1e-10, "{error:e}");
+
+    let mut sliding = touching();
+    let far = 10.0 * FRICTION * E_STAR / G_STAR * indentation(LOAD);
+    sliding.apply(&Move { normal: load, ..slide(far) }).unwrap();
+    // All of it slips: the force is at its limit, whatever the way.
+    assert_eq!(sliding.state().regime, Regime::GrossSlip);
+    assert!((sliding.force() / (FRICTION * LOAD) - 1.0).abs() < 1e-14);
+    assert!(sliding.accuracy().path_error <= 0.0);
+}

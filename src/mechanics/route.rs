@@ -14,9 +14,11 @@ use super::profile::{At, Ring};
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The most chords that one move is given: a bound on its time and on the pieces that it leaves.
 pub const MAX_CHORDS: usize = 1 << 16;
-/// After this many chords, and again after as many more, the tolerance is let go by a factor of four, which halves what the
-/// rest of the way needs: a move ends within [`MAX_CHORDS`], and its true error is reported.
-const PATIENCE: usize = MAX_CHORDS / 8;
+/// Up to this many chords the tolerance stands: a load that rises from nought to any height takes half of them at the default.
+const GENEROUS: usize = MAX_CHORDS / 2;
+/// Then, and again after this many more, it is let go by a factor of four, which halves what the rest of the way needs: a
+/// move ends within [`MAX_CHORDS`], and its true error is reported.
+const PATIENCE: usize = MAX_CHORDS / 16;
 
 /// The share of the tolerance that a chord may spend on which slip sets in or ends.
 const TURN_SHARE: f64 = 1.0 / 16.0;
@@ -63,6 +65,12 @@ struct Deviation {
     kernel: f64,
 }
 
+/// How many times the tolerance asked for a chord may use after so many others.
+fn loosened(chords: usize) -> f64 {
+    let late = (chords + PATIENCE).saturating_sub(GENEROUS) / PATIENCE;
+    (0..late).fold(1.0, |factor, _| 4.0 * factor)
+}
+
 fn between(from: f64, to: f64, part: f64) -> f64 {
     if part < 1.0 { from + (to - from) * part } else { to }
 }
@@ -92,15 +100,16 @@ impl Contact {
             let deviation = self.deviation(route, done, next, &end);
             let error = if largest > 0.0 { unit * deviation.integral / largest } else { 0.0 };
             let share = if deviation.turns { TURN_SHARE } else { next - done };
-            let tolerance = tolerance * f64::from(1 << (2 * (chords / PATIENCE)));
+            let tolerance = tolerance * loosened(chords);
             if error > tolerance * share && step > f64::EPSILON && chords < MAX_CHORDS {
                 // The error of a smooth chord falls with the cube of its length, its share with the length.
                 let shorter = if deviation.turns { 0.25 } else { 0.9 * (tolerance * share / error).sqrt() };
                 step = (next - done) * shorter.clamp(0.02, 0.5);
                 continue;
             }
-            self.advance(&end);
+            // First, as gross slip wipes out the error of the way into it too.
             self.add_path_error(error, deviation.kernel);
+            self.advance(&end);
             done = next;
             chords += 1;
             step *= 2.0;
