@@ -10,10 +10,11 @@ use std::time::Duration;
 use common::postgres::Cluster;
 use common::process::Process;
 use common::{Server, ball, create, problem};
+use futures::StreamExt as _;
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use stickslip::client::{Client, Error, Options};
+use stickslip::client::{Client, Error, Event, Options};
 use stickslip::sessions::CAPACITY;
 use stickslip::simulation::{self, Stop};
 use stickslip::store::PostgresStore;
@@ -276,4 +277,31 @@ async fn a_lost_database_is_admitted_and_found_again() {
 
 async fn soon<T>(future: impl Future<Output = T>) -> T {
     tokio::time::timeout(Duration::from_secs(60), future).await.expect("nothing happened")
+}
+
+#[tokio::test]
+async fn moves_made_at_one_replica_are_told_by_the_other_also_after_the_database_was_away() {
+    let cluster = Cluster::start();
+    let url = cluster.database().await;
+    let (here, there) = (Process::start(&url).await, Process::start(&url).await);
+    let id = here.client.create(&create(), &Options::default()).await.unwrap().id;
+    let mut events = Box::pin(there.client.events(id, Some(0)).await.unwrap());
+    let mut told = Vec::new();
+    let seen = Seen::default();
+    for index in 0..40 {
+        if index == 20 {
+            cluster.crash();
+            cluster.resume();
+        }
+        let servers = [here.client.clone()];
+        insist(&servers, 0, id, step(index), format!("told-{index}"), &seen).await;
+        let event = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("no event came");
+        match event.expect("the events ended").unwrap() {
+            Event::State(state) => told.push((state.sequence, state.step, state.state)),
+            Event::End(reason) => panic!("the events ended: {reason:?}"),
+        }
+    }
+    let past = history(&there.client, id).await;
+    let past: Vec<_> = past.into_iter().map(|item| (item.sequence, Some(item.step), item.state)).collect();
+    assert_eq!(told, past);
 }
