@@ -87,7 +87,7 @@ fn fault(path: &Path, message: &str) -> Fault {
     let message = message.rsplit_once(" at line ").map_or(message, |(text, _)| text);
     let mut pointer = pointer(path);
     // An unknown member is mostly part of the path already; its name may hold any character.
-    let unknown = match path.iter().last() {
+    let unknown = match path.iter().next_back() {
         Some(Segment::Map { key }) => message.starts_with(&format!("unknown field `{key}`")),
         _ => false,
     };
