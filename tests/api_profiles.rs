@@ -119,6 +119,12 @@ async fn what_a_shape_cannot_do_is_refused_by_name() {
             "/contact/profile/exponent",
         ),
         (
+            &json!({"type": "sphere", "radius": 1}),
+            json!({"normal_force": 1e-300}),
+            "invalid_input",
+            "/contact/preload/normal_force",
+        ),
+        (
             // So blunt that it touches all the world.
             &json!({"type": "power_law", "exponent": 0.1, "coefficient": 1e-200}),
             json!({"normal_force": 1}),

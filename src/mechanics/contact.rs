@@ -58,7 +58,7 @@ impl Contact {
         range::check_friction(friction)?;
         let indentation = match preload {
             Preload::NormalForce(force) => {
-                normal::indentation(&profile, &elasticity, range::NORMAL_FORCE.check(force)?)
+                normal::indentation(&profile, &elasticity, range::check_normal_force(force)?)
             }
             Preload::Indentation(depth) => range::PRELOAD_INDENTATION.check(depth)?,
             Preload::ContactRadius(radius) => normal::indentation_at(&profile, range::CONTACT_RADIUS.check(radius)?)?,
@@ -153,7 +153,7 @@ impl Contact {
             }
             Some(Normal::NormalForce(force)) => {
                 let from = self.normal_force();
-                let to = range::NORMAL_FORCE.check(if step.relative { from + force } else { force })?;
+                let to = range::check_normal_force(if step.relative { from + force } else { force })?;
                 self.check_indentation(self.indentation_for(to).value())?;
                 Approach::Force { from, to }
             }

@@ -53,6 +53,8 @@ pub const FRICTION: Range = Range { quantity: "friction", unit: "", min: 0.0, ma
 pub const LEAST_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
 pub const NORMAL_FORCE: Range = Range { quantity: "normal_force", unit: "N", min: 0.0, max: 1e18 };
+/// The smallest normal force beside nought, N: below it, what follows from a force has no digits left.
+pub const LEAST_NORMAL_FORCE: f64 = 1e-250;
 /// The contact radius, as a preload asks for it or as it comes of a load; nought is a contact just touching.
 pub const CONTACT_RADIUS: Range = Range { quantity: "contact_radius", unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a preload may ask for.
@@ -96,6 +98,19 @@ pub fn check_friction(friction: f64) -> Result<f64, Error> {
         return Err(Error::OutOfRange { quantity: FRICTION.quantity, value: friction, allowed });
     }
     FRICTION.check(friction)
+}
+
+/// Gives a normal force back: nought, or from [`LEAST_NORMAL_FORCE`] on.
+///
+/// # Errors
+/// [`Error::OutOfRange`] otherwise.
+pub fn check_normal_force(force: f64) -> Result<f64, Error> {
+    if force > 0.0 && force < LEAST_NORMAL_FORCE {
+        let allowed =
+            format!("0, or {} to {} {}", short(LEAST_NORMAL_FORCE), short(NORMAL_FORCE.max), NORMAL_FORCE.unit);
+        return Err(Error::OutOfRange { quantity: NORMAL_FORCE.quantity, value: force, allowed });
+    }
+    NORMAL_FORCE.check(force)
 }
 
 impl fmt::Display for Range {

@@ -318,7 +318,8 @@ impl Springs {
 
     /// How deep a vertical edge is pressed in, m; nought for a profile without one, but for rounding.
     fn rim_depth(&self) -> f64 {
-        if self.profile.rim_radius().is_none() {
+        // Elsewhere rounding would make an infinite stress of what is left over.
+        if self.profile.rim_radius().is_none_or(|rim| self.contact_radius() < rim) {
             return 0.0;
         }
         (self.indentation - self.profile.level(self.contact_radius())).max(0.0)

@@ -15,9 +15,19 @@ const STRESS: f64 = 1e-7;
 /// Contact radii, m, and normal forces, N, below which products of a few of them lose their digits, and then themselves.
 const SMALLEST: f64 = 1e-100;
 
+/// Pieces of memory that curved moves alone leave: what left them is too slow to be repeated with variations.
+const DEEP: usize = 200;
+
 /// # Panics
 /// If a law does not hold for the answer to a request.
 pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &SimulateReply) {
+    if reply.steps.iter().any(vanishing) {
+        return;
+    }
+    numbers(simulation, reply);
+    if reply.steps.iter().any(|state| state.memory_depth > DEEP) {
+        return;
+    }
     let request = &SimulateRequest { steps: Steps::All, ..request.clone() };
     let all = again(request, "with all steps");
     let last = again(&SimulateRequest { steps: Steps::Last, ..request.clone() }, "with the last step");
@@ -35,7 +45,9 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
     residual(simulation, &all);
     mirror(request, &all);
     repeat(request, &all);
-    balance::check(request, simulation, &all);
+    if !upright(&request.contact.profile, &all) {
+        balance::check(request, simulation, &all);
+    }
 }
 
 /// A variation of a request that has been answered must be answered too.
@@ -59,6 +71,15 @@ fn below_table(profile: &Profile, reply: &SimulateReply) -> bool {
     match profile {
         Profile::Tabulated(table) => least.is_some_and(|radius| radius < 1e-3 * table.r[1]),
         Profile::Sum(sum) => sum.parts.iter().any(|part| below_table(part, reply)),
+        _ => false,
+    }
+}
+
+/// Whether the contact comes so close to the equator of an exact sphere, where it stands upright, that energies lose digits.
+fn upright(profile: &Profile, reply: &SimulateReply) -> bool {
+    match profile {
+        Profile::ExactSphere(sphere) => reply.contact.contact_radius > 0.99 * sphere.radius,
+        Profile::Sum(sum) => sum.parts.iter().any(|part| upright(part, reply)),
         _ => false,
     }
 }

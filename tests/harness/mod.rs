@@ -5,7 +5,7 @@ mod laws;
 mod refusals;
 
 use stickslip::simulation::{Failure, Stop, cost, simulate};
-use stickslip::wire::{Document as _, Rejection, SimulateReply, SimulateRequest, parse};
+use stickslip::wire::{Document as _, Profile, Rejection, SimulateReply, SimulateRequest, parse};
 
 /// What a body may cost to be tried, estimated nanoseconds: each that is answered runs several times.
 const DEAREST: cost::Nanoseconds = 30_000_000;
@@ -34,9 +34,11 @@ pub fn examine(body: &[u8]) -> Outcome {
         Ok(simulation) => simulation,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    // Curved moves leave a memory that is not known beforehand, and the search for extrema costs its square.
-    let deep = simulation.residual && simulation.plan.curved() > 0;
-    if deep || cost::of_simulation(&simulation) > DEAREST {
+    // Curved moves leave a memory that is not known beforehand, of which the search for extrema costs the square; and where a
+    // load has no closed inverse, each of their many chords costs a search.
+    let searched = matches!(request.contact.profile, Profile::Sum(_) | Profile::Tabulated(_));
+    let slow = simulation.plan.curved() > 0 && (simulation.residual || searched);
+    if slow || cost::of_simulation(&simulation) > DEAREST {
         return Outcome::Dear;
     }
     let (stop, _guard) = Stop::guarded();

@@ -233,8 +233,8 @@ pub fn scene() -> impl Strategy<Value = Scene> {
         1 => (2..60_usize).prop_map(|count| Some(json!({"springs": {"count": count}}))),
     ];
     let tolerance = prop_oneof![
-        3 => Just(None),
-        9 => (-9.0..-2.0_f64).prop_map(|power| Some(10_f64.powf(power))),
+        1 => Just(None),
+        11 => (-7.0..-2.0_f64).prop_map(|power| Some(10_f64.powf(power))),
         1 => Just(Some(1e-11)),
     ];
     let asked = (radii, fields, prop::bool::weighted(0.3), any::<bool>());
