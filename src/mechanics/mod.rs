@@ -30,7 +30,7 @@
 //! # The map
 //!
 //! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
-//! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `surface`, `accuracy`: what is
+//! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `extrema`, `surface`, `accuracy`: what is
 //! asked of it. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
 //! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
 
@@ -39,6 +39,7 @@ mod contact;
 mod double;
 pub mod elasticity;
 mod error;
+mod extrema;
 mod force;
 mod memory;
 mod normal;

@@ -19,6 +19,7 @@ mod power_law;
 mod roots;
 mod rounded_cone;
 mod rounded_punch;
+mod seams;
 mod shape;
 mod span;
 mod sphere;
@@ -239,43 +240,10 @@ impl Profile {
         each!(self, shape => shape.span(ring).arc(at))
     }
 
-    /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of the
-    /// shear stress skip what can hold none; `false` is always safe.
-    ///
-    /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
-    #[must_use]
-    pub fn kernel_falls(&self) -> bool {
-        match self {
-            Profile::Sphere(_) | Profile::Cone(_) | Profile::RoundedCone(_) => true,
-            Profile::PowerLaw(power) => power.power() <= 2.0,
-            Profile::Sum(sum) => sum.parts().iter().all(Profile::kernel_falls),
-            _ => false,
-        }
-    }
-
     /// The indentation d, m, at which int_0^d X(y) dy = F_N/(2 E*) = `load`, m^2.
     #[must_use]
     pub fn indentation_for(&self, load: f64) -> f64 {
         Shape::indentation_for(self, load)
-    }
-
-    /// The radii, m, at which pressure and shear are infinite once the contact has grown over them: the tip of a cone, a rim
-    /// where the slope jumps. The vertical edge of a punch is not among them.
-    #[must_use]
-    pub fn singular_radii(&self) -> Vec<f64> {
-        match self {
-            Profile::Cone(_) => vec![0.0],
-            Profile::PowerLaw(power) if power.power() <= 1.0 => vec![0.0],
-            Profile::TruncatedCone(cone) => vec![cone.kink()],
-            Profile::TruncatedSphere(sphere) => vec![sphere.kink()],
-            Profile::Sum(sum) => {
-                let mut radii: Vec<f64> = sum.parts().iter().flat_map(Profile::singular_radii).collect();
-                radii.sort_by(f64::total_cmp);
-                radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
-                radii
-            }
-            _ => Vec::new(),
-        }
     }
 
     /// The radius, m, that every contact must stay below: where the exact sphere is vertical, where a table ends or its g falls.
