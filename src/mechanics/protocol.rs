@@ -5,9 +5,12 @@
 //! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
 //! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
 
+mod spread;
+
+use spread::Spread;
+
 use super::contact::Contact;
 use super::error::Error;
-use super::profile::Profile;
 use super::range::short;
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
@@ -59,59 +62,19 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         None if singular.is_some() => least + DEFAULT_CUTOFF * (edge - least),
         None => 0.0,
     };
-    let spread = Spread::new(&contact.profile, cutoff, edge);
+    // At the very radius where s diverges there is no law.
+    let spread = (singular.is_none() || cutoff > least).then(|| Spread::new(&contact.profile, cutoff, edge)).flatten();
     let full = contact.gross_slip_displacement();
     let size = |index: usize| {
         let part = index as f64 / reversals.max(1) as f64;
-        match spread.radius(part) {
+        match &spread {
             // The first stroke slips as a whole, so that nothing before it matters.
             _ if index == 0 => full,
             _ if index == reversals => 0.0,
-            Some(radius) => full * (1.0 - contact.profile.level(radius) / indentation).max(0.0),
+            Some(spread) => full * (1.0 - contact.profile.level(spread.radius(part)) / indentation).max(0.0),
             None => full * (1.0 - part),
         }
     };
     let displacements = (0..=reversals).map(|index| alternating(index, size(index))).collect();
     Ok(EqualPeaks { displacements, cutoff_radius: cutoff })
-}
-
-/// s(x) between two radii, tabulated.
-struct Spread {
-    radii: Vec<f64>,
-    sums: Vec<f64>,
-}
-
-impl Spread {
-    /// Panels, finer towards the inner end, where s is steepest.
-    const PANELS: usize = 2048;
-
-    fn new(profile: &Profile, inner: f64, outer: f64) -> Spread {
-        let radii: Vec<f64> = (0..=Self::PANELS)
-            .map(|index| inner + (outer - inner) * (index as f64 / Self::PANELS as f64).powi(3))
-            .collect();
-        let density = |x: f64| profile.slope(x).powi(2) / x;
-        let mut sums = vec![0.0];
-        let mut sum = 0.0;
-        for pair in radii.windows(2) {
-            // Two-point Gauss: no value at the ends, where the density may be infinite.
-            let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
-            let away = half / 3.0_f64.sqrt();
-            sum += half * (density(middle - away) + density(middle + away));
-            sums.push(sum);
-        }
-        Spread { radii, sums }
-    }
-
-    /// The radius at a fraction of s, straight within a panel; `None` for a flat, which has no s and no peaks.
-    fn radius(&self, fraction: f64) -> Option<f64> {
-        let whole = self.sums[Self::PANELS];
-        if !(whole > 0.0 && whole.is_finite()) {
-            return None;
-        }
-        let wanted = fraction * whole;
-        let panel = self.sums.partition_point(|&sum| sum < wanted).clamp(1, Self::PANELS);
-        let (low, high) = (self.sums[panel - 1], self.sums[panel]);
-        let part = if high > low { (wanted - low) / (high - low) } else { 0.0 };
-        Some(self.radii[panel - 1] + part * (self.radii[panel] - self.radii[panel - 1]))
-    }
 }

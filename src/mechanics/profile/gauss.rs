@@ -38,14 +38,14 @@ const TWENTY: [(f64, f64); 10] = [
 
 /// A stretch below the top of what is still to be integrated: its width and the rule for it.
 #[derive(Clone, Copy)]
-pub(super) struct Panel {
+pub(crate) struct Panel {
     pub(super) width: f64,
     rule: &'static Rule,
 }
 
 impl Panel {
     /// A panel by the shorter rule, whatever the integrand.
-    pub(super) fn coarse(width: f64) -> Panel {
+    pub(crate) fn coarse(width: f64) -> Panel {
         Panel { width, rule: &EIGHT }
     }
 
@@ -55,7 +55,7 @@ impl Panel {
     }
 
     /// Calls `visit(distance below the panel's top, weight)` at every abscissa; the weights add up to the width.
-    pub(super) fn visit(&self, mut visit: impl FnMut(f64, f64)) {
+    pub(crate) fn visit(&self, mut visit: impl FnMut(f64, f64)) {
         for &(u, weight) in self.rule {
             visit(self.width * u, self.width * weight);
             visit(self.width * (1.0 - u), self.width * weight);

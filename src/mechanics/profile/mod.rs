@@ -12,7 +12,7 @@ mod cone;
 pub(crate) mod count;
 mod exact_sphere;
 mod flat_punch;
-mod gauss;
+pub(super) mod gauss;
 mod many;
 mod measured;
 mod power_law;
@@ -167,6 +167,11 @@ impl Profile {
     #[must_use]
     pub fn slope(&self, radius: f64) -> f64 {
         Shape::slope(self, radius)
+    }
+
+    /// The largest radius below `radius`, m, at which g is not analytic; nought, the tip, if there is none.
+    pub(super) fn kink_below(&self, radius: f64) -> f64 {
+        Shape::kink_below(self, radius)
     }
 
     /// X(y), m, for a level y >= 0, m; X(0) is the radius of a flat core. Beyond the end of the profile it stays at
