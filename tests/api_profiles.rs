@@ -57,6 +57,42 @@ async fn every_profile_carries_its_normal_force_and_gives_every_field() {
 }
 
 #[tokio::test]
+async fn curvatures_add_up() {
+    // z = r^2/(2 R) twice is the parabola of half the radius.
+    let server = common::Server::start().await;
+    let half = json!({"type": "sphere", "radius": 0.02});
+    let twice = json!({"type": "sum", "parts": [half, half]});
+    for preload in [json!({"normal_force": 10.0}), json!({"indentation": 1e-6}), json!({"contact_radius": 1e-4})] {
+        let (_, one) = post(&server.base, &request(&families()[0], &preload)).await;
+        let (_, sum) = post(&server.base, &request(&twice, &preload)).await;
+        for pointer in [
+            "/contact/indentation",
+            "/contact/contact_radius",
+            "/contact/normal_force",
+            "/contact/max_pressure",
+            "/steps/0/force",
+            "/steps/0/dissipated_energy",
+        ] {
+            let of = |reply: &Value| reply.pointer(pointer).and_then(Value::as_f64).unwrap();
+            assert!((of(&sum) / of(&one) - 1.0).abs() < 1e-11, "{pointer}: {} {}", of(&sum), of(&one));
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_domed_punch_carries_what_lies_within_its_rim() {
+    // F_N = 2 E* int_0^b (d - x^2/R) dx, R from two spheres of 0.02 m.
+    let server = common::Server::start().await;
+    let (dome, b) = (json!({"type": "sphere", "radius": 0.02}), 5e-5_f64);
+    let profile = json!({"type": "sum", "parts": [dome, dome, {"type": "flat_punch", "radius": b}]});
+    let (_, reply) = post(&server.base, &request(&profile, &json!({"normal_force": 10.0}))).await;
+    let expected = 10.0 / (2.0 * 1.15e11 * b) + b * b / (3.0 * 0.01);
+    let found = reply["contact"]["indentation"].as_f64().unwrap();
+    assert!((found / expected - 1.0).abs() < 1e-13, "{found:e} {expected:e}");
+    assert_eq!(reply["contact"]["contact_radius"], json!(b));
+}
+
+#[tokio::test]
 async fn only_what_is_asked_for_is_in_the_reply() {
     let server = common::Server::start().await;
     let body = request(&families()[0], &json!({"normal_force": 10.0}));

@@ -5,6 +5,8 @@
 //! `STICKSLIP_FUZZ_SECONDS` asks for a longer time and lifts that bound. Case n is the same on every run;
 //! `STICKSLIP_FUZZ_SEED` asks for other cases. `fuzz/` has the same under a coverage-guided fuzzer.
 
+#[path = "harness/damage.rs"]
+mod damage;
 mod harness;
 #[path = "harness/requests.rs"]
 mod requests;
@@ -108,12 +110,12 @@ fn bodies_that_once_broke_a_law() {
 
 #[test]
 fn raw_bytes() {
-    fuzz(500_000, requests::raw(), Clone::clone);
+    fuzz(500_000, damage::raw(), Clone::clone);
 }
 
 #[test]
 fn damaged_requests() {
-    fuzz(15_000, requests::damaged(), Clone::clone);
+    fuzz(15_000, damage::damaged(), Clone::clone);
 }
 
 #[test]

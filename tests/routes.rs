@@ -208,6 +208,16 @@ fn the_first_instant_that_friction_cannot_hold_is_named() {
     assert_eq!(refused, None, "a pull that falls faster than the load can be held");
     let refused = contact.apply(&push_and_sink(-7.8, 0.5 * indentation(LOAD))).unwrap_err();
     assert!(matches!(refused, Error::ForceExceedsFriction { .. }));
+    // 2.82 N are held at the end, where mu F_N = 8 N / 2^(3/2), but not 5.36 N half-way, where it is 8 N (3/4)^(3/2).
+    let mut contact = ball(LOAD);
+    contact.apply(&Move { tangential: Some(Tangential::Force(7.9)), ..Move::default() }).unwrap();
+    let before = contact.state();
+    let refused = contact.apply(&push_and_sink(2.82, 0.5 * indentation(LOAD))).unwrap_err();
+    let Error::ForceExceedsFriction { limit, part, .. } = refused else { panic!("{refused}") };
+    assert!(part > 0.05 && part < 0.2, "{part}");
+    close(limit, 7.9 + (2.82 - 7.9) * part, 1e-12);
+    close(limit, FRICTION * LOAD * (1.0 - 0.5 * part).powf(1.5), 1e-12);
+    assert_eq!(contact.state(), before);
 }
 
 #[test]

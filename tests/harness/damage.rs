@@ -1,0 +1,207 @@
+//! Requests that have been damaged, and bytes that never were one.
+
+use proptest::prelude::*;
+use proptest::sample::select;
+use serde_json::Value;
+
+use super::requests::scene;
+
+/// A damage to the text of a request.
+#[derive(Clone, Debug)]
+pub enum Damage {
+    /// Another byte at a place, a part of the whole.
+    Byte(f64, u8),
+    /// A stretch is cut out.
+    Cut(f64, usize),
+    /// A stretch is there twice.
+    Double(f64, usize),
+    /// A word is put in.
+    Insert(f64, &'static str),
+    /// The n-th number becomes something else.
+    Number(usize, &'static str),
+    /// The n-th value of the document becomes something else.
+    Replace(usize, &'static str),
+    /// The n-th value of the document is left out.
+    Remove(usize),
+}
+
+const WORDS: [&str; 24] = [
+    "null",
+    "true",
+    "{}",
+    "[]",
+    "\"rigid\"",
+    "\"exact\"",
+    "1e999",
+    "-1e999",
+    "1e-999",
+    "-0.0",
+    "5e-324",
+    "1e308",
+    "0",
+    "-1",
+    "9007199254740993",
+    "18446744073709551616",
+    "0.1",
+    "1e-15",
+    "\"\"",
+    "\"a/b~c\"",
+    "\"\\u0000\"",
+    "[[]]",
+    "{\"displacement\":1e-7}",
+    "[0,1e-9,1e-9]",
+];
+
+fn damage() -> impl Strategy<Value = Damage> {
+    let place = || 0.0..1.0_f64;
+    let word = || select(WORDS.to_vec());
+    prop_oneof![
+        2 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
+        1 => (place(), 1..20_usize).prop_map(|(place, length)| Damage::Cut(place, length)),
+        1 => (place(), 1..40_usize).prop_map(|(place, length)| Damage::Double(place, length)),
+        1 => (place(), word()).prop_map(|(place, word)| Damage::Insert(place, word)),
+        4 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Number(index, word)),
+        3 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Replace(index, word)),
+        2 => (0..60_usize).prop_map(Damage::Remove),
+    ]
+}
+
+/// A request with a few damages.
+pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
+    (scene(), prop::collection::vec(damage(), 1..4)).prop_map(|(scene, damages)| {
+        let text = scene.write().to_string().into_bytes();
+        damages.iter().fold(text, |text, damage| damage.done_to(text))
+    })
+}
+
+impl Damage {
+    fn done_to(&self, mut text: Vec<u8>) -> Vec<u8> {
+        let length = text.len();
+        let at = |place: f64| ((place * length as f64) as usize).min(length.saturating_sub(1));
+        match *self {
+            _ if text.is_empty() => {}
+            Damage::Byte(place, byte) => text[at(place)] = byte,
+            Damage::Cut(place, count) => drop(text.drain(at(place)..(at(place) + count).min(length))),
+            Damage::Double(place, count) => {
+                let stretch = text[at(place)..(at(place) + count).min(length)].to_vec();
+                text.splice(at(place)..at(place), stretch);
+            }
+            Damage::Insert(place, word) => drop(text.splice(at(place)..at(place), word.bytes())),
+            Damage::Number(index, word) => {
+                let numbers = numbers(&text);
+                if let Some(stretch) = numbers.get(index % numbers.len().max(1)) {
+                    text.splice(stretch.clone(), word.bytes());
+                }
+            }
+            Damage::Replace(index, word) => {
+                if let (Ok(mut document), Ok(word)) = (serde_json::from_slice(&text), serde_json::from_str(word)) {
+                    let count = count(&document);
+                    change(&mut document, &mut (index % count), &mut Some(word));
+                    text = document.to_string().into_bytes();
+                }
+            }
+            Damage::Remove(index) => {
+                if let Ok(mut document) = serde_json::from_slice(&text) {
+                    let count = count(&document);
+                    change(&mut document, &mut (index % count), &mut None);
+                    text = document.to_string().into_bytes();
+                }
+            }
+        }
+        text
+    }
+}
+
+/// Where the numbers of a text are.
+fn numbers(text: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let belongs = |byte: u8| byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.' | b'e');
+    let mut found = Vec::new();
+    let mut index = 0;
+    while index < text.len() {
+        let end = text[index..].iter().position(|byte| !belongs(*byte)).map_or(text.len(), |more| index + more);
+        if text[index..end].iter().any(u8::is_ascii_digit) {
+            found.push(index..end);
+        }
+        index = end + 1;
+    }
+    found
+}
+
+fn count(value: &Value) -> usize {
+    1 + match value {
+        Value::Array(elements) => elements.iter().map(count).sum(),
+        Value::Object(members) => members.values().map(count).sum(),
+        _ => 0,
+    }
+}
+
+/// Replaces the value of that number, or leaves it out; says whether it was the one.
+fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
+    if *left == 0 {
+        *value = by.take().unwrap_or(Value::Null);
+        return true;
+    }
+    *left -= 1;
+    match value {
+        Value::Array(elements) => {
+            for index in 0..elements.len() {
+                if *left == 0 && by.is_none() {
+                    elements.remove(index);
+                    return true;
+                }
+                if change(&mut elements[index], left, by) {
+                    return true;
+                }
+            }
+        }
+        Value::Object(members) => {
+            let names: Vec<String> = members.keys().cloned().collect();
+            for name in names {
+                if *left == 0 && by.is_none() {
+                    members.remove(&name);
+                    return true;
+                }
+                if members.get_mut(&name).is_some_and(|member| change(member, left, by)) {
+                    return true;
+                }
+            }
+        }
+        _ => {}
+    }
+    false
+}
+
+/// Bytes of no kind, and words of JSON in no order.
+pub fn raw() -> impl Strategy<Value = Vec<u8>> {
+    const NAMES: [&str; 24] = [
+        "{",
+        "}",
+        "[",
+        "]",
+        ":",
+        ",",
+        "\"contact\"",
+        "\"profile\"",
+        "\"type\"",
+        "\"sphere\"",
+        "\"radius\"",
+        "\"material\"",
+        "\"effective\"",
+        "\"friction\"",
+        "\"preload\"",
+        "\"path\"",
+        "\"moves\"",
+        "\"stress\"",
+        "\"sum\"",
+        "\"parts\"",
+        "\"tabulated\"",
+        "\"r\"",
+        "\"z\"",
+        "\"force\"",
+    ];
+    let soup = prop_oneof![3 => select(NAMES.to_vec()), 1 => select(WORDS.to_vec())];
+    prop_oneof![
+        prop::collection::vec(any::<u8>(), 0..200),
+        prop::collection::vec(soup, 0..60).prop_map(|words| words.concat().into_bytes()),
+    ]
+}
