@@ -185,7 +185,15 @@ impl Contact {
             let within = knots[begins..ends].iter().map(|&knot| {
                 let at = At::radius(knot);
                 let rim = singular.contains(&knot);
-                let infinite = if rim || brief { self.trend(&at) } else { 0.0 };
+                // At the same distance on either side a logarithm has the same value: one look serves both.
+                let beside = Double::square_of(knot) * (1.0 + FLOOR);
+                let infinite = if rim {
+                    self.trend(&at)
+                } else if brief {
+                    self.trend(&At { radius: knot, square: beside })
+                } else {
+                    0.0
+                };
                 if rim && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
                     (at, (End::Inverse, -infinite), (End::Inverse, infinite))
