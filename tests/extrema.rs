@@ -364,3 +364,16 @@ fn knots_of_a_table_hide_nothing() {
     let smooth = moved_to(sphere(10.0), 0.5, &[1.0, 0.999]);
     assert_eq!(contact.residual().peaks.len(), smooth.residual().peaks.len(), "{:?}", contact.residual().peaks);
 }
+
+#[test]
+fn a_long_table_is_searched_between_all_its_knots() {
+    let radii: Vec<f64> = (0..200).map(|index| f64::from(index) / 199.0).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 0.1 * r * r * (1.0 + r)).collect();
+    for path in [&[1.0][..], &[1.0, 0.3, 0.7]] {
+        let contact = moved(table(&radii, &heights), 0.8, path);
+        let notes: Vec<f64> = radii[1..].iter().copied().filter(|&r| r < 0.8).collect();
+        let peaks = contact.residual().peaks.len();
+        let seen = check(&contact, &notes);
+        assert!(seen > 0 && seen <= peaks, "{seen} of {peaks}");
+    }
+}
