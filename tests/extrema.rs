@@ -137,6 +137,35 @@ fn dense(special: &[f64], edge: f64) -> Vec<f64> {
     radii
 }
 
+/// A random profile with its radii of note: a table of a convex slope with jumps of the curvature, or a sum.
+fn any_profile() -> impl Strategy<Value = (Profile, Vec<f64>)> {
+    let step = (0.02..0.12_f64, 0.0..0.05_f64);
+    let tables = prop::collection::vec(step, 12..20).prop_map(|steps| {
+        let (mut radii, mut heights, mut slope) = (vec![0.0], vec![0.0], 0.01);
+        for (width, rise) in steps {
+            heights.push(heights[heights.len() - 1] + slope * width);
+            radii.push(radii[radii.len() - 1] + width);
+            slope += rise;
+        }
+        (table(&radii, &heights), radii[1..].to_vec())
+    });
+    let parts = prop::collection::vec((0..8_usize, 0.05..0.25_f64, 0.02..0.5_f64), 1..4).prop_map(|parts| {
+        let flats = parts.iter().filter(|(family, ..)| (4..8).contains(family)).map(|(_, flat, _)| *flat).collect();
+        let part = |(family, flat, slope): (usize, f64, f64)| match family {
+            0 => sphere(0.5 / slope),
+            1 => cone(slope),
+            2 => power(1.2 + 10.0 * flat, slope),
+            3 => Profile::ExactSphere(ExactSphere::new(0.5 / slope).unwrap()),
+            4 => truncated_cone(slope, flat),
+            5 => Profile::TruncatedSphere(TruncatedSphere::new(0.5 / slope, flat).unwrap()),
+            6 => Profile::RoundedPunch(RoundedPunch::new(flat, 0.5 / slope).unwrap()),
+            _ => Profile::RoundedCone(RoundedCone::new(slope, flat).unwrap()),
+        };
+        (Profile::Sum(Sum::new(parts.into_iter().map(part).collect()).unwrap()), flats)
+    });
+    prop_oneof![tables.boxed(), parts.boxed()]
+}
+
 /// Compares the list with what the stress looks like; gives the number of extrema seen.
 fn check(contact: &Contact, notes: &[f64]) -> usize {
     let residual = contact.residual();
@@ -203,16 +232,16 @@ fn summed_up(residual: &Residual, unit: f64) {
 
 #[test]
 fn no_extremum_on_any_profile_is_missed_or_made_up() {
-    let profiles = profiles();
     let seen = Cell::new(0);
-    let steps = prop::collection::vec((0.0..1.0_f64, -1.2..1.2_f64, prop::bool::ANY), 1..6);
-    forall(150, (0..profiles.len(), 0.25..0.45_f64, steps), |(family, radius, steps)| {
-        let (profile, notes) = &profiles[family];
-        let is_punch = matches!(profile, Profile::FlatPunch(_));
+    let known = prop::sample::select(profiles());
+    let steps = prop::collection::vec((0.0..1.0_f64, -1.2..1.2_f64, prop::bool::ANY), 1..8);
+    let profiles = prop_oneof![known.boxed(), any_profile().boxed()];
+    forall(250, (profiles, 0.3..0.45_f64, steps), |((profile, notes), radius, steps)| {
+        let is_punch = matches!(&profile, Profile::FlatPunch(_));
         let preload = if is_punch { Preload::Indentation(0.1 * radius) } else { Preload::ContactRadius(radius) };
-        let mut contact = pressed(profile.clone(), preload);
+        let mut contact = pressed(profile, preload);
         let (depth, full) = (contact.indentation(), contact.gross_slip_displacement());
-        let mut notes = notes.clone();
+        let mut notes = notes;
         for (load, target, oblique) in steps {
             let depth = depth * (0.6 + 0.5 * load);
             let normal = oblique.then_some(Normal::Indentation(depth));
@@ -334,4 +363,17 @@ fn knots_of_a_table_hide_nothing() {
     let contact = moved_to(table(&even, &parabola), 0.5, &[1.0, 0.999]);
     let smooth = moved_to(sphere(10.0), 0.5, &[1.0, 0.999]);
     assert_eq!(contact.residual().peaks.len(), smooth.residual().peaks.len(), "{:?}", contact.residual().peaks);
+}
+
+#[test]
+fn a_long_table_is_searched_between_all_its_knots() {
+    let radii: Vec<f64> = (0..200).map(|index| f64::from(index) / 199.0).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 0.1 * r * r * (1.0 + r)).collect();
+    for path in [&[1.0][..], &[1.0, 0.3, 0.7]] {
+        let contact = moved(table(&radii, &heights), 0.8, path);
+        let notes: Vec<f64> = radii[1..].iter().copied().filter(|&r| r < 0.8).collect();
+        let peaks = contact.residual().peaks.len();
+        let seen = check(&contact, &notes);
+        assert!(seen > 0 && seen <= peaks, "{seen} of {peaks}");
+    }
 }

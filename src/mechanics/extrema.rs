@@ -23,7 +23,7 @@ const LAST: f64 = 72.0;
 /// Towards a knot a logarithm is followed by places that grow by this factor.
 const STRIDE: f64 = 2.0;
 /// With more stretches than this between the knots of a table, each is looked at in its middle and at its ends alone.
-const MANY: usize = 500;
+const MANY: usize = 100;
 
 /// A derivative below this share of what it is the sum of is nought: the kernels of some families are good to 1e-13.
 const NOISE: f64 = 1e-12;
@@ -85,10 +85,19 @@ impl Stretch {
         }
     }
 
-    /// Places from the middle towards an end, without the sign.
-    fn places(&self, end: End) -> Vec<f64> {
-        let half = self.half();
-        let floor = (half / (FLOOR * self.outer.square.value())).ln().min(LAST);
+    /// The place nearest to an end that is sampled where the profile makes the derivative infinite, without the sign.
+    fn floor(&self) -> f64 {
+        (self.half() / (FLOOR * self.outer.square.value())).ln().clamp(0.0, LAST)
+    }
+
+    /// Where the sign at an end is taken to hold, likewise: about a knot as far as the floor.
+    fn limit(&self, end: End) -> f64 {
+        if end == End::Logarithm { self.floor() } else { f64::INFINITY }
+    }
+
+    /// Places from the middle towards an end, likewise.
+    fn places(&self, (end, sign): (End, f64)) -> Vec<f64> {
+        let (half, floor) = (self.half(), self.floor());
         let by_steps = |step: f64, last: f64| {
             let steps = (1..).map(move |index| step * f64::from(index));
             let mut places: Vec<f64> = steps.take_while(|&place| place < last).collect();
@@ -103,14 +112,15 @@ impl Stretch {
                 let least = if beyond > 0.0 { FINEST * beyond.min(2.0 * half) } else { FINEST * half };
                 by_steps(STEP, (half / least).ln().min(0.5 * LAST))
             }
-            End::Logarithm if self.brief => vec![floor.max(0.0)],
+            End::Logarithm if self.brief && sign.abs() > 0.0 => Vec::new(),
+            End::Logarithm if self.brief => vec![floor],
             End::Logarithm => {
                 let mut places = vec![0.25, 0.5];
                 places.extend(
                     std::iter::successors(Some(1.0), |place| Some(place * STRIDE)).take_while(|&place| place < floor),
                 );
                 places.retain(|&place| place < floor);
-                places.push(floor.max(0.0));
+                places.push(floor);
                 places
             }
             End::Inverse => by_steps(1.0, floor),
@@ -171,17 +181,26 @@ impl Contact {
             };
             let begins = knots.partition_point(|&knot| knot <= from.radius);
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
+            let brief = ends - begins > MANY;
             let within = knots[begins..ends].iter().map(|&knot| {
                 let at = At::radius(knot);
-                let infinite = self.trend(&at);
-                if singular.contains(&knot) && infinite.is_infinite() {
+                let rim = singular.contains(&knot);
+                // At the same distance on either side a logarithm has the same value: one look serves both.
+                let beside = Double::square_of(knot) * (1.0 + FLOOR);
+                let infinite = if rim {
+                    self.trend(&at)
+                } else if brief {
+                    self.trend(&At { radius: knot, square: beside })
+                } else {
+                    0.0
+                };
+                if rim && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
                     (at, (End::Inverse, -infinite), (End::Inverse, infinite))
                 } else {
-                    (at, (End::Logarithm, 0.0), (End::Logarithm, 0.0))
+                    (at, (End::Logarithm, infinite), (End::Logarithm, infinite))
                 }
             });
-            let brief = ends - begins > MANY;
             let mut start = self.start(index, &from, &knots);
             let mut inner = from;
             for (outer, end, next) in within.chain([(to, last, last)]) {
@@ -263,11 +282,11 @@ impl Search<'_> {
         if stretch.half() <= 0.0 {
             return;
         }
-        let inward = stretch.places(stretch.start.0).into_iter().rev().map(|place| -place);
-        let outward = stretch.places(stretch.end.0);
-        let mut samples = vec![Sample { place: f64::NEG_INFINITY, value: stretch.start.1 }];
+        let inward = stretch.places(stretch.start).into_iter().rev().map(|place| -place);
+        let outward = stretch.places(stretch.end);
+        let mut samples = vec![Sample { place: -stretch.limit(stretch.start.0), value: stretch.start.1 }];
         samples.extend(inward.chain([0.0]).chain(outward).map(|place| self.sample(stretch, place)));
-        samples.push(Sample { place: f64::INFINITY, value: stretch.end.1 });
+        samples.push(Sample { place: stretch.limit(stretch.end.0), value: stretch.end.1 });
         samples.retain(|sample| sample.value.abs() > 0.0);
         let Some(first) = samples.first() else { return };
         self.pass(&stretch.inner, first.value);
