@@ -34,6 +34,18 @@ fn measured(step: f64) -> Value {
     json!({"type": "tabulated", "r": radii, "z": heights})
 }
 
+/// A ball of 10 mm as a table that reaches to nine tenths of it.
+fn steep_table() -> Value {
+    let radii: Vec<f64> = (0..=200).map(|index| 4.5e-5 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 0.01 - (1e-4 - r * r).sqrt()).collect();
+    json!({"type": "tabulated", "r": radii, "z": heights})
+}
+
+/// A ball of this radius (m) as a power law.
+fn parabola(radius: f64) -> Value {
+    json!({"type": "power_law", "exponent": 2.0, "coefficient": 0.5 / radius})
+}
+
 async fn codes(server: &common::Server, scene: &Value) -> Vec<String> {
     let reply = reqwest::Client::new().post(format!("{}/simulate", server.base)).json(scene).send().await.unwrap();
     assert_eq!(reply.status(), 200, "{scene}");
@@ -55,6 +67,41 @@ async fn each_warning_has_its_cause_and_its_page() {
         (json!({"material": {"bodies": [incompressible, "rigid"]}}), &["slip_direction"]),
         (json!({"preload": {"contact_radius": 0.0029}}), &[]),
         (json!({"preload": {"contact_radius": 0.0031}}), &["large_contact"]),
+        // A slope of 0.3 is that of the sphere itself at a/R = 0.287.
+        (json!({"profile": {"type": "exact_sphere", "radius": 0.01}, "preload": {"contact_radius": 0.0028}}), &[]),
+        (
+            json!({"profile": {"type": "exact_sphere", "radius": 0.01}, "preload": {"contact_radius": 0.003}}),
+            &["large_contact"],
+        ),
+        (json!({"profile": steep_table(), "preload": {"contact_radius": 0.008}}), &["large_contact"]),
+        (json!({"profile": parabola(0.01), "preload": {"contact_radius": 0.0029}}), &[]),
+        (json!({"profile": parabola(0.01), "preload": {"contact_radius": 0.0031}}), &["large_contact"]),
+        (
+            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005}, "preload": {"contact_radius": 0.0029}}),
+            &[],
+        ),
+        (
+            json!({"profile": {"type": "rounded_cone", "slope": 0.5, "tip_radius": 0.005}, "preload": {"contact_radius": 0.0031}}),
+            &["large_contact"],
+        ),
+        (
+            json!({"profile": {"type": "sum", "parts": [parabola(0.02), {"type": "sphere", "radius": 0.02}]}, "preload": {"contact_radius": 0.0031}}),
+            &["large_contact"],
+        ),
+        (json!({"profile": {"type": "cone", "slope": 0.29}}), &[]),
+        (json!({"profile": {"type": "cone", "slope": 0.31}}), &["large_contact"]),
+        (json!({"profile": {"type": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.001}}), &[]),
+        (json!({"profile": {"type": "flat_punch", "radius": 0.01}}), &[]),
+        (json!({"profile": {"type": "truncated_sphere", "radius": 0.01, "flat_radius": 0.001}}), &[]),
+        // A path may lead from no load at all.
+        (
+            json!({"profile": measured(1e-15), "preload": {"normal_force": 0.0}, "path": {"moves": [{"normal_force": 10.0}]}}),
+            &[],
+        ),
+        (
+            json!({"profile": measured(1e-9), "preload": {"normal_force": 0.0}, "path": {"moves": [{"normal_force": 10.0}]}}),
+            &["noisy_table"],
+        ),
         // A radius of 10 and moduli of 115 GPa: millimetres and megapascals.
         (
             json!({"profile": {"type": "sphere", "radius": 10.0}, "material": {"effective": {"e_star": 1.15e5, "g_star": 8.5e4}}}),

@@ -152,8 +152,12 @@ fn reversals_are_spread_evenly_in_s_by_another_quadrature() {
         let profile = profile.clone();
         Box::new(move |x: f64| profile.slope(x)) as Box<dyn Fn(f64) -> f64>
     };
-    let cases: [(&str, Profile, Box<dyn Fn(f64) -> f64>); 4] = [
-        ("exact sphere", Profile::ExactSphere(ExactSphere::new(ball).unwrap()), Box::new(of_ball)),
+    let cases = [
+        (
+            "exact sphere",
+            Profile::ExactSphere(ExactSphere::new(ball).unwrap()),
+            Box::new(of_ball) as Box<dyn Fn(f64) -> f64>,
+        ),
         ("truncated sphere", Profile::TruncatedSphere(TruncatedSphere::new(worn, flat).unwrap()), Box::new(of_worn)),
         ("rounded cone", rounded.clone(), slope_of(&rounded)),
         ("table", table.clone(), slope_of(&table)),

@@ -41,7 +41,7 @@ struct Errors {
 fn errors(moves: &[Move], count: usize) -> Errors {
     let setup = PLAIN.setup();
     let mut exact = Contact::new(setup.clone()).unwrap();
-    let mut springs = Springs::new(setup.clone(), count, reach(&setup, moves).unwrap()).unwrap();
+    let mut springs = Springs::new(setup.clone(), count, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
     let (limit, unit) = (PLAIN.force_limit(PLAIN.radius), PLAIN.stress_limit(PLAIN.radius));
     let mut errors = Errors { force: 0.0, stress: 0.0, work: 0.0 };
     for step in moves {
@@ -110,7 +110,7 @@ fn random_oblique_paths_agree_with_springs() {
         let moves: Vec<Move> = paths::waypoints(&steps).iter().map(|&waypoint| PLAIN.towards(waypoint)).collect();
         let setup = PLAIN.setup();
         let mut exact = Contact::new(setup.clone()).unwrap();
-        let mut springs = Springs::new(setup.clone(), 2000, reach(&setup, &moves).unwrap()).unwrap();
+        let mut springs = Springs::new(setup.clone(), 2000, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
         for step in &moves {
             exact.apply(step).unwrap();
             springs.apply(step).unwrap();
@@ -145,24 +145,4 @@ fn force_control_of_springs_meets_the_force_and_the_exact_displacement() {
     let refused = springs.apply(&push(1.001 * limit)).unwrap_err();
     assert!(matches!(refused, Error::ForceExceedsFriction { .. }), "{refused}");
     assert_eq!(springs.state(), before);
-}
-
-#[test]
-fn springs_estimate_their_own_error() {
-    // By half as many springs; where kinks fall is chance, which at times makes two errors alike and the estimate small.
-    for moves in [falling(), slanted()] {
-        let setup = PLAIN.setup();
-        let reach = reach(&setup, &moves).unwrap();
-        for count in [500, 2001, 8000] {
-            let mut exact = Contact::new(setup.clone()).unwrap();
-            let mut springs = Springs::new(setup.clone(), count, reach).unwrap();
-            for step in &moves {
-                exact.apply(step).unwrap();
-                springs.apply(step).unwrap();
-            }
-            let unit = exact.figures().gross_slip_force;
-            let (error, estimate) = ((exact.force() - springs.force()).abs() / unit, springs.accuracy().force_error);
-            assert!(error < 30.0 * estimate + 1e-9 && estimate < 1e-3, "{count}: {error:e}, estimate {estimate:e}");
-        }
-    }
 }

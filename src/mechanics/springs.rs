@@ -4,7 +4,8 @@
 //! tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to order
 //! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
-use super::accuracy::Estimate;
+mod estimate;
+
 use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
 use super::error::Error;
@@ -15,14 +16,14 @@ use super::{Contact, Profile};
 
 /// Radii at which the search for peaks looks, at the most.
 const SCAN: usize = 2000;
-/// Radii at which the stresses of the coarser foundation are compared.
-const COMPARED: usize = 64;
 
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
 pub struct Springs {
     profile: Profile,
     virgin: Contact,
+    /// The exact normal contact along the path; it is never moved sideways.
+    normal: Contact,
     initial: Figures,
     friction: f64,
     spacing: f64,
@@ -32,8 +33,10 @@ pub struct Springs {
     dissipated: f64,
     slipped: bool,
     stick_radius: f64,
-    /// The same on half as many springs, which shows how fast the error falls.
-    coarser: Option<Box<Springs>>,
+    /// How far a prescribed force may have misplaced the indenter, m.
+    misplaced: f64,
+    /// The same on fewer springs, which shows how far the number matters.
+    twins: Vec<Springs>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -45,15 +48,17 @@ struct Spring {
     carried: f64,
 }
 
-/// The largest contact radius, m, on a path.
+/// The largest contact radius, m, on a path, as far as the contact can follow it.
 ///
 /// # Errors
-/// Those of [`Contact::new`] and, for the normal targets, of [`Contact::apply`].
-pub fn reach(setup: &Setup, moves: &[Move]) -> Result<f64, Error> {
+/// Those of [`Contact::new`].
+pub fn reach(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
     let mut contact = Contact::new(setup.clone())?;
     let mut reach = contact.contact_radius();
-    for step in moves.iter().filter(|step| step.normal.is_some()) {
-        contact.apply(&Move { tangential: None, ..*step })?;
+    for step in moves.into_iter().filter(|step| step.normal.is_some()) {
+        if contact.apply(&Move { tangential: None, ..step }).is_err() {
+            break;
+        }
         reach = reach.max(contact.contact_radius());
     }
     Ok(reach)
@@ -67,7 +72,12 @@ impl Springs {
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
         let mut fine = Springs::alone(setup.clone(), count, reach)?;
-        fine.coarser = Some(Box::new(Springs::alone(setup, count.div_ceil(2).max(2), reach)?));
+        // Kinks fall elsewhere between the springs of each: one twin has a spring at the centre if the other has none.
+        let half = count.div_ceil(2).max(2);
+        let more = (2 * count).div_ceil(3).max(3);
+        for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {
+            fine.twins.push(Springs::alone(setup.clone(), fewer, reach)?);
+        }
         Ok(fine)
     }
 
@@ -86,6 +96,7 @@ impl Springs {
             .collect();
         Ok(Springs {
             profile,
+            normal: contact.clone(),
             virgin: contact,
             initial,
             friction,
@@ -96,7 +107,8 @@ impl Springs {
             dissipated: 0.0,
             slipped: false,
             stick_radius: initial.contact_radius,
-            coarser: None,
+            misplaced: 0.0,
+            twins: Vec::new(),
         })
     }
 
@@ -122,61 +134,42 @@ impl Springs {
     /// # Errors
     /// As [`Contact::apply`].
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
-        let pair = step.normal.is_some() && step.tangential.is_some();
-        let base = |value: f64| if step.relative { value } else { 0.0 };
-        let indentation = match step.normal {
-            None => self.indentation,
-            Some(Normal::Indentation(depth)) => range::INDENTATION.check(base(self.indentation) + depth)?,
-            Some(Normal::NormalForce(_)) if pair => {
-                return Err(Error::Unsupported {
-                    what: "springs follow a normal force only without a tangential target",
-                });
+        if let (Some(normal), Some(tangential)) = (step.normal, step.tangential) {
+            let what = match (normal, tangential) {
+                (Normal::NormalForce(_), _) => Some("springs follow a normal force only without a tangential target"),
+                (_, Tangential::Force(_)) => Some("springs follow a tangential force only at constant indentation"),
+                _ => None,
+            };
+            if let Some(what) = what {
+                return Err(Error::Unsupported { what });
             }
-            Some(Normal::NormalForce(force)) => {
-                let force = range::NORMAL_FORCE.check(base(self.normal_force()) + force)?;
-                self.profile.indentation_for(force / (2.0 * self.initial.e_star))
-            }
-        };
-        let displacement = match step.tangential {
-            None => self.displacement,
-            Some(Tangential::Displacement(target)) => range::DISPLACEMENT.check(base(self.displacement) + target)?,
-            Some(Tangential::Force(_)) if pair => {
-                return Err(Error::Unsupported {
-                    what: "springs follow a tangential force only at constant indentation",
-                });
-            }
-            Some(Tangential::Force(target)) => {
-                self.displacement_for(range::FORCE.check(base(self.force()) + target)?)?
-            }
-        };
-        self.advance(indentation, displacement);
-        if let Some(coarser) = &mut self.coarser {
-            coarser.advance(indentation, displacement);
         }
+        let mut normal = self.normal.clone();
+        if step.normal.is_some() {
+            normal.apply(&Move { tangential: None, ..*step })?;
+        }
+        let displacement = self.target(step)?;
+        if let Some(Tangential::Force(_)) = step.tangential {
+            self.misplaced = self.misplaced.max(self.misplacement(displacement));
+        }
+        self.normal = normal;
+        let indentation = self.normal.indentation();
+        for twin in &mut self.twins {
+            // Near the limit of friction a twin may hold less than the force.
+            let displacement = twin.target(step).unwrap_or(displacement);
+            twin.advance(indentation, displacement);
+        }
+        self.advance(indentation, displacement);
         Ok(())
     }
 
-    /// What the discretisation costs, from half as many springs on the same path (Richardson): forces err to order 2
-    /// and stresses to order 1.5 to 2, so that a third to a half of the difference is left; all of it is reported, since the
-    /// two errors may by chance be alike.
-    #[must_use]
-    pub fn accuracy(&self) -> Estimate {
-        let Some(coarser) = &self.coarser else {
-            return Estimate { force_error: 1.0, path_error: 0.0, stress_error: 1.0 };
-        };
-        let limit = self.friction * self.normal_force();
-        let edge = self.contact_radius();
-        let largest = (0..COMPARED)
-            .map(|index| edge * (index as f64 + 0.5) / COMPARED as f64)
-            .map(|radius| (self.shear(radius) - coarser.shear(radius)).abs())
-            .fold(0.0, f64::max);
-        let mean_pressure = self.normal_force() / (std::f64::consts::PI * edge * edge);
-        let pressure = self.friction * self.initial.max_pressure.unwrap_or(mean_pressure);
-        let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
-        Estimate {
-            path_error: 0.0,
-            force_error: relative((self.force() - coarser.force()).abs(), limit) + f64::EPSILON,
-            stress_error: relative(largest, pressure) + f64::EPSILON,
+    /// The displacement, m, to which a move leads.
+    fn target(&self, step: &Move) -> Result<f64, Error> {
+        let base = |value: f64| if step.relative { value } else { 0.0 };
+        match step.tangential {
+            None => Ok(self.displacement),
+            Some(Tangential::Displacement(target)) => range::DISPLACEMENT.check(base(self.displacement) + target),
+            Some(Tangential::Force(target)) => self.displacement_for(range::FORCE.check(base(self.force()) + target)?),
         }
     }
 

@@ -31,6 +31,10 @@ impl Contact {
         let edge = self.memory.edge();
         let touched = edge.level.value() > 0.0 && radius <= edge.radius;
         touched.then(|| {
+            if self.friction <= 0.0 {
+                // The surface stays behind altogether, and the memory is not told of the displacement.
+                return self.displacement().value() + 0.0;
+            }
             let started = (self.memory.position() - self.memory.shift()).value();
             self.scale() * (started - self.spread(radius)) + 0.0
         })

@@ -48,9 +48,8 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
             let start = contact(setup.clone(), "/contact")?;
             // Only what has a normal target reaches further, and the law of equal peaks has none.
             let moves = simulation.plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
-            let reach = springs::reach(setup, &moves.collect::<Vec<_>>());
-            let reach = reach.map_err(|error| Failure::Refused { pointer: "/path".to_owned(), error })?;
-            let springs = Springs::new(setup.clone(), count, reach).map_err(refused_at("/contact", setup.preload))?;
+            let springs = springs::reach(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
+            let springs = springs.map_err(refused_at("/contact", setup.preload))?;
             run(springs, simulation, timer, "as asked for", stop)
         }
     }
@@ -87,7 +86,8 @@ fn run<S: Solver>(
     let seen = Seen {
         contact_radius: largest,
         e_star: figures.e_star,
-        indentation: figures.indentation,
+        // The noise is a table's, and a table has no vertical edge.
+        indentation: figures.indentation.max(simulation.setup.profile.level(largest)),
         noise: simulation.setup.profile.noise(largest),
         missed,
     };

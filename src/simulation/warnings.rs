@@ -5,8 +5,8 @@ use crate::wire::{Profile, Warning};
 
 /// Dundurs' β beyond which the bodies are no longer called alike; round-off of like bodies stays below it.
 const BETA: f64 = 1e-12;
-/// The ratio of contact radius to radius of curvature up to which a half-space stands for the body.
-const LARGE_CONTACT: f64 = 0.3;
+/// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that of curvature.
+const STEEP: f64 = 0.3;
 /// A contact radius (m), and a reduced modulus (Pa) with a curvature radius (m), that metres and pascals rarely give.
 const HUGE_CONTACT: f64 = 0.1;
 const SOFT: f64 = 1e7;
@@ -22,7 +22,7 @@ pub struct Seen {
     pub contact_radius: f64,
     /// The reduced modulus E*, Pa.
     pub e_star: f64,
-    /// The indentation at the preload, m.
+    /// The largest indentation, m.
     pub indentation: f64,
     /// The noise of g, m, from a table's heights, and how many times theirs that is.
     pub noise: Option<(f64, f64)>,
@@ -51,16 +51,16 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<
             ),
         );
     }
-    let curvature = profile.curvature_radius();
-    let ratio = curvature.map_or(0.0, |curvature| seen.contact_radius / curvature);
-    if ratio > LARGE_CONTACT {
+    let slope = profile.slope(seen.contact_radius);
+    if seen.contact_radius > 0.0 && slope > STEEP {
         warn(
             "large_contact",
             format!(
-                "the contact radius is {ratio:.3} of the radius of curvature: beyond {LARGE_CONTACT} a body is no longer a half-space"
+                "the indenter's surface has a slope of {slope:.3} at the edge of the contact: beyond {STEEP} a body is no longer a half-space"
             ),
         );
     }
+    let curvature = profile.curvature_radius();
     let soft_and_huge = seen.e_star < SOFT && curvature.is_some_and(|curvature| curvature >= HUGE_CURVATURE);
     if seen.contact_radius > HUGE_CONTACT || soft_and_huge {
         warn(
@@ -72,7 +72,7 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<
         );
     }
     if let Some((noise, amplification)) =
-        seen.noise.filter(|(noise, _)| *noise > NOISY * seen.indentation.max(f64::MIN_POSITIVE))
+        seen.noise.filter(|(noise, _)| seen.indentation > 0.0 && *noise > NOISY * seen.indentation)
     {
         warn(
             "noisy_table",

@@ -19,6 +19,7 @@ pub mod profile;
 pub mod reply;
 pub mod session;
 pub mod simulate;
+mod slope;
 pub mod stress;
 
 pub use check::{At, Fault, Faults};

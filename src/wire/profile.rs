@@ -185,19 +185,6 @@ impl Profile {
         };
         noted(shape, at, faults)
     }
-
-    /// The radius of curvature against which a contact radius is small or large, m, where the shape has one.
-    #[must_use]
-    pub fn curvature_radius(&self) -> Option<f64> {
-        match self {
-            Profile::Sphere(SphereProfile { radius })
-            | Profile::ExactSphere(ExactSphereProfile { radius })
-            | Profile::TruncatedSphere(TruncatedSphereProfile { radius, .. }) => Some(*radius),
-            Profile::RoundedPunch(RoundedPunchProfile { edge_radius, .. }) => Some(*edge_radius),
-            Profile::Sum(SumProfile { parts }) => parts.iter().filter_map(Profile::curvature_radius).reduce(f64::min),
-            _ => None,
-        }
-    }
 }
 
 fn check_table(r: &[f64], z: &[f64], at: At<'_>, faults: &mut Faults) -> Option<Shape> {

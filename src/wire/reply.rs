@@ -159,7 +159,8 @@ impl From<mechanics::State> for State {
     fn from(state: mechanics::State) -> Self {
         State {
             displacement: state.displacement,
-            force: state.force,
+            // A virgin contact has none, with no sign.
+            force: state.force + 0.0,
             indentation: state.indentation,
             normal_force: state.normal_force,
             contact_radius: state.contact_radius,

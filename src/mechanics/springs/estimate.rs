@@ -1,0 +1,119 @@
+//! What the discretisation costs: fewer springs on the same path, the exact normal contact, and bends between the springs.
+//!
+//! Each alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell dx, is off
+//! by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of 1/sqrt(x^2 - r^2): what the
+//! springs show of second differences bounds both. Where more than a bend falls into a cell, springs of another number differ.
+
+use std::f64::consts::PI;
+
+use super::super::accuracy::Estimate;
+use super::Springs;
+
+/// Radii at which stresses are compared.
+const COMPARED: usize = 64;
+/// How near to a kink of the displacement, in cells, the estimate of the stress is meant to hold.
+const NEAREST: f64 = 2.0;
+
+impl Springs {
+    /// What the discretisation has cost: the largest of several estimates. The one of the stress is for radii some cells (of
+    /// twice the largest contact radius over the number of springs) away from the kinks of the displacement, the centre, the
+    /// edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    #[must_use]
+    pub fn accuracy(&self) -> Estimate {
+        let figures = self.normal.figures();
+        let edge = self.contact_radius();
+        let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
+        let mean_pressure = figures.normal_force / (PI * edge * edge);
+        let pressure = figures.max_pressure.unwrap_or(mean_pressure);
+        let bends = self.bends();
+        let misplaced = 2.0 * self.initial.g_star * self.misplaced;
+        let differences = self.twins.iter().map(|twin| (self.force() - twin.force()).abs());
+        let normal = self.friction * (self.normal_force() - figures.normal_force).abs();
+        let force = differences.fold(normal.max(self.force_bound(&bends)), f64::max) + misplaced * edge;
+        let stress = self.off_kinks(edge).map(|radius| self.stress_doubt(radius, &bends)).fold(0.0, f64::max);
+        let stress = stress + misplaced / (PI * (2.0 * NEAREST * edge * self.spacing).sqrt());
+        Estimate {
+            path_error: 0.0,
+            force_error: relative(force, figures.gross_slip_force) + f64::EPSILON,
+            stress_error: relative(stress, self.friction * pressure) + f64::EPSILON,
+        }
+    }
+
+    /// Radii over the contact, but for those where the profile has a singular stress.
+    fn off_kinks(&self, edge: f64) -> impl Iterator<Item = f64> {
+        let near = NEAREST * self.spacing;
+        let singular = self.profile.singular_radii();
+        (0..COMPARED)
+            .map(move |index| edge * (index as f64 + 0.5) / COMPARED as f64)
+            .filter(move |radius| singular.iter().all(|at| (radius - at).abs() > near))
+    }
+
+    /// Magnitudes of the second differences of the displacement, m, at each spring and just outside: (radius, weight, bend).
+    fn bends(&self) -> Vec<(f64, f64, f64)> {
+        let springs: Vec<_> = self.in_contact().copied().collect();
+        let carried = |index: usize| springs.get(index).map_or(0.0, |spring| spring.carried);
+        // A vertical edge ends with a cell, and there is nothing beyond it.
+        let open = self.rim_depth() <= 0.0;
+        let count = if open { springs.len() + 1 } else { springs.len().saturating_sub(1) };
+        (0..count)
+            .map(|index| {
+                let Some(spring) = self.springs.get(index) else {
+                    return (self.contact_radius(), 2.0, carried(index - 1).abs());
+                };
+                // Across the centre the row is its own mirror image.
+                let inner = match index {
+                    0 if spring.radius > 0.0 => carried(0),
+                    0 => carried(1),
+                    _ => carried(index - 1),
+                };
+                (spring.radius, spring.weight, (inner - 2.0 * carried(index) + carried(index + 1)).abs())
+            })
+            .collect()
+    }
+
+    /// What the bends leave open of the force, N.
+    fn force_bound(&self, bends: &[(f64, f64, f64)]) -> f64 {
+        let sum: f64 = bends.iter().map(|(_, weight, bend)| weight * bend).sum();
+        self.initial.g_star * self.spacing * sum / 8.0
+    }
+
+    /// What a shear stress at a radius, m, may be off by, Pa.
+    fn stress_doubt(&self, radius: f64, bends: &[(f64, f64, f64)]) -> f64 {
+        let nearest = radius + NEAREST * self.spacing;
+        let sum: f64 = bends
+            .iter()
+            .filter(|(at, ..)| *at > radius - self.spacing)
+            .map(|(at, _, bend)| {
+                let at = at.max(nearest);
+                let square = (at - radius) * (at + radius);
+                bend * at / (square * square.sqrt())
+            })
+            .sum();
+        let open = self.initial.g_star / PI * self.spacing * sum / 8.0;
+        let normal = self.friction * (self.pressure(radius) - self.normal.pressure(radius)).abs();
+        let shear = self.shear(radius);
+        let differences = self.twins.iter().map(|twin| (shear - twin.shear(radius)).abs());
+        differences.fold(open.max(normal), f64::max)
+    }
+
+    /// How far the displacement, m, of a force that is asked for may be off: as far as forces within the estimate lead.
+    pub(super) fn misplacement(&self, displacement: f64) -> f64 {
+        let moved = displacement - self.displacement;
+        let scale = self.scale();
+        let mut after = self.clone();
+        after.twins.clear();
+        after.advance(self.indentation, displacement);
+        let error = after.force_bound(&after.bends());
+        let force = after.force();
+        // At the most as far as where all of it slips.
+        let room = |sign: f64| {
+            self.in_contact()
+                .map(|spring| scale * (self.indentation - spring.level) - sign * spring.carried)
+                .fold(0.0, f64::max)
+        };
+        let change = |target: f64, sign: f64| {
+            self.displacement_for(target).map_or(sign * room(sign), |found| found - self.displacement)
+        };
+        (change(force + error, 1.0) - moved).abs().max((change(force - error, -1.0) - moved).abs())
+    }
+}
