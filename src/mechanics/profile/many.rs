@@ -67,6 +67,8 @@ impl Roots {
         if cut == self.shares.len() {
             return 0.0;
         }
+        #[cfg(test)]
+        (cut..self.shares.len()).for_each(|_| super::count::add(|calls| &mut calls.kernel));
         let places = self.squares[cut + 1..].iter().zip(&self.rests[cut + 1..]);
         for (root, (one, other)) in self.roots[cut + 1..].iter_mut().zip(places) {
             *root = ((one - square) + (other - rest)).sqrt();
