@@ -112,6 +112,14 @@ async fn each_warning_has_its_cause_and_its_page() {
             json!({"path": {"moves": [{"displacement": 5e-7, "normal_force": 30.0}]}, "tolerance": 1e-14}),
             &["tolerance_not_met"],
         ),
+        // What the last move wipes out is still in the states before it.
+        (
+            json!({
+                "path": {"moves": [{"displacement": 5e-7, "normal_force": 30.0}, {"displacement": 1e-5}]},
+                "tolerance": 1e-14
+            }),
+            &["tolerance_not_met"],
+        ),
     ];
     let pages = include_str!("../docs/warnings.md");
     for (changes, expected) in cases {

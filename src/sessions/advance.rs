@@ -125,6 +125,7 @@ impl Sessions {
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let cost = cost::estimated_cost(advance.plan.length(), advance.plan.curved(), depth, radii, false);
+        let cost = cost::on(live.contact.profile(), cost, false);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
         let (live, result) = self.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
         match result {

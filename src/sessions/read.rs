@@ -40,6 +40,7 @@ impl Sessions {
             (live.contact.clone(), live.session.sequence)
         };
         let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
+        let cost = cost::on(contact.profile(), cost, residual);
         let work = move || {
             let stress = stresses(&contact, &sampling, &stop)?;
             written(&StressReply {

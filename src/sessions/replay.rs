@@ -103,7 +103,7 @@ impl Sessions {
     /// Makes moves of the past.
     async fn follow(&self, mut live: Live, page: Vec<Record>) -> Result<Live, SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
-        let cost = cost::estimated_cost(page.len(), curved, 0, 0, false);
+        let cost = cost::on(live.contact.profile(), cost::estimated_cost(page.len(), curved, 0, 0, false), false);
         let replayed = self.pool.run(cost, move || {
             let begin = Instant::now();
             for record in &page {

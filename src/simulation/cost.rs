@@ -4,6 +4,7 @@
 //! calls. Work below [`INLINE`] is therefore done on the thread that serves the connection, where it delays others by no
 //! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few.
 
+use crate::mechanics::Profile;
 use crate::wire::simulate::Simulation;
 use crate::wire::{Solver, limits};
 
@@ -13,8 +14,8 @@ pub type Nanoseconds = u64;
 /// The line: work estimated below it runs inline.
 pub const INLINE: Nanoseconds = 50_000;
 
-/// A body longer than this (bytes) is parsed on the pool.
-pub const INLINE_BODY: usize = 64 * 1024;
+/// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50 microseconds.
+pub const INLINE_BODY: usize = 1024;
 
 /// One move of the exact solver, with its state, and the state written as JSON.
 const MOVE: u64 = 1_500;
@@ -24,6 +25,8 @@ const CURVED: u64 = 3_000_000;
 const PIECE: u64 = 15;
 /// One radius, whatever the memory, and its numbers written as JSON.
 const RADIUS: u64 = 200;
+/// The search for extrema on a shape with knots, at the least.
+const SEARCH: u64 = 1_000_000;
 /// One spring in one move, or seen from one radius.
 const SPRING: u64 = 3;
 
@@ -40,12 +43,31 @@ pub fn estimated_cost(moves: usize, curved: usize, depth: usize, radii: usize, r
         .saturating_add((radii + searched).saturating_mul(pieces * PIECE))
 }
 
+/// What costs so much on a sphere costs this much on another shape; the search for extrema goes from knot to knot there, and
+/// is never cheap.
+#[must_use]
+pub fn on(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
+    let searched = if residual && !matches!(profile, Profile::Sphere(_)) { SEARCH } else { 0 };
+    sphere.saturating_mul(factor(profile)).saturating_add(searched)
+}
+
+/// How many times dearer than a sphere a shape is: by closed forms, by a quadrature, part by part.
+fn factor(profile: &Profile) -> u64 {
+    match profile {
+        Profile::Sphere(_) => 1,
+        Profile::Tabulated(_) | Profile::PowerLaw(_) | Profile::ExactSphere(_) => 30,
+        Profile::Sum(sum) => sum.parts().iter().map(factor).sum(),
+        _ => 5,
+    }
+}
+
 /// What a simulation costs.
 #[must_use]
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let exact = estimated_cost(moves, simulation.plan.curved(), 0, radii, simulation.residual);
+    let exact = on(&simulation.setup.profile, exact, simulation.residual);
     match simulation.solver {
         None | Some(Solver::Exact) => exact,
         Some(Solver::Springs(springs)) => {
