@@ -8,9 +8,6 @@ use super::super::chart::Chart;
 use super::super::zone::Zone;
 use super::super::{At, Moments, Span};
 
-/// Steps towards a root, enough from the largest number to the smallest.
-const MOST_STEPS: usize = 4_000;
-
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
 
@@ -181,8 +178,7 @@ impl Panel {
     pub(super) fn find(&self, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (mut low, mut high) = (self.low, self.high);
         let mut t = 0.5 * (low + high);
-        // Towards nought, where the function is like a cube, each step takes a third off.
-        for _ in 0..MOST_STEPS {
+        for _ in 0..100 {
             let (value, slope) = f(t);
             if value > 0.0 {
                 high = t;
