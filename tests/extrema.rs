@@ -4,7 +4,7 @@ mod physics;
 
 use std::cell::Cell;
 
-use physics::forall;
+use physics::{forall, standing_out};
 use proptest::prelude::*;
 use stickslip::mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
@@ -98,28 +98,6 @@ fn profiles() -> Vec<(Profile, Vec<f64>)> {
         (sum([truncated_cone(0.1, 0.05), truncated_cone(0.1, 0.1)]), vec![0.05, 0.1]),
         (sum([punch(0.45), sphere(5.0)]), vec![]),
     ]
-}
-
-/// Extrema of samples that stand out by more than `height` from those on either side, with the samples that bracket each.
-fn standing_out(samples: &[f64], height: f64) -> Vec<usize> {
-    let mut found = Vec::new();
-    let (mut low, mut high, mut rising) = (0, 0, None);
-    for (index, &value) in samples.iter().enumerate() {
-        if value > samples[high] {
-            high = index;
-        }
-        if value < samples[low] {
-            low = index;
-        }
-        if rising != Some(false) && value < samples[high] - height {
-            found.extend(rising.map(|_| high));
-            (rising, low) = (Some(false), index);
-        } else if rising != Some(true) && value > samples[low] + height {
-            found.extend(rising.map(|_| low));
-            (rising, high) = (Some(true), index);
-        }
-    }
-    found
 }
 
 /// Radii over the contact, ever denser towards those of note.

@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use physics::points::Points;
 use physics::quadrature::integral;
-use physics::{Ball, PLAIN, Random, UNIT, Worst, displace, forall, paths};
+use physics::{Ball, PLAIN, Random, UNIT, Worst, displace, forall, paths, standing_out};
 use proptest::prelude::*;
 use stickslip::mechanics::Contact;
 
@@ -283,28 +283,6 @@ fn dense(special: &[f64], edge: f64) -> Vec<f64> {
     radii.sort_by(f64::total_cmp);
     radii.dedup();
     radii
-}
-
-/// Extrema of samples that stand out by more than `height` from the extrema on either side.
-fn standing_out(samples: &[f64], height: f64) -> Vec<usize> {
-    let mut found = Vec::new();
-    let (mut low, mut high, mut rising) = (0, 0, None);
-    for (index, &value) in samples.iter().enumerate() {
-        if value > samples[high] {
-            high = index;
-        }
-        if value < samples[low] {
-            low = index;
-        }
-        if rising != Some(false) && value < samples[high] - height {
-            found.extend(rising.map(|_| high));
-            (rising, low) = (Some(false), index);
-        } else if rising != Some(true) && value > samples[low] + height {
-            found.extend(rising.map(|_| low));
-            (rising, high) = (Some(true), index);
-        }
-    }
-    found
 }
 
 #[test]

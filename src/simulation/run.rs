@@ -83,10 +83,10 @@ fn run<S: Solver>(
     }
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
-    let last = solver.accuracy().path_error;
-    let path_error = path_error.max(last);
-    let mut accuracy = accuracy(&solver, timer, reason);
-    accuracy.force_error += path_error - last;
+    let mut estimate = solver.accuracy();
+    let path_error = path_error.max(estimate.path_error);
+    estimate.force_error += path_error - estimate.path_error;
+    let accuracy = stated::<S>(&estimate, timer, reason);
     // The tolerance is for a move, and the errors of curved ones add up.
     let allowed = simulation.tolerance * curved.max(1) as f64 + 1e-13;
     let missed = (path_error > allowed).then_some(path_error);
@@ -213,12 +213,15 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
-    let Estimate { force_error, stress_error, .. } = solver.accuracy();
+    stated::<S>(&solver.accuracy(), timer, reason)
+}
+
+fn stated<S: Solver>(estimate: &Estimate, timer: Timer, reason: &str) -> Accuracy {
     Accuracy {
         solver: S::KIND,
         reason: reason.to_owned(),
-        force_error,
-        stress_error,
+        force_error: estimate.force_error,
+        stress_error: estimate.stress_error,
         compute_time: timer.0.elapsed().as_secs_f64(),
     }
 }

@@ -168,3 +168,25 @@ impl Random {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 }
+
+/// Extrema of samples that stand out by more than `height` from those on either side, with the samples that bracket each.
+pub fn standing_out(samples: &[f64], height: f64) -> Vec<usize> {
+    let mut found = Vec::new();
+    let (mut low, mut high, mut rising) = (0, 0, None);
+    for (index, &value) in samples.iter().enumerate() {
+        if value > samples[high] {
+            high = index;
+        }
+        if value < samples[low] {
+            low = index;
+        }
+        if rising != Some(false) && value < samples[high] - height {
+            found.extend(rising.map(|_| high));
+            (rising, low) = (Some(false), index);
+        } else if rising != Some(true) && value > samples[low] + height {
+            found.extend(rising.map(|_| low));
+            (rising, high) = (Some(true), index);
+        }
+    }
+    found
+}
