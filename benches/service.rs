@@ -24,6 +24,8 @@ use uuid::Uuid;
 const CONNECTIONS: usize = 32;
 const SESSIONS: usize = 256;
 const ROUNDS: usize = 5;
+/// Parts of a second that Linux counts processor time in.
+const TICKS: f64 = 100.0;
 const ROUND: Duration = Duration::from_secs(3);
 const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
 
@@ -34,6 +36,8 @@ struct Service {
     address: String,
     paths: Vec<String>,
     rates: Vec<f64>,
+    /// Seconds of processor time that a move took of the process, round by round.
+    costs: Vec<f64>,
 }
 
 impl Service {
@@ -45,7 +49,7 @@ impl Service {
         BufReader::new(output).read_line(&mut line).expect("it should say where it listens");
         let address = line.split("http://").nth(1).expect("it names an address").split([',', '\n']).next();
         let address = address.expect("an address").to_owned();
-        let mut service = Service { name, process, address, paths: Vec::new(), rates: Vec::new() };
+        let mut service = Service { name, process, address, paths: Vec::new(), rates: Vec::new(), costs: Vec::new() };
         for _ in 0..SESSIONS {
             let id = if name == "bare" { Uuid::now_v7() } else { service.create().await };
             service.paths.push(format!("/contacts/{id}/move"));
@@ -60,9 +64,18 @@ impl Service {
         serde_json::from_value(reply["id"].clone()).expect("an identifier")
     }
 
-    /// Moves a second, over all connections.
-    async fn rate(&self) -> f64 {
-        let start = Instant::now();
+    /// Processor time that the process has used, in seconds.
+    fn used(&self) -> f64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).expect("a process that runs");
+        // The name of the program stands in brackets, and may hold blanks.
+        let fields = stat.rsplit_once(')').expect("a name in brackets").1.split_ascii_whitespace();
+        let ticks: f64 = fields.skip(11).take(2).map(|ticks| ticks.parse::<f64>().expect("a number")).sum();
+        ticks / TICKS
+    }
+
+    /// Makes moves over all connections for a while.
+    async fn round(&mut self) {
+        let (start, used) = (Instant::now(), self.used());
         let workers = self.paths.chunks(SESSIONS / CONNECTIONS).map(|paths| {
             let (paths, address) = (paths.to_vec(), self.address.clone());
             tokio::spawn(async move {
@@ -81,7 +94,8 @@ impl Service {
         });
         let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
         let count: u32 = counts.into_iter().map(|count| count.expect("a worker that ends well")).sum();
-        f64::from(count) / start.elapsed().as_secs_f64()
+        self.rates.push(f64::from(count) / start.elapsed().as_secs_f64());
+        self.costs.push((self.used() - used) / f64::from(count));
     }
 }
 
@@ -172,24 +186,26 @@ async fn compare() {
     ];
     for _ in 0..ROUNDS {
         for service in &mut services {
-            let rate = service.rate().await;
-            service.rates.push(rate);
+            service.round().await;
         }
     }
     let bare = services[0].rates.clone();
-    println!("| store | moves a second | ratio to bare | of rounds |");
+    println!("| store | moves a second | ratio to bare | of rounds | processor time a move |");
+    println!("|---|---|---|---|---|");
     for service in &services {
-        let mut rates = service.rates.clone();
+        let (mut rates, mut costs) = (service.rates.clone(), service.costs.clone());
+        costs.sort_by(f64::total_cmp);
         let mut ratios: Vec<f64> = rates.iter().zip(&bare).map(|(rate, bare)| rate / bare).collect();
         rates.sort_by(f64::total_cmp);
         ratios.sort_by(f64::total_cmp);
         let (name, middle) = (service.name, ROUNDS / 2);
         println!(
-            "| {name} | {:.0} | {:.2} | {:.2} to {:.2} |",
+            "| {name} | {:.0} | {:.2} | {:.2} to {:.2} | {:.1} us |",
             rates[middle],
             ratios[middle],
             ratios[0],
-            ratios[ROUNDS - 1]
+            ratios[ROUNDS - 1],
+            costs[middle] * 1e6
         );
     }
     drop(services);

@@ -44,22 +44,9 @@ impl Sessions {
             return Ok(reply);
         }
         // Whoever hangs up in the queue has left it.
-        let guard = self.cache.lock(id).await;
+        let mut guard = self.cache.lock(id).await;
         let (stop, _raised_at_the_end) = Stop::guarded();
-        let sessions = self.clone();
-        let task =
-            tokio::spawn(async move { sessions.advance_locked(advance.into(), expected, key, guard, stop).await });
-        task.await.unwrap_or_else(|_| Err(SessionError::Broken("a move panicked".to_owned())))
-    }
-
-    async fn advance_locked(
-        &self,
-        advance: Arc<Advance>,
-        expected: Option<u64>,
-        key: Option<RequestKey>,
-        mut guard: Guard,
-        stop: Stop,
-    ) -> Result<Reply, SessionError> {
+        let advance = Arc::new(advance);
         // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
         let mut certain = guard.live.is_none();
         let mut found = 0;
@@ -86,7 +73,7 @@ impl Sessions {
                 Err(error) => return Err(error),
             };
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
-            // nothing: whoever finds it so, because the store failed or this task died, asks the store what is true.
+            // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
             let receipt = idempotency::receipt(key.clone(), &reply);
             match self.store.append(guard.id(), sequence, records, receipt).await {
                 Ok(()) => {
@@ -113,7 +100,7 @@ impl Sessions {
         advance: &Arc<Advance>,
         guard: &mut Guard,
         stop: &Stop,
-    ) -> Result<(Live, Done), SessionError> {
+    ) -> Result<(Box<Live>, Done), SessionError> {
         let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
         // copy costs as much as the memory is deep. A move that may come too late is another matter.
@@ -140,7 +127,7 @@ impl Sessions {
     }
 }
 
-fn attempt(mut live: Live, advance: &Advance, stop: &Stop) -> (Live, Result<Done, SessionError>) {
+fn attempt(mut live: Box<Live>, advance: &Advance, stop: &Stop) -> (Box<Live>, Result<Done, SessionError>) {
     let result = make(&mut live, advance, stop);
     (live, result)
 }

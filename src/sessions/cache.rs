@@ -34,14 +34,14 @@ struct Desk {
 
 /// States that nobody works on, with their bytes.
 struct States {
-    by_id: LruCache<Uuid, (Live, usize)>,
+    by_id: LruCache<Uuid, (Box<Live>, usize)>,
     bytes: usize,
 }
 
 /// A session that is one's own until the guard is dropped, when its state goes back to the cache.
 pub(super) struct Guard {
     /// The state, if it is at hand: that after some move that is stored, though perhaps not the last.
-    pub(super) live: Option<Live>,
+    pub(super) live: Option<Box<Live>>,
     // Declared, and so released, before the desk is left: whoever comes in between finds the desk and waits at it.
     _lock: OwnedMutexGuard<()>,
     place: Place,
@@ -80,14 +80,14 @@ impl Cache {
         (Arc::clone(&desk.lock), Place { cache: Arc::clone(self), id })
     }
 
-    fn take(&self, id: Uuid) -> Option<Live> {
+    fn take(&self, id: Uuid) -> Option<Box<Live>> {
         let mut states = self.states();
         let (live, bytes) = states.by_id.remove(&id)?;
         states.bytes -= bytes;
         Some(live)
     }
 
-    fn put(&self, live: Live) {
+    fn put(&self, live: Box<Live>) {
         let bytes = live.bytes();
         if bytes > self.capacity {
             // It would drive out all others and go with them.

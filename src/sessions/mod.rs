@@ -1,9 +1,9 @@
 //! A contact that lives: one writer a session, a cache of states, and the past replayed where the cache has none.
 //!
 //! Moves of one session queue at its lock in the order of their arrival; sessions do not wait for each other. A move is
-//! computed, appended to the store, and only then visible: whoever reads a state reads one that is stored. From the
-//! moment a move begins it no longer depends on the client: it runs in a task of its own, to its end, unless the client
-//! hangs up while it is still being computed, when it ends without a trace.
+//! computed, appended to the store, and only then visible: whoever reads a state reads one that is stored. A client that
+//! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client that
+//! loses its connection must expect, and whoever comes next asks the store.
 //!
 //! Other processes may work on the same store. A state at hand is always one that the session has been in, so that the
 //! moves stored beyond it lead to the present one: a read makes them first, and a move whose number the store has given
@@ -100,7 +100,7 @@ impl Sessions {
         let mut guard = self.cache.lock(live.session.id).await;
         let stored = self.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
         match stored {
-            Ok(()) => guard.live = Some(live),
+            Ok(()) => guard.live = Some(Box::new(live)),
             Err(error) => return self.lost(error, key).await,
         }
         Ok(reply)
@@ -131,7 +131,7 @@ impl Sessions {
             let receipt = idempotency::receipt(key.clone(), &reply);
             match self.store.fork(id, copy.session.clone(), receipt).await {
                 Ok(()) => {
-                    new.live = Some(copy);
+                    new.live = Some(Box::new(copy));
                     return Ok(reply);
                 }
                 Err(StoreError::Stale { found: moved }) => found = moved,

@@ -23,7 +23,7 @@ impl Sessions {
             self.open(guard).await?;
         }
         let id = guard.id();
-        guard.live.as_mut().ok_or(SessionError::NotFound(id))
+        guard.live.as_deref_mut().ok_or(SessionError::NotFound(id))
     }
 
     /// The session as it is stored: with what other processes have done to it up to now.
@@ -82,7 +82,7 @@ impl Sessions {
         let mut faults = Faults::default();
         let setup = session.definition.check(At::Root, &mut faults);
         let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;
-        let mut live = Live::start(session, setup).map_err(|error| broken(guard, &error))?;
+        let mut live = Box::new(Live::start(session, setup).map_err(|error| broken(guard, &error))?);
         (live.contact, live.session.sequence) = self.newest(snapshot, live.contact, sequence).await?;
         guard.live = Some(live);
         self.catch_up(guard).await?;
@@ -101,7 +101,7 @@ impl Sessions {
     }
 
     /// Makes moves of the past.
-    async fn follow(&self, mut live: Live, page: Vec<Record>) -> Result<Live, SessionError> {
+    async fn follow(&self, mut live: Box<Live>, page: Vec<Record>) -> Result<Box<Live>, SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
         let cost = cost::on(live.contact.profile(), cost::estimated_cost(page.len(), curved, 0, 0, false), false);
         let replayed = self.pool.run(cost, move || {

@@ -7,6 +7,7 @@ use uuid::Uuid;
 use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
 use super::fork;
+use super::known::Known;
 use super::rows::{MOVE_COLUMNS, bound, insert_move, integer, nanoseconds, natural};
 
 /// Receipts that one sweep of the writer passes.
@@ -74,7 +75,7 @@ impl Change {
     }
 
     /// Makes the change within the transaction under way. `number` is free for a new session.
-    pub(super) fn make(&self, database: &Connection, number: i64) -> Result<Done, Undone> {
+    pub(super) fn make(&self, database: &Connection, known: &mut Known, number: i64) -> Result<Done, Undone> {
         match self {
             Change::Create { session, receipt } => {
                 free(database, receipt.as_ref())?;
@@ -83,17 +84,24 @@ impl Change {
             }
             Change::Append { id, expected, records, receipt } => {
                 free(database, receipt.as_ref())?;
-                let number = at(database, *id, *expected)?;
+                let number = match known.number(*id, *expected) {
+                    Some(number) => number,
+                    None => at(database, *id, *expected)?,
+                };
                 let mut insert = database.prepare_cached(&format!(
                     "INSERT INTO moves (contact, {MOVE_COLUMNS})
                      VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20)"
                 ))?;
                 records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
                 keep(database, receipt.as_ref())?;
+                if let Some(last) = records.last() {
+                    known.moved(*id, number, last.sequence);
+                }
             }
             Change::Fork(fork) => return fork.begin(database, number),
             Change::Delete { id, expected } => {
                 let number = at(database, *id, *expected)?;
+                known.forget(*id);
                 disown(database, number)?;
             }
             Change::KeepSnapshot { id, snapshot } => {
@@ -108,6 +116,7 @@ impl Change {
             Change::Expire { ids, since } => {
                 let mut gone = 0;
                 for id in ids {
+                    known.forget(*id);
                     gone += u64::from(expire(database, *id, *since)?);
                 }
                 return Ok(Done::Made(gone));

@@ -9,6 +9,7 @@ mod change;
 mod fault;
 mod file;
 mod fork;
+mod known;
 mod read;
 mod readers;
 mod rows;

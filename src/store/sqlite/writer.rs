@@ -16,6 +16,7 @@ use crate::store::{Changes, StoreError};
 use super::change::{Change, Done, Fork, Undone};
 use super::fault::{Stage, store_error, worth_splitting};
 use super::fork::{self, Copying};
+use super::known::Known;
 
 /// Requests that share a transaction.
 const BATCH: usize = 512;
@@ -35,6 +36,7 @@ type Reply = oneshot::Sender<Result<u64, StoreError>>;
 pub(super) struct Writer {
     database: Connection,
     changes: Arc<Changes>,
+    known: Known,
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
@@ -59,7 +61,15 @@ impl Writer {
                               coalesce((SELECT max(contact) FROM unowned), 0))";
         let highest: i64 = database.query_row(sql, [], |row| row.get(0))?;
         let forks = VecDeque::new();
-        Ok(Writer { database, changes, next_number: highest + 1, forks, unowned: true, healthy: true })
+        Ok(Writer {
+            database,
+            changes,
+            known: Known::nothing(),
+            next_number: highest + 1,
+            forks,
+            unowned: true,
+            healthy: true,
+        })
     }
 
     /// Serves until nobody can ask any more, then leaves the database file whole.
@@ -114,10 +124,10 @@ impl Writer {
 
     fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
         let mut number = self.next_number;
-        let outcomes = self.transaction(|database| {
+        let outcomes = self.transaction(|database, known| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
-                outcomes.push(match request.change.make(database, number) {
+                outcomes.push(match request.change.make(database, known, number) {
                     Ok(done) => Ok(done),
                     Err(Undone::Refused(error)) => Err(error),
                     Err(Undone::Failed(error)) => return Err(error),
@@ -153,7 +163,7 @@ impl Writer {
         if let Some((fork, copying, reply)) = self.forks.pop_front() {
             let mut proceeded = copying;
             // A refusal has written a part of the copy and nothing else, and that part is removed later.
-            let step = self.transaction(|database| match fork.proceed(database, &mut proceeded) {
+            let step = self.transaction(|database, _| match fork.proceed(database, &mut proceeded) {
                 Ok(complete) => Ok(Ok(complete)),
                 Err(Undone::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
                 Err(Undone::Failed(error)) => Err(error),
@@ -166,12 +176,12 @@ impl Writer {
                     answer(reply, Err(error));
                 }
                 Err(Failure { error, stage }) => {
-                    self.unowned |= self.transaction(|database| copying.abandon(database)).is_ok();
+                    self.unowned |= self.transaction(|database, _| copying.abandon(database)).is_ok();
                     answer(reply, Err(store_error(&error, stage)));
                 }
             }
         } else if self.unowned && self.healthy {
-            match self.transaction(fork::remove_unowned) {
+            match self.transaction(|database, _| fork::remove_unowned(database)) {
                 Ok(more) => self.unowned = more,
                 Err(Failure { error, .. }) => tracing::warn!(%error, "deleted moves could not be removed for now"),
             }
@@ -179,14 +189,18 @@ impl Writer {
     }
 
     /// Runs a transaction to its durable end, or takes it back.
-    fn transaction<T>(&mut self, work: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> Result<T, Failure> {
-        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database));
+    fn transaction<T>(
+        &mut self,
+        work: impl FnOnce(&Connection, &mut Known) -> rusqlite::Result<T>,
+    ) -> Result<T, Failure> {
+        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database, &mut self.known));
         let outcome = match done {
             Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
             Err(error) => Err((error, Stage::Before)),
         };
         self.healthy = outcome.is_ok();
         outcome.map_err(|(error, stage)| {
+            self.known.clear();
             // Some failures end the transaction by themselves.
             if !self.database.is_autocommit()
                 && let Err(error) = self.run_statement("ROLLBACK")
