@@ -1,7 +1,14 @@
-//! What it takes to open a session that is not at hand: `cargo bench --bench sessions`.
+//! What it takes to open a session that is not at hand, by each store: `cargo bench --bench sessions`. Needs PostgreSQL, as the
+//! tests do.
 //!
 //! A session of a million moves, its memory some ten pieces deep and a hundred thousand, opened from its snapshot and the
-//! moves beyond it, half as many as there can be; and the same without a snapshot, from the first move on.
+//! moves beyond it, half as many as there can be; and the same without a snapshot, from the first move on. Before that, how
+//! much the process grows by sessions that are stored and not at hand.
+
+// Made for the tests, of which this uses a part.
+#[allow(dead_code)]
+#[path = "../tests/common/postgres.rs"]
+mod postgres;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,7 +16,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::sessions::Sessions;
 use stickslip::simulation::Pool;
-use stickslip::store::{MemoryStore, Snapshot, Store};
+use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
 use stickslip::wire::session::Advance;
 use stickslip::wire::{CreateRequest, Plan, Steps, read};
 use uuid::Uuid;
@@ -21,8 +28,14 @@ const PATH: usize = 100_000;
 const TAIL: usize = 5_000;
 /// Displacement of gross slip, m, roughly.
 const SLIDE: f64 = 2e-7;
+/// Sessions at rest, at which the memory of the process is looked at.
+const AT_REST: [usize; 3] = [20_000, 120_000, 320_000];
+/// Sessions that are made at a time.
+const AT_ONCE: usize = 500;
+const DEFINITION: &[u8] = br#"{"profile": {"type": "sphere", "radius": 0.01}, "friction": 0.3,
+    "preload": {"normal_force": 10.0}, "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}}}"#;
 
-fn sessions(store: &Arc<MemoryStore>) -> Sessions {
+fn sessions(store: &Arc<dyn Store>) -> Sessions {
     Sessions::new(store.clone(), Pool::of_the_machine(), 0)
 }
 
@@ -39,13 +52,14 @@ fn displacements(turns: usize) -> Vec<f64> {
     falling.into_iter().chain(std::iter::repeat_with(|| inside * SLIDE * next())).take(MOVES).collect()
 }
 
-async fn make(store: &Arc<MemoryStore>, turns: usize) -> Uuid {
+async fn create(sessions: &Sessions) -> Uuid {
+    let creation = read::<CreateRequest>(DEFINITION).expect("a valid definition");
+    sessions.create(creation, None).await.expect("room").created.expect("a new session")
+}
+
+async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
     let sessions = Sessions::new(store.clone(), Pool::of_the_machine(), usize::MAX);
-    let definition =
-        br#"{"profile": {"type": "sphere", "radius": 0.01}, "friction": 0.3, "preload": {"normal_force": 10.0},
-        "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}}}"#;
-    let creation = read::<CreateRequest>(definition).expect("a valid definition");
-    let id = sessions.create(creation, None).await.expect("room").created.expect("a new session");
+    let id = create(&sessions).await;
     let displacements = displacements(turns);
     let (body, tail) = displacements.split_at(MOVES - TAIL);
     for path in body.chunks(PATH).chain([tail]) {
@@ -58,27 +72,60 @@ async fn make(store: &Arc<MemoryStore>, turns: usize) -> Uuid {
     id
 }
 
+/// The memory that this process holds, in bytes.
+fn resident() -> i64 {
+    let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a line of its own");
+    line.trim().trim_end_matches(" kB").parse::<i64>().expect("a number") * 1024
+}
+
+/// Prints by how much the process grows with the number of sessions that are stored.
+async fn rest(store: Arc<dyn Store>) {
+    let sessions = sessions(&store);
+    let (mut made, mut held) = (0, 0);
+    for count in AT_REST {
+        while made < count {
+            futures::future::join_all((0..AT_ONCE).map(|_| create(&sessions))).await;
+            made += AT_ONCE;
+        }
+        let grown = resident() - held;
+        held += grown;
+        println!("{count} sessions at rest in SQLite: {} kB held, {} kB more than before", held / 1024, grown / 1024);
+    }
+}
+
 fn opening(criterion: &mut Criterion) {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("threads are to be had");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let sqlite = |name| Arc::new(SqliteStore::open(&folder.path().join(name)).expect("a new file"));
+    runtime.block_on(rest(sqlite("rest.db")));
+    let url = runtime.block_on(postgres::Cluster::shared().database());
+    let stores: [(&str, Arc<dyn Store>); 3] = [
+        ("memory", Arc::new(MemoryStore::new())),
+        ("sqlite", sqlite("opening.db")),
+        ("postgres", runtime.block_on(stickslip::store::open(&url)).expect("a database")),
+    ];
     let mut group = criterion.benchmark_group("open a session of a million moves");
     group.sample_size(10);
-    for turns in [0, PATH] {
-        let store = Arc::new(MemoryStore::new());
-        let id = runtime.block_on(make(&store, turns));
-        let cold = sessions(&store);
-        let session = runtime.block_on(cold.get(id)).expect("it is there");
-        let kept = runtime.block_on(store.snapshot(id)).expect("it is there").expect("a snapshot");
-        println!("snapshot of {} bytes, {} moves before the end", kept.state.len(), session.sequence - kept.sequence);
-        group.bench_function(format!("{} pieces deep", session.state.memory_depth), |bencher| {
-            bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
-        });
-        if turns == 0 {
-            // Bytes that are no snapshot are ignored.
-            let nothing = Snapshot { sequence: session.sequence + 1, state: Vec::new() };
-            runtime.block_on(store.keep_snapshot(id, nothing)).expect("it is there");
-            group.bench_function("without a snapshot", |bencher| {
+    for (name, store) in &stores {
+        for turns in [0, PATH] {
+            let id = runtime.block_on(make(store, turns));
+            let cold = sessions(store);
+            let session = runtime.block_on(cold.get(id)).expect("it is there");
+            let kept = runtime.block_on(store.snapshot(id)).expect("it is there").expect("a snapshot");
+            let beyond = session.sequence - kept.sequence;
+            println!("{name}: snapshot of {} bytes, {beyond} moves before the end", kept.state.len());
+            group.bench_function(format!("{name}, {} pieces deep", session.state.memory_depth), |bencher| {
                 bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
             });
+            if turns == 0 {
+                // Bytes that are no snapshot are ignored.
+                let nothing = Snapshot { sequence: session.sequence + 1, state: Vec::new() };
+                runtime.block_on(store.keep_snapshot(id, nothing)).expect("it is there");
+                group.bench_function(format!("{name}, without a snapshot"), |bencher| {
+                    bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
+                });
+            }
         }
     }
     group.finish();

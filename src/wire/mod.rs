@@ -21,6 +21,7 @@ pub mod session;
 pub mod simulate;
 mod slope;
 pub mod stress;
+mod strict;
 
 pub use check::{At, Fault, Faults};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};

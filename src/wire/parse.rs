@@ -6,6 +6,7 @@ use serde_path_to_error::{Deserializer, Path, Segment, Track};
 use crate::mechanics;
 
 use super::check::{Fault, escaped};
+use super::strict::Strict;
 
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;
@@ -65,7 +66,7 @@ pub fn read<T: Document>(body: &[u8]) -> Result<T::Checked, Rejection> {
 pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
     let mut json = serde_json::Deserializer::from_slice(body);
     let mut track = Track::new();
-    let parsed = T::deserialize(Deserializer::new(&mut json, &mut track));
+    let parsed = T::deserialize(Strict(Deserializer::new(&mut json, &mut track)));
     match parsed.and_then(|value| json.end().map(|()| value)) {
         Ok(value) => Ok(value),
         // serde_json calls some well-formed documents a syntax error too (1e999, an array longer than expected), and
@@ -180,6 +181,10 @@ mod tests {
             (with(sphere, r#"{"force":[1],"displacement":[1]}"#), "/path", "beside"),
             (with(sphere, "{}"), "/path", "one key"),
             (with(sphere, "7"), "/path", "one key"),
+            (with(r#"["sphere",1]"#, r#"{"force":[1]}"#), "/contact/profile", "an object"),
+            (with(sphere, r#"{"moves":[[0,1]]}"#), "/path/moves/0", "an object"),
+            (with(sphere, r#"{"falling_amplitude":[3,1e-7]}"#), "/path/falling_amplitude", "an object"),
+            ("[1,2]".to_owned(), "", "an object"),
         ] {
             let (found, detail) = refused(&body);
             assert_eq!(found, pointer, "{body}: {detail}");
