@@ -14,6 +14,8 @@ use super::{At, Point, Profile, Ring, Span};
 const NEAR: f64 = 1e-2;
 /// Newton's steps for the level that carries a load there, each of which gains two digits at the least.
 const POLISH: usize = 5;
+/// How far, of itself, they may move an indentation.
+const FARTHEST: f64 = 1e-3;
 
 /// A sum of profiles, none of them a sum.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,10 +176,15 @@ impl Shape for Sum {
                 let (level, square) = (Double::from(level), self.square(Double::from(level)));
                 Point { level, radius: square.value().sqrt(), square }
             };
+            let mut polished = level;
             for _ in 0..POLISH {
-                let ring = Ring::between(point(0.0), point(level));
-                let carried = core * level + self.moments(&self.span(&ring)).first;
-                level = (level + (load - carried) / ring.outer.radius).max(0.0);
+                let ring = Ring::between(point(0.0), point(polished));
+                let carried = core * polished + self.moments(&self.span(&ring)).first;
+                polished = (polished + (load - carried) / ring.outer.radius).max(0.0);
+            }
+            // Beyond the end of a part the search has gone as far as it can, and there is nothing to polish.
+            if (polished - level).abs() <= FARTHEST * level {
+                level = polished;
             }
         }
         level

@@ -44,7 +44,9 @@ impl Zone {
         let (low, high) = span.excess(Double::square_of(base));
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
-        let above = if ceiling < f64::INFINITY { ((ceiling - base) * (ceiling + base)).sqrt() } else { ceiling };
+        // Far beyond the ceiling there is no contact, only steps of a search that went astray: any finite effort will do.
+        let above = ((ceiling - base) * (ceiling + base)).sqrt();
+        let above = if above > 0.99 * high { above } else { f64::INFINITY };
         let singular = Singular { below: reach, above };
         Zone { base, high, drop, singular, power, low, radii: span.inner_radius + span.outer_radius, gap: span.gap }
     }
@@ -70,8 +72,9 @@ impl Zone {
             if self.power > 10.0 && done * (rate + 0.5 * bend * done) < 40.0 {
                 // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
                 let steep = rate + bend * done;
-                let reach = 10.0 / (steep + (steep * steep + 10.0 * bend).sqrt());
-                if reach < panel.width {
+                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the sweep stand still.
+                let reach = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
+                if reach > 0.0 && reach < panel.width {
                     panel = Panel::fine(reach);
                 }
             }

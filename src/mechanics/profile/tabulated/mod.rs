@@ -268,7 +268,9 @@ impl Shape for Tabulated {
         if rest <= 0.0 {
             return panel.square;
         }
-        let t = panel.find(|t| (panel.rise_at(panel.low, t, t - panel.low) - rest, panel.slope_at(t)));
+        let whole = self.panels.get(index + 1).map_or(self.end.1, |next| next.level) - panel.level;
+        let t =
+            panel.find(rest / whole, 2.0, |t| (panel.rise_at(panel.low, t, t - panel.low) - rest, panel.slope_at(t)));
         Double::square_of(panel.base) + Double::square_of(t)
     }
 
@@ -288,7 +290,8 @@ impl Shape for Tabulated {
         let index = self.panels.partition_point(|panel| panel.load <= load).saturating_sub(1);
         let panel = &self.panels[index];
         let rest = load - panel.load;
-        let t = panel.find(|t| (panel.load_to(t) - rest, panel.radius_at(t) * panel.slope_at(t)));
+        let whole = self.panels.get(index + 1).map_or(self.end.2, |next| next.load) - panel.load;
+        let t = panel.find(rest / whole, 3.0, |t| (panel.load_to(t) - rest, panel.radius_at(t) * panel.slope_at(t)));
         panel.level_at(t)
     }
 

@@ -174,10 +174,13 @@ impl Panel {
         load
     }
 
-    /// The t at which a rising function of t, given with its slope, is nought: Newton's steps inside a bracket.
-    pub(super) fn find(&self, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+    /// The t at which a rising function of t, given with its slope, is nought: Newton's steps inside a bracket. `share` is how
+    /// much of the function's rise over the panel lies below the root, and `power` how it begins at the foot of a table, where a
+    /// root can be as small as numbers are and no bisection would get there.
+    pub(super) fn find(&self, share: f64, power: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (mut low, mut high) = (self.low, self.high);
-        let mut t = 0.5 * (low + high);
+        let share = if low > 0.0 { share } else { share.powf(power.recip()) };
+        let mut t = (low + (high - low) * share).clamp(low, high);
         for _ in 0..100 {
             let (value, slope) = f(t);
             if value > 0.0 {
