@@ -16,7 +16,7 @@ pub struct Process {
 fn command(prefix: &[String], store: &str) -> Command {
     let binary = [env!("CARGO_BIN_EXE_stickslip").to_owned()];
     let mut words = prefix.iter().chain(&binary);
-    let mut command = Command::new(words.next().unwrap());
+    let mut command = super::clean(Command::new(words.next().unwrap()));
     command.args(words);
     command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
     command
