@@ -1,6 +1,7 @@
 //! The command line: what can be asked for, and who does it.
 
 mod healthcheck;
+mod key;
 mod serve;
 mod settings;
 mod simulate;
@@ -14,6 +15,7 @@ use clap::{Parser, Subcommand};
 use stickslip::{api, figures};
 
 use healthcheck::Healthcheck;
+use key::Key;
 use serve::Serve;
 use settings::{Refusal, Settings};
 
@@ -42,6 +44,9 @@ enum Command {
     Openapi,
     /// Ask a running service whether it is well; for container health checks.
     Healthcheck(Healthcheck),
+    /// Keys for those who may use a service.
+    #[command(subcommand)]
+    Key(Key),
     /// Draw the figures of the paper, as SVG and CSV.
     Figures {
         /// The folder to write them to.
@@ -80,6 +85,7 @@ impl Command {
             Command::Simulate { file } => simulate::simulate(&file),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
+            Command::Key(key) => key::key(key),
             Command::Figures { out } => {
                 figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
             }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytesize::ByteSize;
-use clap::{Args, ValueEnum};
-use stickslip::api::{self, App};
+use clap::{ArgAction, Args, ValueEnum};
+use stickslip::api::headers::Origin;
+use stickslip::api::{self, Access, App};
 use stickslip::sessions::{self, Sessions};
 use stickslip::simulation::Pool;
 use stickslip::store::{self, Store};
@@ -15,8 +16,8 @@ use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
 
-use super::print;
 use super::settings::ConfigFile;
+use super::{key, print};
 
 /// How long work that does not look at its flag may hold up the end of the process.
 const LAST_WORK: Duration = Duration::from_millis(500);
@@ -32,6 +33,17 @@ pub struct Serve {
     /// Address and port to listen on; port 0 takes a free one.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
+    /// Keys of those who may use the service: the path of a file with entries as `stickslip key new` prints them, or such entries
+    /// themselves, with commas between them.
+    #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
+    keys: Vec<String>,
+    /// Listen on an address that others can reach although everybody who reaches it may do everything: true or false.
+    #[arg(long, env = "STICKSLIP_INSECURE", num_args = 0..=1, require_equals = true, action = ArgAction::Set,
+        default_value_t = false, default_missing_value = "true")]
+    insecure: bool,
+    /// Origins whose pages a browser may let in, such as https://lab.example, with commas between them.
+    #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
+    cors_origins: Vec<Origin>,
     /// Where contacts are kept: `sqlite:PATH` in a file, `postgres://…` in a database that several processes share,
     /// `memory:` in this process until it ends.
     #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
@@ -64,14 +76,36 @@ pub fn serve(options: Serve) -> Result<(), String> {
         LogFormat::Text => log.with_ansi(false).init(),
         LogFormat::Json => log.json().flatten_event(true).init(),
     }
+    let access = access(&options)?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
-    let served = runtime.block_on(listen(&options, Arc::clone(&store)));
+    let served = runtime.block_on(listen(&options, access, Arc::clone(&store)));
     runtime.shutdown_timeout(LAST_WORK);
     // The last handle, now that no request holds one: the store is closed before the process ends.
     drop(store);
     served
+}
+
+/// Who may use the service. Without keys nobody else may reach it, unless that is wanted.
+fn access(options: &Serve) -> Result<Access, String> {
+    let keys = key::known(&options.keys)?;
+    let listen = options.listen;
+    if keys.is_none() && !listen.ip().to_canonical().is_loopback() {
+        if !options.insecure {
+            return Err(format!(
+                "refusing to listen on {listen} without keys: give --keys, or a loopback address such as 127.0.0.1:{}, or \
+                 --insecure to let in everybody who can reach it",
+                listen.port()
+            ));
+        }
+        tracing::warn!(%listen, "there are no keys: everybody who can reach this address may do everything");
+    }
+    if let Some(keys) = &keys {
+        tracing::info!(keys = keys.count(), "a key is needed");
+    }
+    let origins = options.cors_origins.iter().map(|Origin(origin)| origin.clone());
+    Ok(Access { keys: keys.map(Arc::new), origins: origins.collect() })
 }
 
 fn idle_time(text: &str) -> Result<Duration, String> {
@@ -83,7 +117,7 @@ fn filter(text: &str) -> Result<String, String> {
     EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
 
-async fn listen(options: &Serve, store: Arc<dyn Store>) -> Result<(), String> {
+async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Result<(), String> {
     let address = options.listen;
     let listener = TcpListener::bind(address).await.map_err(|error| format!("cannot listen on {address}: {error}"))?;
     let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
@@ -102,5 +136,5 @@ async fn listen(options: &Serve, store: Arc<dyn Store>) -> Result<(), String> {
     let sessions = Sessions::new(store, pool.clone(), capacity);
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
-    api::serve(listener, App { sessions, pool }, stop).await.map_err(|error| format!("stopped: {error}"))
+    api::serve(listener, App { sessions, pool, access }, stop).await.map_err(|error| format!("stopped: {error}"))
 }

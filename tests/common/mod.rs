@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
-use stickslip::api::{self, App};
+use stickslip::api::{self, Access, App};
 use stickslip::client::Client;
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::simulation::Pool;
@@ -43,7 +43,7 @@ impl Server {
     pub async fn over(sessions: Sessions, pool: Pool) -> Server {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let base = format!("http://{}", listener.local_addr().unwrap());
-        tokio::spawn(api::serve(listener, App { sessions, pool }, std::future::pending()));
+        tokio::spawn(api::serve(listener, App { sessions, pool, access: Access::default() }, std::future::pending()));
         Server { client: Client::new(&base), base, http: reqwest::Client::new() }
     }
 
