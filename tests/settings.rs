@@ -10,8 +10,11 @@ use common::clean;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 6] = [
+const CASES: [(&str, [&str; 3]); 9] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
+    ("keys", ["a.keys", "b.keys", "c.keys"]),
+    ("insecure", ["true", "true", "true"]),
+    ("cors-origins", ["https://a.example", "http://b.example:81", "http://[::1]"]),
     ("store", ["memory:", "sqlite:a.db", "sqlite:b.db"]),
     ("cache-bytes", ["1MiB", "2MiB", "3000"]),
     ("expire-after", ["1h", "2h", "30d"]),
@@ -47,7 +50,8 @@ fn in_force(command: &mut Command) -> BTreeMap<String, (Option<String>, String)>
         } else {
             let (key, rest) = line.split_once(" = ").expect(line);
             let (value, source) = rest.rsplit_once(" # ").expect(line);
-            let value = value.trim_start_matches('[').trim_end_matches(']').trim_matches('"');
+            let value =
+                value.strip_prefix("[").and_then(|rest| rest.strip_suffix("]")).unwrap_or(value).trim_matches('"');
             found.insert(key.to_owned(), (Some(value.to_owned()), source.to_owned()));
         }
     }
@@ -137,6 +141,7 @@ fn whatever_is_wrong_ends_the_start_with_one_line_that_says_what_and_what_is_all
             ("expire-after", "10ms", "at least 1s"),
             ("log", "a=b=c", "trace"),
             ("log-format", "xml", "text or json"),
+            ("cors-origins", "*", "such as https://"),
         ] {
             let by_flag = refusal(&mut binary(&[command, &format!("--{key}"), value]));
             let by_environment = refusal(binary(&[command]).env(variable(key), value));

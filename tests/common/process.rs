@@ -1,6 +1,7 @@
 //! The real binary as a process of its own.
 
 use std::io::{BufRead as _, BufReader};
+use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 use stickslip::client::Client;
@@ -30,7 +31,20 @@ impl Process {
 
     /// The same by way of a program that becomes it, such as `nsenter` with its arguments.
     pub async fn start_by(prefix: &[String], store: &str) -> Process {
-        let mut child = command(prefix, store).stdout(Stdio::piped()).spawn().unwrap();
+        Process::of(command(prefix, store)).await
+    }
+
+    /// Starts a server with these arguments, and its log in a file.
+    pub async fn start_with(arguments: &[&str], log: &Path) -> Process {
+        let mut command = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
+        command.args(["serve", "--listen", "127.0.0.1:0"]).args(arguments);
+        command.stderr(std::fs::File::create(log).unwrap());
+        Process::of(command).await
+    }
+
+    /// Starts a server by a command, and waits until it listens.
+    pub async fn of(mut command: Command) -> Process {
+        let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
         let stdout = child.stdout.take().unwrap();
         let read = move || BufReader::new(stdout).lines().next();
         let line = tokio::task::spawn_blocking(read).await.unwrap();
