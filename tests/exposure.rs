@@ -2,10 +2,9 @@
 
 mod common;
 
-use std::process::{Command, Output, Stdio};
-use std::time::Duration;
+use std::process::Command;
 
-use common::process::Process;
+use common::process::{Process, ended};
 use common::{ball, clean};
 use reqwest::header::HeaderMap;
 use serde_json::Value;
@@ -17,19 +16,6 @@ fn binary(arguments: &[&str]) -> Command {
     let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
     command.args(arguments);
     command
-}
-
-/// The output of a process that must end by itself.
-fn ended(command: &mut Command) -> Output {
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    for _ in 0..2_000 {
-        if child.try_wait().unwrap().is_some() {
-            return child.wait_with_output().unwrap();
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    child.kill().unwrap();
-    panic!("it runs on: {command:?} {:?}", child.wait_with_output().unwrap());
 }
 
 /// The one line with which it ends, having served nobody.

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use common::clean;
+use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
@@ -32,8 +33,8 @@ fn binary(arguments: &[&str]) -> Command {
     command
 }
 
-fn ended(command: &mut Command) -> (Output, String, String) {
-    let output = command.output().unwrap();
+fn said(command: &mut Command) -> (Output, String, String) {
+    let output = ended(command);
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
     let (out, err) = (text(&output.stdout), text(&output.stderr));
     (output, out, err)
@@ -41,7 +42,7 @@ fn ended(command: &mut Command) -> (Output, String, String) {
 
 /// What `stickslip config` prints: value and source by key, no value where there is none.
 fn in_force(command: &mut Command) -> BTreeMap<String, (Option<String>, String)> {
-    let (output, out, err) = ended(command);
+    let (output, out, err) = said(command);
     assert!(output.status.success(), "{err}");
     let mut found = BTreeMap::new();
     for line in out.lines().skip(1) {
@@ -115,7 +116,7 @@ fn the_file_is_named_by_flag_or_environment_and_none_is_read_unasked() {
     assert_eq!(found["log"].0.as_deref(), Some("warn"));
     assert_eq!(found["cache-bytes"].0.as_deref(), Some("4096"));
     // What is printed can be given back.
-    let (_, printed, _) = ended(binary(&["config"]).env("STICKSLIP_CONFIG", &path));
+    let (_, printed, _) = said(binary(&["config"]).env("STICKSLIP_CONFIG", &path));
     let again = write(&folder.path().join("again.toml"), &printed);
     let values = |found: BTreeMap<String, (Option<String>, String)>| -> Vec<_> {
         found.into_iter().map(|(key, (value, _))| (key, value)).collect()
@@ -125,7 +126,7 @@ fn the_file_is_named_by_flag_or_environment_and_none_is_read_unasked() {
 
 /// One line on standard error, nothing else, and no success.
 fn refusal(command: &mut Command) -> String {
-    let (output, out, err) = ended(command);
+    let (output, out, err) = said(command);
     assert_eq!((output.status.code(), out.as_str(), err.lines().count()), (Some(2), "", 1), "{command:?} {out} {err}");
     err
 }

@@ -84,7 +84,12 @@ impl Drop for Process {
 
 /// What a server says that cannot start: its output, once it has ended by itself.
 pub fn refused(store: &str) -> Output {
-    let mut child = command(&[], store).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    ended(&mut command(&[], store))
+}
+
+/// The output of a process that must end by itself.
+pub fn ended(command: &mut Command) -> Output {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     for _ in 0..1000 {
         if child.try_wait().unwrap().is_some() {
             return child.wait_with_output().unwrap();
@@ -92,5 +97,5 @@ pub fn refused(store: &str) -> Output {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     child.kill().unwrap();
-    panic!("the server started: {:?}", child.wait_with_output().unwrap());
+    panic!("it runs on: {command:?} {:?}", child.wait_with_output().unwrap());
 }
