@@ -17,6 +17,7 @@
 
 use eventsource_stream::{EventStreamError, Eventsource as _};
 use futures::{Stream, StreamExt as _};
+use reqwest::header::{AUTHORIZATION, HeaderValue};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -32,6 +33,8 @@ use crate::wire::{
 #[derive(Clone, Debug)]
 pub struct Client {
     base: String,
+    // Marked as sensitive: it is not printed.
+    authorization: Option<HeaderValue>,
     http: reqwest::Client,
 }
 
@@ -88,7 +91,18 @@ impl Client {
     #[must_use]
     pub fn new(base: impl Into<String>) -> Client {
         let base: String = base.into();
-        Client { base: base.trim_end_matches('/').to_owned(), http: reqwest::Client::new() }
+        Client { base: base.trim_end_matches('/').to_owned(), authorization: None, http: reqwest::Client::new() }
+    }
+
+    /// The same client with a key, which every call presents. A key that no header can hold is not one of any service, and
+    /// left out.
+    #[must_use]
+    pub fn with_key(mut self, key: &str) -> Client {
+        self.authorization = HeaderValue::from_str(&format!("Bearer {key}")).ok();
+        if let Some(value) = &mut self.authorization {
+            value.set_sensitive(true);
+        }
+        self
     }
 
     /// `POST /simulate`.
@@ -224,7 +238,11 @@ impl Client {
     }
 
     fn call(&self, method: Method, path: &str) -> RequestBuilder {
-        self.http.request(method, format!("{}{path}", self.base))
+        let call = self.http.request(method, format!("{}{path}", self.base));
+        match &self.authorization {
+            Some(key) => call.header(AUTHORIZATION, key.clone()),
+            None => call,
+        }
     }
 
     async fn post<T: DeserializeOwned>(

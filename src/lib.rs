@@ -13,10 +13,13 @@
 //!
 //! [`sessions`] are contacts that live: a cache over the store, one writer at a time each, replay, and retries.
 //!
+//! [`access`] says who may do what: keys, roles and tenants.
+//!
 //! [`client`] is a typed client for the service.
 //!
 //! [`api`] is HTTP: the routes, the problem documents, the OpenAPI document. The binary adds the command line.
 
+pub mod access;
 pub mod api;
 pub mod client;
 pub mod figures;

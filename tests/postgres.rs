@@ -8,7 +8,7 @@ use common::create;
 use common::postgres::Cluster;
 use futures::future::join_all;
 use jiff::Timestamp;
-use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError};
+use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip::wire::{ContactDefinition, Move, Regime, State};
 use uuid::Uuid;
 
@@ -19,6 +19,7 @@ fn session() -> Session {
     let at = Timestamp::from_nanosecond(1_700_000_000_123_456_789).unwrap();
     Session {
         id: Uuid::now_v7(),
+        tenant: Tenant::default(),
         label: Some("Kugel auf Ebene: μ'\\".to_owned()),
         definition: Arc::new(definition),
         sequence: 0,
@@ -153,6 +154,27 @@ async fn replicas_that_start_together_make_the_tables_once_and_a_newer_schema_is
 }
 
 #[tokio::test]
+async fn older_tables_are_brought_up_to_date_with_all_that_is_in_them() {
+    let cluster = Cluster::shared();
+    let url = cluster.database().await;
+    cluster.execute(url.rsplit('/').next().unwrap(), include_str!("data/postgres_1.sql")).await;
+    let store = PostgresStore::open(&url).await.unwrap();
+    let [here, expired] = [1, 2].map(|number| Uuid::from_u128(0x0199_c0de_0000_7000_8000_0000_0000_0000 + number));
+    let found = store.find(here).await.unwrap();
+    assert_eq!((found.tenant, found.sequence, found.label.as_deref()), (Tenant::default(), 1, Some("old")));
+    assert_eq!(found.updated_at.to_string(), "2025-10-09T08:53:23.000000007Z");
+    assert_eq!(store.history(here, 0, 10).await.unwrap()[0].state.force.to_bits(), 0.5_f64.to_bits());
+    assert_eq!(store.receipt("kept").await.unwrap().unwrap().reply.body, b"{}");
+    let gone = store.find(expired).await;
+    assert!(matches!(&gone, Err(StoreError::Expired(tenant)) if *tenant == Tenant::default()), "{gone:?}");
+    let listed = store.list(Some(Tenant::default()), None, 10).await.unwrap();
+    assert_eq!(listed.into_iter().map(|one| one.id).collect::<Vec<_>>(), [here]);
+    // What is new works on what is old.
+    store.append(here, 1, vec![record(2, 1.0)], None).await.unwrap();
+    assert_eq!(store.find(here).await.unwrap().sequence, 2);
+}
+
+#[tokio::test]
 async fn a_key_may_be_used_again_after_its_time() {
     let cluster = Cluster::shared();
     let url = cluster.database().await;
@@ -189,9 +211,9 @@ async fn several_sweep_at_once_and_each_idle_session_goes_once() {
     assert!(not_yet.into_iter().all(|count| count.unwrap() == 0));
     let swept = join_all(stores.iter().map(|store| store.sweep(Some(fresh.updated_at)))).await;
     assert_eq!(swept.into_iter().map(Result::unwrap).sum::<u64>(), 230);
-    assert!(matches!(stores[1].find(idle[7].id).await, Err(StoreError::Expired)));
-    assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired)));
-    let left = stores[1].list(None, 1000).await.unwrap();
+    assert!(matches!(stores[1].find(idle[7].id).await, Err(StoreError::Expired(_))));
+    assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired(_))));
+    let left = stores[1].list(None, None, 1000).await.unwrap();
     assert_eq!(left.into_iter().map(|one| one.id).collect::<Vec<_>>(), [fresh.id]);
 }
 

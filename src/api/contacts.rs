@@ -1,6 +1,5 @@
 //! `/contacts`: sessions are made, listed, looked at, forked and deleted.
 
-use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use utoipa::IntoParams;
@@ -8,11 +7,12 @@ use uuid::Uuid;
 
 use crate::wire::{CreateRequest, ForkRequest, HistoryPage, NewSession, SessionPage, SessionReply, StressReply};
 
+use super::access::Own;
 use super::extract::{Command, ContactId, Expected, OptionalCommand};
 use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
 use super::problem::Problem;
 use super::query::Params;
-use super::{App, reply};
+use super::reply;
 
 /// Create a contact
 ///
@@ -23,7 +23,7 @@ use super::{App, reply};
         ("Location" = String, description = "The path of the contact"), ("ETag" = String, description = "Its sequence in quotes")
     )))
 )]
-pub async fn create(State(app): State<App>, command: Command<CreateRequest>) -> Result<Response, Problem> {
+pub async fn create(Own(app): Own, command: Command<CreateRequest>) -> Result<Response, Problem> {
     Ok(reply::of_change(app.sessions.create(command.body, command.key).await?))
 }
 
@@ -47,7 +47,7 @@ pub struct ListQuery {
     get, path = "/contacts", tag = "contacts", params(ListQuery),
     responses((status = 200, description = "A page of contacts", body = SessionPage))
 )]
-pub async fn list(State(app): State<App>, params: Params) -> Result<Response, Problem> {
+pub async fn list(Own(app): Own, params: Params) -> Result<Response, Problem> {
     let (after, limit) = params.page("the identifier of a contact")?;
     Ok(reply::json(reply::written(&app.sessions.list(after, limit).await?)?))
 }
@@ -58,7 +58,7 @@ pub async fn list(State(app): State<App>, params: Params) -> Result<Response, Pr
     responses((status = 200, description = "The contact and its state", body = SessionReply,
         headers(("ETag" = String, description = "Its sequence in quotes"))))
 )]
-pub async fn get(State(app): State<App>, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
+pub async fn get(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
     params.none()?;
     let session = app.sessions.get(id).await?;
     Ok(reply::at_sequence(session.sequence, reply::written(&session)?))
@@ -72,7 +72,7 @@ pub async fn get(State(app): State<App>, ContactId(id): ContactId, params: Param
     responses((status = 204, description = "It is gone"))
 )]
 pub async fn delete(
-    State(app): State<App>,
+    Own(app): Own,
     ContactId(id): ContactId,
     Expected(expected): Expected,
 ) -> Result<StatusCode, Problem> {
@@ -91,7 +91,7 @@ pub async fn delete(
     )))
 )]
 pub async fn fork(
-    State(app): State<App>,
+    Own(app): Own,
     ContactId(id): ContactId,
     OptionalCommand(command): OptionalCommand<ForkRequest>,
 ) -> Result<Response, Problem> {
@@ -123,7 +123,7 @@ pub struct StressQuery {
     responses((status = 200, description = "The stresses in its present state", body = StressReply,
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
-pub async fn stress(State(app): State<App>, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
+pub async fn stress(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
     let (sampling, residual) = params.stress()?;
     let (sequence, body) = app.sessions.stress(id, sampling, residual).await?;
     Ok(reply::at_sequence(sequence, body))
@@ -149,7 +149,7 @@ pub struct HistoryQuery {
     get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, HistoryQuery),
     responses((status = 200, description = "A page of moves", body = HistoryPage))
 )]
-pub async fn history(State(app): State<App>, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
+pub async fn history(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
     let (after, limit) = params.page("the number of a move")?;
     let page = app.sessions.history(id, after.unwrap_or(0), limit).await?;
     Ok(reply::json(reply::written(&page)?))

@@ -1,6 +1,5 @@
 //! `/contacts/{id}/events`: each new state of a session, as it comes.
 
-use axum::extract::State;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::{Stream, StreamExt as _};
 use utoipa::IntoParams;
@@ -8,7 +7,7 @@ use utoipa::IntoParams;
 use crate::sessions::Happening;
 use crate::wire::{EndEvent, StateEvent};
 
-use super::App;
+use super::access::Own;
 use super::extract::{ContactId, LastEventId};
 use super::limits::KEEP_ALIVE;
 use super::openapi::ContactPath;
@@ -37,7 +36,7 @@ pub struct Seen {
         content_type = "text/event-stream", body = StateEvent))
 )]
 pub async fn events(
-    State(app): State<App>,
+    Own(app): Own,
     ContactId(id): ContactId,
     LastEventId(after): LastEventId,
     params: Params,

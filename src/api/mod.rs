@@ -1,8 +1,10 @@
 //! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
+pub mod access;
 mod contacts;
 mod events;
 mod extract;
+pub mod headers;
 pub mod limits;
 mod meta;
 mod moves;
@@ -23,6 +25,7 @@ use utoipa_swagger_ui::{Config, SwaggerUi};
 use crate::sessions::Sessions;
 use crate::simulation::Pool;
 
+pub use access::Access;
 pub use openapi::document;
 pub use problem::Problem;
 pub use serve::serve;
@@ -34,17 +37,25 @@ pub struct App {
     pub sessions: Sessions,
     /// Where long work is done.
     pub pool: Pool,
+    /// Who may use it.
+    pub access: Access,
 }
 
 /// All routes.
 pub fn router(app: App) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
-    api.with_state(app)
-        .merge(docs)
-        .fallback(meta::nothing_here)
-        .layer(CatchPanicLayer::custom(meta::panicked))
-        .layer(middleware::from_fn(observe::observe))
+    let Access { keys, origins } = app.access.clone();
+    let mut routes =
+        api.with_state(app).merge(docs).fallback(meta::nothing_here).layer(CatchPanicLayer::custom(meta::panicked));
+    if let Some(keys) = keys {
+        routes = routes.layer(middleware::from_fn_with_state(keys, access::admit));
+    }
+    if !origins.is_empty() {
+        // Before keys are asked for: a browser asks whether it may send one.
+        routes = routes.layer(headers::cross_origin(&origins));
+    }
+    routes.layer(middleware::from_fn(observe::observe))
 }
 
 /// The routes that the OpenAPI document describes.

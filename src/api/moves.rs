@@ -1,14 +1,14 @@
 //! `/contacts/{id}/move` and `/contacts/{id}/path`: sessions move on.
 
-use axum::extract::State;
 use axum::response::Response;
 
 use crate::wire::{MoveReply, MoveRequest, PathReply, PathRequest};
 
+use super::access::Own;
 use super::extract::{Command, ContactId, Expected};
 use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
 use super::problem::Problem;
-use super::{App, reply};
+use super::reply;
 
 /// Move a contact
 ///
@@ -27,7 +27,7 @@ use super::{App, reply};
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn apply(
-    State(app): State<App>,
+    Own(app): Own,
     ContactId(id): ContactId,
     Expected(expected): Expected,
     command: Command<MoveRequest>,
@@ -51,7 +51,7 @@ pub async fn apply(
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn path(
-    State(app): State<App>,
+    Own(app): Own,
     ContactId(id): ContactId,
     Expected(expected): Expected,
     command: Command<PathRequest>,

@@ -9,8 +9,8 @@ use axum::middleware::Next;
 use axum::response::Response;
 use uuid::Uuid;
 
-use super::limits;
 use super::problem::{Kind, MEDIA_TYPE, Problem};
+use super::{headers, limits};
 
 /// The header that carries a request's identifier, both ways.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
@@ -31,6 +31,8 @@ pub async fn observe(request: Request, next: Next) -> Response {
     if let Some(problem) = problem {
         response = dressed(response, problem, &id);
     }
+    let page = route.as_ref().is_some_and(|route| route.as_str().starts_with("/docs"));
+    headers::protect(response.headers_mut(), page);
     if let Ok(value) = HeaderValue::from_str(&id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }

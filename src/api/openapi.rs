@@ -6,10 +6,12 @@ use serde_json::{Map, Value, json};
 use utoipa::{IntoParams, OpenApi};
 use uuid::Uuid;
 
+use crate::access::Role;
 use crate::mechanics::DEFAULT_TOLERANCE;
 use crate::mechanics::range::{self, Range};
 use crate::wire::{EndEvent, ProblemDocument, limits};
 
+use super::access::{Need, need};
 use super::limits as server;
 use super::problem::MEDIA_TYPE;
 
@@ -88,6 +90,7 @@ pub fn document() -> &'static str {
         close_choices(&mut document);
         write_parameters(&mut document);
         write_refusals(&mut document);
+        write_keys(&mut document);
         format!("{document:#}\n")
     })
 }
@@ -257,6 +260,38 @@ fn write_parameters(document: &mut Value) {
     }
 }
 
+/// Which key an operation needs, where the server has keys at all.
+fn write_keys(document: &mut Value) {
+    let roles = Role::ALL.map(|role| format!("`{}`", role.name())).join(", ");
+    document["components"]["securitySchemes"] = json!({"key": {
+        "type": "http", "scheme": "bearer",
+        "description": format!("A key of the server, where it has keys. Each has one role or several out of {roles}; the first \
+            includes the second. A key shows the contacts of its tenant alone."),
+    }});
+    let Some(Value::Object(paths)) = document.get_mut("paths") else {
+        return;
+    };
+    for (path, operations) in paths {
+        let Value::Object(operations) = operations else { continue };
+        for (method, operation) in operations {
+            let Need::Key(role) = need(&method.to_uppercase(), path) else { continue };
+            operation["security"] = json!([{"key": []}, {}]);
+            let refusals = [
+                ("401", "There is no key with the request, or none that the server knows".to_owned()),
+                ("403", format!("The key does not have the role `{}`", role.name())),
+            ];
+            for (status, description) in refusals {
+                operation["responses"][status] = refusal(&description);
+            }
+        }
+    }
+}
+
+fn refusal(description: &str) -> Value {
+    let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
+    json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}})
+}
+
 /// Adds to every operation the refusals that it can meet.
 fn write_refusals(document: &mut Value) {
     let Some(Value::Object(paths)) = document.get_mut("paths") else {
@@ -279,9 +314,7 @@ fn write_refusals(document: &mut Value) {
                 (about_contacts || path == "/readyz", "503", "The server is busy; try again after Retry-After"),
             ];
             for (_, status, description) in refusals.into_iter().filter(|(applies, ..)| *applies) {
-                let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
-                operation["responses"][status] =
-                    json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}});
+                operation["responses"][status] = refusal(description);
             }
         }
     }

@@ -5,6 +5,8 @@
 //! - The body is not JSON: [`Kind::NotJson`]. It is JSON but wrong in itself, whatever the state of the server:
 //!   [`Kind::InvalidInput`], with a pointer to each fault. It is sound, but the mechanics has no answer to it: the kind of
 //!   that error. All but the first are 422, as the syntax is not to blame.
+//! - No key, or one that is not known: [`Kind::Unauthorized`]. A key that does not allow it: [`Kind::Forbidden`]. What belongs
+//!   to another tenant does not exist.
 //! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
@@ -34,6 +36,10 @@ pub const MEDIA_TYPE: &str = "application/problem+json";
 pub enum Kind {
     /// The body is not JSON.
     NotJson,
+    /// There is no key with the request, or none that is known.
+    Unauthorized,
+    /// The key does not allow it.
+    Forbidden,
     /// No such path.
     NotFound,
     /// No such session.
@@ -76,8 +82,10 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 20] = [
+    pub const ALL: [Kind; 22] = [
         Kind::NotJson,
+        Kind::Unauthorized,
+        Kind::Forbidden,
         Kind::NotFound,
         Kind::ContactNotFound,
         Kind::ContactExpired,
@@ -104,6 +112,8 @@ impl Kind {
     pub fn parts(self) -> (StatusCode, &'static str, &'static str) {
         match self {
             Kind::NotJson => (StatusCode::BAD_REQUEST, "not_json", "The body is not JSON"),
+            Kind::Unauthorized => (StatusCode::UNAUTHORIZED, "unauthorized", "A key is needed"),
+            Kind::Forbidden => (StatusCode::FORBIDDEN, "forbidden", "The key does not allow this"),
             Kind::NotFound => (StatusCode::NOT_FOUND, "not_found", "There is nothing at this path"),
             Kind::ContactNotFound => (StatusCode::NOT_FOUND, "contact_not_found", "There is no such contact"),
             Kind::ContactExpired => (StatusCode::GONE, "contact_expired", "The contact has expired"),
@@ -221,6 +231,9 @@ impl IntoResponse for Problem {
         let mut response = self.kind.parts().0.into_response();
         if matches!(self.kind, Kind::Overloaded | Kind::StorageUnavailable) {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER.as_secs()));
+        }
+        if matches!(self.kind, Kind::Unauthorized) {
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
         }
         response.extensions_mut().insert(self);
         response

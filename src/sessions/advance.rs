@@ -39,12 +39,13 @@ impl Sessions {
         expected: Option<u64>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
+        let key = key.map(|key| key.of(&self.tenant));
         // Before anything else: a retry is owed its reply even when the session is gone or has moved on.
         if let Some(reply) = self.earlier(key.as_ref()).await? {
             return Ok(reply);
         }
         // Whoever hangs up in the queue has left it.
-        let mut guard = self.cache.lock(id).await;
+        let mut guard = self.cache.lock(&self.tenant, id).await;
         let (stop, _raised_at_the_end) = Stop::guarded();
         let advance = Arc::new(advance);
         // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
@@ -81,7 +82,7 @@ impl Sessions {
                     guard.live = Some(live);
                     return Ok(reply);
                 }
-                Err(error @ (StoreError::NotFound | StoreError::Expired)) => {
+                Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
                     return Err(self.failed(&mut guard, error));
                 }
                 Err(StoreError::Stale { found: moved }) => {

@@ -11,15 +11,21 @@ use hashlink::LruCache;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
+use crate::store::Tenant;
+
 use super::live::Live;
 
 /// How many bytes of states are kept at hand by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;
 
+/// A session as one tenant names it. Under the name of a session of somebody else there is nothing at hand and nobody to
+/// wait for.
+type Name = (Tenant, Uuid);
+
 /// States and locks.
 pub(super) struct Cache {
     // Std mutexes both: held for a lookup, never across an await.
-    desks: Mutex<HashMap<Uuid, Desk>>,
+    desks: Mutex<HashMap<Name, Desk>>,
     states: Mutex<States>,
     capacity: usize,
 }
@@ -34,7 +40,7 @@ struct Desk {
 
 /// States that nobody works on, with their bytes.
 struct States {
-    by_id: LruCache<Uuid, (Box<Live>, usize)>,
+    by_name: LruCache<Name, (Box<Live>, usize)>,
     bytes: usize,
 }
 
@@ -50,39 +56,44 @@ pub(super) struct Guard {
 /// One of the users of a desk.
 struct Place {
     cache: Arc<Cache>,
-    id: Uuid,
+    name: Name,
 }
 
 impl Cache {
     /// A cache of at most so many bytes.
     pub(super) fn new(capacity: usize) -> Cache {
-        let states = States { by_id: LruCache::new_unbounded(), bytes: 0 };
+        let states = States { by_name: LruCache::new_unbounded(), bytes: 0 };
         Cache { desks: Mutex::default(), states: Mutex::new(states), capacity }
     }
 
     /// Waits until the session is one's own. Whoever gives up waiting has left.
-    pub(super) async fn lock(self: &Arc<Self>, id: Uuid) -> Guard {
-        let (lock, place) = self.enter(id);
+    pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
+        let (lock, place) = self.enter((tenant.clone(), id));
         let lock = lock.lock_owned().await;
-        Guard { live: self.take(id), _lock: lock, place }
+        Guard { live: self.take(&place.name), _lock: lock, place }
+    }
+
+    /// Whether the state of a session is at hand.
+    pub(super) fn holds(&self, tenant: &Tenant, id: Uuid) -> bool {
+        self.states().by_name.contains_key(&(tenant.clone(), id))
     }
 
     /// Bytes of the states at hand, and how many they are.
     pub(super) fn held(&self) -> (usize, usize) {
         let states = self.states();
-        (states.bytes, states.by_id.len())
+        (states.bytes, states.by_name.len())
     }
 
-    fn enter(self: &Arc<Self>, id: Uuid) -> (Arc<SessionLock<()>>, Place) {
+    fn enter(self: &Arc<Self>, name: Name) -> (Arc<SessionLock<()>>, Place) {
         let mut desks = self.desks();
-        let desk = desks.entry(id).or_default();
+        let desk = desks.entry(name.clone()).or_default();
         desk.users += 1;
-        (Arc::clone(&desk.lock), Place { cache: Arc::clone(self), id })
+        (Arc::clone(&desk.lock), Place { cache: Arc::clone(self), name })
     }
 
-    fn take(&self, id: Uuid) -> Option<Box<Live>> {
+    fn take(&self, name: &Name) -> Option<Box<Live>> {
         let mut states = self.states();
-        let (live, bytes) = states.by_id.remove(&id)?;
+        let (live, bytes) = states.by_name.remove(name)?;
         states.bytes -= bytes;
         Some(live)
     }
@@ -96,11 +107,12 @@ impl Cache {
         let mut gone = Vec::new();
         let mut states = self.states();
         states.bytes += bytes;
-        if let Some((_, bytes)) = states.by_id.insert(live.session.id, (live, bytes)) {
+        let name = (live.session.tenant.clone(), live.session.id);
+        if let Some((_, bytes)) = states.by_name.insert(name, (live, bytes)) {
             states.bytes -= bytes;
         }
         while states.bytes > self.capacity
-            && let Some((_, (live, bytes))) = states.by_id.remove_lru()
+            && let Some((_, (live, bytes))) = states.by_name.remove_lru()
         {
             states.bytes -= bytes;
             gone.push(live);
@@ -110,7 +122,7 @@ impl Cache {
         drop(gone);
     }
 
-    fn desks(&self) -> MutexGuard<'_, HashMap<Uuid, Desk>> {
+    fn desks(&self) -> MutexGuard<'_, HashMap<Name, Desk>> {
         self.desks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -122,7 +134,7 @@ impl Cache {
 impl Guard {
     /// The session.
     pub(super) fn id(&self) -> Uuid {
-        self.place.id
+        self.place.name.1
     }
 }
 
@@ -137,10 +149,10 @@ impl Drop for Guard {
 impl Drop for Place {
     fn drop(&mut self) {
         let mut desks = self.cache.desks();
-        if let Some(desk) = desks.get_mut(&self.id) {
+        if let Some(desk) = desks.get_mut(&self.name) {
             desk.users -= 1;
             if desk.users == 0 {
-                desks.remove(&self.id);
+                desks.remove(&self.name);
             }
         }
     }

@@ -111,7 +111,7 @@ impl Listener {
             if let Some(event) = self.ready.pop_front() {
                 break Happening::State(event);
             }
-            match self.sessions.history(self.id, self.seen, PAGE).await {
+            match self.sessions.past(self.id, self.seen, PAGE).await {
                 Ok(page) if page.items.is_empty() => self.wait().await,
                 Ok(page) => {
                     self.seen = page.items.last().map_or(self.seen, |item| item.sequence);

@@ -8,6 +8,9 @@
 //! Other processes may work on the same store. A state at hand is always one that the session has been in, so that the
 //! moves stored beyond it lead to the present one: a read makes them first, and a move whose number the store has given
 //! away makes them and tries again. What has been deleted or has expired is told by the store too, whatever is at hand.
+//!
+//! A handle works for one tenant ([`Sessions::of`]). What belongs to others is not there for it: their states and locks have
+//! other names, and what comes from the store is looked at before it is used.
 
 mod advance;
 mod cache;
@@ -27,7 +30,7 @@ use tokio::sync::Semaphore;
 use uuid::Uuid;
 
 use crate::simulation::Pool;
-use crate::store::{Reply, RequestKey, Session, Store, StoreError};
+use crate::store::{Reply, RequestKey, Session, Store, StoreError, Tenant};
 use crate::wire::session::Creation;
 
 pub use cache::CAPACITY;
@@ -39,9 +42,10 @@ use live::Live;
 /// How often a change that another process has forestalled is tried. Each time, that process has got on.
 const ATTEMPTS: usize = 100;
 
-/// All sessions. Clones are handles on the same.
+/// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
 pub struct Sessions {
+    tenant: Tenant,
     store: Arc<dyn Store>,
     pool: Pool,
     cache: Arc<Cache>,
@@ -51,16 +55,24 @@ pub struct Sessions {
 }
 
 impl Sessions {
-    /// Sessions in a store. At most `capacity` bytes of their states are kept at hand; the rest is replayed when needed.
+    /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are kept at hand; the rest is
+    /// replayed when needed.
     #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
         Sessions {
+            tenant: Tenant::default(),
             store,
             pool,
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             streams: events::Streams::new(),
         }
+    }
+
+    /// The sessions of another tenant.
+    #[must_use]
+    pub fn of(&self, tenant: Tenant) -> Sessions {
+        Sessions { tenant, ..self.clone() }
     }
 
     /// Whether the store can serve.
@@ -82,12 +94,14 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+        let key = key.map(|key| key.of(&self.tenant));
         if let Some(reply) = self.earlier(key.as_ref()).await? {
             return Ok(reply);
         }
         let now = Timestamp::now();
         let session = Session {
             id: Uuid::now_v7(),
+            tenant: self.tenant.clone(),
             label: creation.label,
             definition: Arc::new(creation.definition),
             sequence: 0,
@@ -97,7 +111,7 @@ impl Sessions {
         let live = Live::start(session, creation.setup)?;
         let reply = live.introduce()?;
         // Whoever finds the new session in the store waits until it is at hand.
-        let mut guard = self.cache.lock(live.session.id).await;
+        let mut guard = self.cache.lock(&self.tenant, live.session.id).await;
         let stored = self.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
         match stored {
             Ok(()) => guard.live = Some(Box::new(live)),
@@ -111,10 +125,11 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn fork(&self, id: Uuid, label: Option<String>, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+        let key = key.map(|key| key.of(&self.tenant));
         if let Some(reply) = self.earlier(key.as_ref()).await? {
             return Ok(reply);
         }
-        let mut guard = self.cache.lock(id).await;
+        let mut guard = self.cache.lock(&self.tenant, id).await;
         let mut found = 0;
         for _ in 0..ATTEMPTS {
             let mut copy = self.present(&mut guard).await?.clone();
@@ -127,7 +142,7 @@ impl Sessions {
                 ..copy.session
             };
             let reply = copy.introduce()?;
-            let mut new = self.cache.lock(copy.session.id).await;
+            let mut new = self.cache.lock(&self.tenant, copy.session.id).await;
             let receipt = idempotency::receipt(key.clone(), &reply);
             match self.store.fork(id, copy.session.clone(), receipt).await {
                 Ok(()) => {
@@ -135,7 +150,9 @@ impl Sessions {
                     return Ok(reply);
                 }
                 Err(StoreError::Stale { found: moved }) => found = moved,
-                Err(error @ (StoreError::NotFound | StoreError::Expired)) => return Err(self.failed(&mut guard, error)),
+                Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
+                    return Err(self.failed(&mut guard, error));
+                }
                 Err(error) => return self.lost(error, key).await,
             }
         }
@@ -147,12 +164,12 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; it is still there then.
     pub async fn delete(&self, id: Uuid, expected: Option<u64>) -> Result<(), SessionError> {
-        let mut guard = self.cache.lock(id).await;
-        let mut at = match (expected, &guard.live) {
-            (Some(expected), _) => expected,
-            (None, Some(live)) => live.session.sequence,
-            (None, None) => self.store.find(id).await.map_err(|error| self.failed(&mut guard, error))?.sequence,
+        let mut guard = self.cache.lock(&self.tenant, id).await;
+        let found = match &guard.live {
+            Some(live) => live.session.sequence,
+            None => self.own(id).await?.sequence,
         };
+        let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {
             match (self.store.delete(id, at).await, expected) {
                 (Ok(()), _) => {

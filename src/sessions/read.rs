@@ -5,7 +5,6 @@ use uuid::Uuid;
 use crate::simulation::{self, Stop, cost, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
-use super::replay::refused;
 use super::{SessionError, Sessions, written};
 
 impl Sessions {
@@ -14,7 +13,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
-        let mut guard = self.cache.lock(id).await;
+        let mut guard = self.cache.lock(&self.tenant, id).await;
         let live = self.present(&mut guard).await?;
         Ok(SessionReply {
             id,
@@ -35,7 +34,7 @@ impl Sessions {
         let (stop, _guard) = Stop::guarded();
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence) = {
-            let mut guard = self.cache.lock(id).await;
+            let mut guard = self.cache.lock(&self.tenant, id).await;
             let live = self.present(&mut guard).await?;
             (live.contact.clone(), live.session.sequence)
         };
@@ -61,7 +60,8 @@ impl Sessions {
     /// A failure of the store.
     pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
         // One more than asked for tells whether there is a next page.
-        let mut found = self.store.list(after, limit + 1).await.map_err(SessionError::Store)?;
+        let mut found =
+            self.store.list(Some(self.tenant.clone()), after, limit + 1).await.map_err(SessionError::Store)?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);
@@ -73,7 +73,15 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let mut found = self.store.history(id, after, limit + 1).await.map_err(|error| refused(id, error))?;
+        if !self.cache.holds(&self.tenant, id) {
+            self.own(id).await?;
+        }
+        self.past(id, after, limit).await
+    }
+
+    /// The same of a session that is known to be one's own.
+    pub(super) async fn past(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+        let mut found = self.store.history(id, after, limit + 1).await.map_err(|error| self.refused(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

@@ -5,7 +5,7 @@ use std::time::Instant;
 use uuid::Uuid;
 
 use crate::simulation::cost;
-use crate::store::{Record, StoreError};
+use crate::store::{Record, Session, StoreError};
 use crate::wire::{At, Faults};
 
 use super::cache::Guard;
@@ -77,7 +77,7 @@ impl Sessions {
         let id = guard.id();
         // The snapshot first: taken later, it might be of a move that the session found has not made yet.
         let snapshot = self.store.snapshot(id).await;
-        let session = self.store.find(id).await.map_err(|error| self.failed(guard, error))?;
+        let session = self.own(id).await?;
         let (sequence, updated_at) = (session.sequence, session.updated_at);
         let mut faults = Faults::default();
         let setup = session.definition.check(At::Root, &mut faults);
@@ -119,21 +119,30 @@ impl Sessions {
         })
     }
 
+    /// The session as it is stored, if it is one's own.
+    pub(super) async fn own(&self, id: Uuid) -> Result<Session, SessionError> {
+        match self.store.find(id).await {
+            Ok(session) if session.tenant == self.tenant => Ok(session),
+            Ok(_) => Err(SessionError::NotFound(id)),
+            Err(error) => Err(self.refused(id, error)),
+        }
+    }
+
     /// What a failure of the store means for a client. Where the session is gone, its state goes too.
     pub(super) fn failed(&self, guard: &mut Guard, error: StoreError) -> SessionError {
-        if matches!(error, StoreError::NotFound | StoreError::Expired) {
+        if matches!(error, StoreError::NotFound | StoreError::Expired(_)) {
             guard.live = None;
         }
-        refused(guard.id(), error)
+        self.refused(guard.id(), error)
     }
-}
 
-/// What a failure of the store means for a client.
-pub(super) fn refused(id: Uuid, error: StoreError) -> SessionError {
-    match error {
-        StoreError::NotFound => SessionError::NotFound(id),
-        StoreError::Expired => SessionError::Expired(id),
-        other => SessionError::Store(other),
+    /// What a failure of the store means for a client.
+    pub(super) fn refused(&self, id: Uuid, error: StoreError) -> SessionError {
+        match error {
+            StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),
+            StoreError::NotFound | StoreError::Expired(_) => SessionError::NotFound(id),
+            other => SessionError::Store(other),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Everything in the process: fast, and gone when it ends.
 
-use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use uuid::Uuid;
 
 use crate::wire::SessionSummary;
 
-use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
+use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
 
 /// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
@@ -30,7 +30,7 @@ struct Inner {
     sessions: BTreeMap<Uuid, Stored>,
     receipts: Receipts,
     // Only what expired: a deleted session leaves nothing behind.
-    expired: HashSet<Uuid>,
+    expired: HashMap<Uuid, Tenant>,
 }
 
 struct Stored {
@@ -64,7 +64,7 @@ impl MemoryStore {
 impl Inner {
     /// Why there is no such session, if there is none.
     fn missing(&self, id: Uuid) -> StoreError {
-        if self.expired.contains(&id) { StoreError::Expired } else { StoreError::NotFound }
+        self.expired.get(&id).cloned().map_or(StoreError::NotFound, StoreError::Expired)
     }
 
     fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored, StoreError> {
@@ -145,11 +145,13 @@ impl Store for MemoryStore {
         answer(inner.sessions.get(&id).map(|stored| stored.session.sequence).ok_or_else(|| inner.missing(id)))
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
+    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         use std::ops::Bound::{Excluded, Unbounded};
         let inner = self.lock();
-        let beyond = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
-        answer(Ok(beyond.take(limit).map(|(_, stored)| summary(&stored.session)).collect()))
+        let beyond =
+            inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded)).map(|(_, stored)| &stored.session);
+        let own = beyond.filter(|session| of.as_ref().is_none_or(|tenant| session.tenant == *tenant));
+        answer(Ok(own.take(limit).map(summary).collect()))
     }
 
     fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
@@ -228,8 +230,9 @@ impl Store for MemoryStore {
             idle.map(|stored| stored.session.id).collect()
         });
         for id in &idle {
-            inner.sessions.remove(id);
-            inner.expired.insert(*id);
+            if let Some(stored) = inner.sessions.remove(id) {
+                inner.expired.insert(*id, stored.session.tenant);
+            }
             self.changes.wake(*id);
         }
         answer(Ok(idle.len() as u64))

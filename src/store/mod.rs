@@ -28,11 +28,32 @@ pub use sqlite::SqliteStore;
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
+/// Whose sessions are: who has a key of one tenant knows nothing of the others. Without keys there is one tenant, and it has
+/// no name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Tenant(Arc<str>);
+
+impl Tenant {
+    /// The tenant of a name.
+    #[must_use]
+    pub fn new(name: &str) -> Tenant {
+        Tenant(name.into())
+    }
+
+    /// The name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.0
+    }
+}
+
 /// A session as it is stored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     /// Its identifier; time-ordered, so that the order of identifiers is that of creation.
     pub id: Uuid,
+    /// Whose it is, for ever.
+    pub tenant: Tenant,
     /// Its label.
     pub label: Option<String>,
     /// The contact as it was defined.
@@ -63,10 +84,21 @@ pub struct Record {
 /// A request with an idempotency key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestKey {
-    /// The key that the client chose.
+    /// The key that the client chose, behind the name of its tenant and a space if the tenant has a name.
     pub key: String,
     /// SHA-256 of method, path and body.
     pub fingerprint: [u8; 32],
+}
+
+impl RequestKey {
+    /// The same key as that of a tenant. No key holds a space, so that those of two tenants never meet.
+    #[must_use]
+    pub fn of(self, tenant: &Tenant) -> RequestKey {
+        match tenant.name() {
+            "" => self,
+            name => RequestKey { key: format!("{name} {}", self.key), ..self },
+        }
+    }
 }
 
 /// The reply to a request that changed something.
@@ -105,9 +137,9 @@ pub enum StoreError {
     /// There is no such session.
     #[error("there is no such session")]
     NotFound,
-    /// There was such a session; it has expired.
+    /// There was such a session, of this tenant; it has expired.
     #[error("the session has expired")]
-    Expired,
+    Expired(Tenant),
     /// The session has another sequence than expected.
     #[error("the session is at sequence {found}")]
     Stale {
@@ -131,7 +163,8 @@ pub enum StoreError {
 /// What a call to a store comes to.
 pub type Answer<'a, T> = BoxFuture<'a, Result<T, StoreError>>;
 
-/// A place to keep sessions.
+/// A place to keep sessions. It tells whose they are, and leaves it to its callers to keep tenants apart: an identifier is as
+/// good as any other here.
 pub trait Store: Send + Sync + 'static {
     /// Whether it can serve.
     fn ready(&self) -> Answer<'_, ()>;
@@ -145,9 +178,9 @@ pub trait Store: Send + Sync + 'static {
     /// The sequence of a session: all that somebody who knows the rest has to ask.
     fn sequence(&self, id: Uuid) -> Answer<'_, u64>;
 
-    /// At most `limit` sessions with identifiers beyond `after`, in order. Without their definitions: a page of those could
-    /// be larger than the memory.
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>>;
+    /// At most `limit` sessions of a tenant, or of all of them, with identifiers beyond `after`, in order. Without their
+    /// definitions: a page of those could be larger than the memory.
+    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
-use stickslip::api::{self, App};
+use stickslip::api::{self, Access, App};
 use stickslip::client::Client;
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::simulation::Pool;
@@ -43,7 +43,7 @@ impl Server {
     pub async fn over(sessions: Sessions, pool: Pool) -> Server {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let base = format!("http://{}", listener.local_addr().unwrap());
-        tokio::spawn(api::serve(listener, App { sessions, pool }, std::future::pending()));
+        tokio::spawn(api::serve(listener, App { sessions, pool, access: Access::default() }, std::future::pending()));
         Server { client: Client::new(&base), base, http: reqwest::Client::new() }
     }
 
@@ -83,7 +83,7 @@ pub struct Binary {
 impl Binary {
     /// Starts it on a free port, and waits until it listens. The log goes to standard error.
     pub fn start(arguments: &[&str]) -> Binary {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
+        let mut child = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")))
             .args(["--listen", "127.0.0.1:0", "--store", "memory:"])
             .args(arguments)
             .stdout(Stdio::piped())
@@ -103,6 +103,14 @@ impl Drop for Binary {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Without the settings that the environment of the tests may hold.
+pub fn clean(mut command: Command) -> Command {
+    for (name, _) in std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("STICKSLIP_")) {
+        command.env_remove(name);
+    }
+    command
 }
 
 /// The contact of the examples.

@@ -1,6 +1,7 @@
 //! The real binary as a process of its own.
 
 use std::io::{BufRead as _, BufReader};
+use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 use stickslip::client::Client;
@@ -16,7 +17,7 @@ pub struct Process {
 fn command(prefix: &[String], store: &str) -> Command {
     let binary = [env!("CARGO_BIN_EXE_stickslip").to_owned()];
     let mut words = prefix.iter().chain(&binary);
-    let mut command = Command::new(words.next().unwrap());
+    let mut command = super::clean(Command::new(words.next().unwrap()));
     command.args(words);
     command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
     command
@@ -30,7 +31,20 @@ impl Process {
 
     /// The same by way of a program that becomes it, such as `nsenter` with its arguments.
     pub async fn start_by(prefix: &[String], store: &str) -> Process {
-        let mut child = command(prefix, store).stdout(Stdio::piped()).spawn().unwrap();
+        Process::of(command(prefix, store)).await
+    }
+
+    /// Starts a server with these arguments, and its log in a file.
+    pub async fn start_with(arguments: &[&str], log: &Path) -> Process {
+        let mut command = super::clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
+        command.args(["serve", "--listen", "127.0.0.1:0"]).args(arguments);
+        command.stderr(std::fs::File::create(log).unwrap());
+        Process::of(command).await
+    }
+
+    /// Starts a server by a command, and waits until it listens.
+    pub async fn of(mut command: Command) -> Process {
+        let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
         let stdout = child.stdout.take().unwrap();
         let read = move || BufReader::new(stdout).lines().next();
         let line = tokio::task::spawn_blocking(read).await.unwrap();
@@ -70,7 +84,12 @@ impl Drop for Process {
 
 /// What a server says that cannot start: its output, once it has ended by itself.
 pub fn refused(store: &str) -> Output {
-    let mut child = command(&[], store).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    ended(&mut command(&[], store))
+}
+
+/// The output of a process that must end by itself.
+pub fn ended(command: &mut Command) -> Output {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     for _ in 0..1000 {
         if child.try_wait().unwrap().is_some() {
             return child.wait_with_output().unwrap();
@@ -78,5 +97,5 @@ pub fn refused(store: &str) -> Output {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     child.kill().unwrap();
-    panic!("the server started: {:?}", child.wait_with_output().unwrap());
+    panic!("it runs on: {command:?} {:?}", child.wait_with_output().unwrap());
 }

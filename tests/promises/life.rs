@@ -38,14 +38,14 @@ pub async fn sessions_are_listed_in_order_and_by_pages(store: &dyn Store) {
     }
     let (mut seen, mut after): (Vec<SessionSummary>, _) = (Vec::new(), Some(before));
     loop {
-        let page = store.list(after, 2).await.unwrap();
+        let page = store.list(None, after, 2).await.unwrap();
         assert!(page.len() <= 2);
         let Some(last) = page.last() else { break };
         after = Some(last.id);
         seen.extend(page);
     }
     assert_eq!(exact(&seen), exact(&made));
-    assert!(store.list(None, 1).await.unwrap()[0].id <= made[0].id);
+    assert!(store.list(None, None, 1).await.unwrap()[0].id <= made[0].id);
 }
 
 pub async fn moves_are_appended_at_the_expected_sequence_alone(store: &dyn Store) {
@@ -131,7 +131,7 @@ pub async fn what_is_deleted_is_gone(store: &dyn Store) {
     assert!(matches!(store.snapshot(session.id).await, Err(StoreError::NotFound)));
     assert!(matches!(store.append(session.id, 2, records(2, 3), None).await, Err(StoreError::NotFound)));
     assert!(matches!(store.delete(session.id, 2).await, Err(StoreError::NotFound)));
-    let listed = store.list(None, 1_000).await.unwrap();
+    let listed = store.list(None, None, 1_000).await.unwrap();
     assert!(listed.iter().all(|found| found.id != session.id));
 }
 

@@ -8,12 +8,13 @@ mod keys;
 mod life;
 mod numbers;
 mod sweeping;
+mod tenants;
 
 use std::future::Future;
 use std::sync::Arc;
 
 use jiff::{SignedDuration, Timestamp};
-use stickslip::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, Store};
+use stickslip::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant};
 use stickslip::wire::{CreateRequest, Document as _, Move, Regime, State};
 use uuid::Uuid;
 
@@ -36,6 +37,8 @@ pub async fn are_kept<F: Future<Output = Arc<dyn Store>>>(store: impl Fn() -> F)
     keys::one_of_many_with_the_same_key_or_sequence_wins(store().await).await;
     sweeping::idle_sessions_expire_and_the_others_stay(&*store().await).await;
     sweeping::receipts_in_their_time_survive_a_sweep(&*store().await).await;
+    tenants::a_session_is_its_tenants_for_ever(&*store().await).await;
+    tenants::who_asks_for_what_has_expired_is_told_whose_it_was(&*store().await).await;
     changes::whoever_waits_is_woken_by_a_change(&*store().await).await;
 }
 
@@ -50,6 +53,7 @@ fn session(label: Option<&str>) -> Session {
     let now = Timestamp::now();
     Session {
         id: Uuid::now_v7(),
+        tenant: Tenant::default(),
         label: label.map(str::to_owned),
         definition: Arc::new(definition),
         sequence: 0,

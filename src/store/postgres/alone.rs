@@ -11,7 +11,7 @@ use tokio_postgres::IsolationLevel;
 use tokio_postgres::error::SqlState;
 use uuid::Uuid;
 
-use crate::store::{RECEIPT_LIFETIME, Receipt, Session, Snapshot, StoreError};
+use crate::store::{RECEIPT_LIFETIME, Receipt, Session, Snapshot, StoreError, Tenant};
 
 use super::fault::Fault;
 use super::flight::announcements;
@@ -30,8 +30,8 @@ impl Link {
     /// Why there is no such session.
     pub(super) async fn missing(&self, id: Uuid) -> StoreError {
         match self.row(sql::EXPIRED, &[&id]).await {
-            Ok(Some(row)) if row.get(0) => StoreError::Expired,
-            Ok(_) => StoreError::NotFound,
+            Ok(Some(row)) => StoreError::Expired(Tenant::new(row.get(0))),
+            Ok(None) => StoreError::NotFound,
             Err(error) => error,
         }
     }

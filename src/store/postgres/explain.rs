@@ -1,6 +1,6 @@
 //! Why a change was not made, and whether it was after all: a connection may be lost between a commit and its answer.
 
-use crate::store::{RECEIPT_LIFETIME, StoreError};
+use crate::store::{RECEIPT_LIFETIME, StoreError, Tenant};
 
 use super::job::{Change, Job};
 use super::link::Link;
@@ -31,7 +31,7 @@ pub(super) async fn explain(link: &Link, job: &Job, in_doubt: bool) -> Verdict {
         Ok(None) => return Verdict::Refused(StoreError::Failed("a question without an answer".to_owned())),
         Err(error) => return Verdict::Refused(error),
     };
-    let (sequence, expired, taken): (Option<i64>, bool, bool) = (row.get(0), row.get(1), row.get(2));
+    let (sequence, expired, taken): (Option<i64>, Option<&str>, bool) = (row.get(0), row.get(1), row.get(2));
     let stored = match expected {
         Some(_) => row.get::<_, Option<i64>>(3) == Some(job.stamp),
         None => sequence.is_some(),
@@ -41,8 +41,7 @@ pub(super) async fn explain(link: &Link, job: &Job, in_doubt: bool) -> Verdict {
         _ if taken => Verdict::Refused(StoreError::KeyTaken),
         (None, None) => Verdict::Open,
         (None, Some(_)) => Verdict::Refused(StoreError::Failed(format!("there is a session {id} already"))),
-        (Some(_), None) if expired => Verdict::Refused(StoreError::Expired),
-        (Some(_), None) => Verdict::Refused(StoreError::NotFound),
+        (Some(_), None) => Verdict::Refused(expired.map(Tenant::new).map_or(StoreError::NotFound, StoreError::Expired)),
         (Some(expected), Some(found)) if found == expected => Verdict::Open,
         (Some(_), Some(found)) => Verdict::Refused(StoreError::Stale { found }),
     }

@@ -30,7 +30,7 @@ use uuid::Uuid;
 
 use crate::wire::SessionSummary;
 
-use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
+use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
 
 use fault::{Fault, Pauses};
 use job::{Change, Job};
@@ -150,11 +150,15 @@ impl Store for PostgresStore {
         .boxed()
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
+    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
         async move {
             // Nothing lies before the nil identifier, and no session has it.
             let after = after.unwrap_or(Uuid::nil());
-            let found = self.link.rows(sql::LIST, &[&after, &counted(limit as u64)]).await?;
+            let limit = counted(limit as u64);
+            let found = match of {
+                None => self.link.rows(sql::LIST, &[&after, &limit]).await?,
+                Some(tenant) => self.link.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
+            };
             found.iter().map(rows::summary).collect()
         }
         .boxed()

@@ -9,7 +9,7 @@ use jiff::Timestamp;
 use tokio_postgres::Row;
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError};
+use crate::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError, Tenant};
 use crate::wire::{Move, Regime, SessionSummary, State};
 
 /// A timestamp as two columns.
@@ -48,6 +48,7 @@ pub(super) fn session(row: &Row) -> Result<Session, StoreError> {
         sequence: count(row.get(3)),
         created_at: joined(row.get(4), row.get(5))?,
         updated_at: joined(row.get(6), row.get(7))?,
+        tenant: Tenant::new(row.get(8)),
     })
 }
 
@@ -189,4 +190,5 @@ columns!(Sessions, "New sessions.", (&Session, String), |new| {
     created_ns: i16 = split(new.0.created_at).1,
     updated_at: SystemTime = split(new.0.updated_at).0,
     updated_ns: i16 = split(new.0.updated_at).1,
+    tenant: String = new.0.tenant.name().to_owned(),
 });

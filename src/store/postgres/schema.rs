@@ -3,7 +3,9 @@
 use tokio_postgres::{Client, Error};
 
 /// The migrations, oldest first. A published one is never edited: the version of a database is how many it has seen.
-const MIGRATIONS: [&str; 1] = ["
+const MIGRATIONS: [&str; 2] = [TABLES, TENANTS];
+
+const TABLES: &str = "
 CREATE TABLE contacts (
     id uuid PRIMARY KEY,
     label text,
@@ -56,7 +58,14 @@ CREATE TABLE expired (
     id uuid PRIMARY KEY,
     at timestamptz NOT NULL DEFAULT now()
 );
-"];
+";
+
+/// What was there before belongs to the tenant without a name, as does what replicas of the earlier version still make.
+const TENANTS: &str = "
+ALTER TABLE contacts ADD COLUMN tenant text NOT NULL DEFAULT '';
+ALTER TABLE expired ADD COLUMN tenant text NOT NULL DEFAULT '';
+CREATE INDEX contacts_by_tenant ON contacts (tenant, id);
+";
 
 /// Held while the tables are made, so that of several replicas that start together one makes them: "stickslip" in ASCII,
 /// shortened to eight letters.

@@ -50,12 +50,12 @@ ORDER BY receipt.key";
 /// Makes sessions, and keeps the receipts.
 pub(super) const CREATE: &str = "
 WITH made AS (
-    INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns)
+    INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
     SELECT * FROM unnest($1::uuid[], $2::text[], $3::text[], $4::bigint[], $5::timestamptz[], $6::smallint[],
-        $7::timestamptz[], $8::smallint[])
+        $7::timestamptz[], $8::smallint[], $9::text[])
 )
 INSERT INTO receipts (key, fingerprint, created, sequence, body)
-SELECT * FROM unnest($9::text[], $10::bytea[], $11::uuid[], $12::bigint[], $13::bytea[]) AS receipt (key)
+SELECT * FROM unnest($10::text[], $11::bytea[], $12::uuid[], $13::bigint[], $14::bytea[]) AS receipt (key)
 ORDER BY receipt.key";
 
 /// Announces changes; a payload names as many sessions as fit.
@@ -67,11 +67,11 @@ pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')
 /// Begins to hear announcements.
 pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
 
-/// What became of a request: the sequence of its session, whether that has expired, whether its key is taken, and the
+/// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and the
 /// stamp of its last move.
 pub(super) const EXPLAIN: &str = "
 SELECT (SELECT sequence FROM contacts WHERE id = $1),
-    EXISTS (SELECT 1 FROM expired WHERE id = $1),
+    (SELECT tenant FROM expired WHERE id = $1),
     EXISTS (SELECT 1 FROM receipts WHERE key = $2 AND created_at > now() - $3::double precision * INTERVAL '1 second'),
     (SELECT stamp FROM moves WHERE contact = $1 AND sequence = $4)";
 
@@ -83,15 +83,20 @@ WHERE key = ANY($1) AND created_at <= now() - $2::double precision * INTERVAL '1
 pub(super) const READY: &str = "SELECT current_setting('transaction_read_only')";
 
 pub(super) const FIND: &str = "
-SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns FROM contacts WHERE id = $1";
+SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant
+FROM contacts WHERE id = $1";
 
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 
-pub(super) const EXPIRED: &str = "SELECT EXISTS (SELECT 1 FROM expired WHERE id = $1)";
+pub(super) const EXPIRED: &str = "SELECT tenant FROM expired WHERE id = $1";
 
 pub(super) const LIST: &str = "
 SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
 FROM contacts WHERE id > $1 ORDER BY id LIMIT $2";
+
+pub(super) const LIST_OF_TENANT: &str = "
+SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
+FROM contacts WHERE tenant = $3 AND id > $1 ORDER BY id LIMIT $2";
 
 pub(super) const HISTORY: &str = "
 SELECT sequence, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
@@ -143,10 +148,10 @@ WITH gone AS (
     DELETE FROM contacts WHERE id IN (
         SELECT id FROM contacts WHERE id = ANY($1) AND (updated_at, updated_ns) < ($2, $3)
         ORDER BY id FOR UPDATE SKIP LOCKED)
-    RETURNING id
+    RETURNING id, tenant
 ), past AS (
     DELETE FROM moves WHERE contact IN (SELECT id FROM gone)
 ), marked AS (
-    INSERT INTO expired (id) SELECT id FROM gone ON CONFLICT DO NOTHING
+    INSERT INTO expired (id, tenant) SELECT id, tenant FROM gone ON CONFLICT DO NOTHING
 )
 SELECT id FROM gone";

@@ -8,7 +8,7 @@ use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreEr
 
 use super::fork;
 use super::known::Known;
-use super::rows::{MOVE_COLUMNS, bound, insert_move, integer, nanoseconds, natural};
+use super::rows::{MOVE_COLUMNS, bound, insert_move, integer, nanoseconds, natural, tenant};
 
 /// Receipts that one sweep of the writer passes.
 const RECEIPTS_AT_ONCE: i64 = 256;
@@ -187,8 +187,8 @@ pub(super) fn insert_session(
 ) -> Result<(), rusqlite::Error> {
     let definition = serde_json::to_string(&*session.definition);
     let definition = definition.map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
-    let sql = "INSERT INTO contacts (number, id, label, definition, created_at, initial_updated_at, inherited)
-               VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)";
+    let sql = "INSERT INTO contacts (number, id, label, definition, created_at, initial_updated_at, inherited, tenant)
+               VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)";
     database.prepare_cached(sql)?.execute(params![
         number,
         session.id.to_string(),
@@ -197,6 +197,7 @@ pub(super) fn insert_session(
         nanoseconds(session.created_at)?,
         nanoseconds(session.updated_at)?,
         integer(inherited)?,
+        session.tenant.name(),
     ])?;
     Ok(())
 }
@@ -210,11 +211,15 @@ pub(super) fn at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, 
     match found {
         Some((number, found)) if found == expected => Ok(number),
         Some((_, found)) => Err(Undone::Refused(StoreError::Stale { found })),
-        None => {
-            let expired = database.prepare_cached("SELECT id FROM expired WHERE id = ?1")?.exists([id.to_string()])?;
-            Err(Undone::Refused(if expired { StoreError::Expired } else { StoreError::NotFound }))
-        }
+        None => Err(Undone::Refused(missing(database, id)?)),
     }
+}
+
+/// Why there is no such session.
+pub(super) fn missing(database: &Connection, id: Uuid) -> rusqlite::Result<StoreError> {
+    let mut statement = database.prepare_cached("SELECT tenant FROM expired WHERE id = ?1")?;
+    let expired = statement.query_row([id.to_string()], |row| tenant(row, 0)).optional()?;
+    Ok(expired.map_or(StoreError::NotFound, StoreError::Expired))
 }
 
 /// Deletes a session and leaves its moves to be removed bit by bit.
@@ -227,14 +232,15 @@ fn disown(database: &Connection, number: i64) -> rusqlite::Result<()> {
 /// Lets a session expire, unless it is gone or has moved meanwhile.
 fn expire(database: &Connection, id: Uuid, since: Timestamp) -> rusqlite::Result<bool> {
     let sql = format!(
-        "SELECT c.number FROM {} WHERE c.id = ?1 AND iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?2",
+        "SELECT c.number, c.tenant FROM {} WHERE c.id = ?1 AND iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?2",
         super::rows::SESSIONS
     );
     let mut statement = database.prepare_cached(&sql)?;
-    let number = statement.query_row(params![id.to_string(), bound(since)], |row| row.get(0)).optional()?;
-    let Some(number) = number else { return Ok(false) };
+    let idle = statement.query_row(params![id.to_string(), bound(since)], |row| Ok((row.get(0)?, tenant(row, 1)?)));
+    let Some((number, tenant)) = idle.optional()? else { return Ok(false) };
     disown(database, number)?;
     let now = nanoseconds(Timestamp::now())?;
-    database.prepare_cached("INSERT INTO expired (id, at) VALUES (?1, ?2)")?.execute(params![id.to_string(), now])?;
+    let mut mark = database.prepare_cached("INSERT INTO expired (id, at, tenant) VALUES (?1, ?2, ?3)")?;
+    mark.execute(params![id.to_string(), now, tenant.name()])?;
     Ok(true)
 }

@@ -27,7 +27,7 @@ use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::{Answer, Changes, Receipt, Record, Session, Snapshot, Store, StoreError};
+use super::{Answer, Changes, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
 use crate::wire::SessionSummary;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
@@ -136,8 +136,8 @@ impl Store for SqliteStore {
         self.look(move |database| read::sequence(database, id))
     }
 
-    fn list(&self, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
-        self.look(move |database| read::list(database, after, limit))
+    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
+        self.look(move |database| read::list(database, of.as_ref(), after, limit))
     }
 
     fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {

@@ -4,9 +4,10 @@ use jiff::Timestamp;
 use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Session, Snapshot, StoreError};
+use crate::store::{Receipt, Record, Session, Snapshot, Tenant};
 use crate::wire::SessionSummary;
 
+use super::change::missing;
 use super::readers::ReadError;
 use super::rows::{
     MOVE_COLUMNS, SESSION_COLUMNS, SESSIONS, bound, identifier, integer, natural, receipt, record, session, summary,
@@ -21,10 +22,10 @@ pub(super) fn alive(database: &Connection) -> Result<(), ReadError> {
 }
 
 pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, ReadError> {
-    let mut statement =
-        database.prepare_cached(&format!("SELECT {SESSION_COLUMNS}, c.definition FROM {SESSIONS} WHERE c.id = ?1"))?;
+    let mut statement = database
+        .prepare_cached(&format!("SELECT {SESSION_COLUMNS}, c.definition, c.tenant FROM {SESSIONS} WHERE c.id = ?1"))?;
     let found = statement.query_row([id.to_string()], session).optional()?;
-    found.map_or_else(|| Err(missing(database, id)?), Ok)
+    found.map_or_else(|| Err(ReadError::Store(missing(database, id)?)), Ok)
 }
 
 pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, ReadError> {
@@ -33,13 +34,24 @@ pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, ReadError
     Ok(statement.query_row([number], |row| natural(row, 0))?)
 }
 
-pub(super) fn list(database: &Connection, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>, ReadError> {
+pub(super) fn list(
+    database: &Connection,
+    of: Option<&Tenant>,
+    after: Option<Uuid>,
+    limit: usize,
+) -> Result<Vec<SessionSummary>, ReadError> {
     // Every identifier comes after the empty text.
     let after = after.map_or_else(String::new, |id| id.to_string());
-    let sql = format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE c.id > ?1 ORDER BY c.id LIMIT ?2");
-    let mut statement = database.prepare_cached(&sql)?;
-    let found = statement.query_map(params![after, integer(limit as u64)?], summary)?;
-    Ok(found.collect::<Result<_, _>>()?)
+    let limit = integer(limit as u64)?;
+    let page = |which: &str| format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE {which} ORDER BY c.id LIMIT ?2");
+    let found: rusqlite::Result<_> = match of {
+        None => database.prepare_cached(&page("c.id > ?1"))?.query_map(params![after, limit], summary)?.collect(),
+        Some(tenant) => {
+            let mut statement = database.prepare_cached(&page("c.id > ?1 AND c.tenant = ?3"))?;
+            statement.query_map(params![after, limit, tenant.name()], summary)?.collect()
+        }
+    };
+    Ok(found?)
 }
 
 pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, ReadError> {
@@ -87,11 +99,5 @@ pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Resul
 fn number(database: &Connection, id: Uuid) -> Result<i64, ReadError> {
     let mut statement = database.prepare_cached("SELECT number FROM contacts WHERE id = ?1")?;
     let found = statement.query_row([id.to_string()], |row| row.get(0)).optional()?;
-    found.map_or_else(|| Err(missing(database, id)?), Ok)
-}
-
-/// Why there is no such session.
-fn missing(database: &Connection, id: Uuid) -> Result<ReadError, ReadError> {
-    let expired = database.prepare_cached("SELECT id FROM expired WHERE id = ?1")?.exists([id.to_string()])?;
-    Ok(ReadError::Store(if expired { StoreError::Expired } else { StoreError::NotFound }))
+    found.map_or_else(|| Err(ReadError::Store(missing(database, id)?)), Ok)
 }

@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use rusqlite::{CachedStatement, Row, params, types::Type};
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Reply, RequestKey, Session};
+use crate::store::{Receipt, Record, Reply, RequestKey, Session, Tenant};
 use crate::wire::{Move, Regime, SessionSummary, State};
 
 /// The columns of a move beside its session, in the order of [`insert_move`] and [`record`].
@@ -126,11 +126,24 @@ pub(super) fn summary(row: &Row<'_>) -> rusqlite::Result<SessionSummary> {
     })
 }
 
-/// The session of a row of [`SESSION_COLUMNS`] and its definition.
+/// The session of a row of [`SESSION_COLUMNS`], its definition and its tenant.
 pub(super) fn session(row: &Row<'_>) -> rusqlite::Result<Session> {
     let definition = serde_json::from_str(row.get_ref(5)?.as_str()?).map_err(|error| unreadable(5, error))?;
     let SessionSummary { id, label, sequence, created_at, updated_at } = summary(row)?;
-    Ok(Session { id, label, definition: Arc::new(definition), sequence, created_at, updated_at })
+    Ok(Session {
+        id,
+        tenant: tenant(row, 6)?,
+        label,
+        definition: Arc::new(definition),
+        sequence,
+        created_at,
+        updated_at,
+    })
+}
+
+/// The tenant in a column.
+pub(super) fn tenant(row: &Row<'_>, column: usize) -> rusqlite::Result<Tenant> {
+    Ok(Tenant::new(row.get_ref(column)?.as_str()?))
 }
 
 /// The receipt of a row of key, fingerprint, created, sequence and body.

@@ -8,7 +8,7 @@ use rusqlite::Connection;
 pub(super) const APPLICATION: i32 = 0x7374_636b;
 
 /// What leads from each version to the next; the first one from nothing.
-const VERSIONS: [&str; 2] = [VERSION_1, VERSION_2];
+const VERSIONS: [&str; 3] = [VERSION_1, VERSION_2, VERSION_3];
 
 /// The version that this program writes.
 pub(super) const NEWEST: i32 = VERSIONS.len() as i32;
@@ -112,6 +112,27 @@ SELECT
     m.memory_depth
 FROM contacts AS c
 INNER JOIN moves AS m ON m.contact = c.number;
+";
+
+/// Tenants. What was there before belongs to the one without a name.
+const VERSION_3: &str = "
+ALTER TABLE contacts ADD COLUMN tenant TEXT NOT NULL DEFAULT '';
+ALTER TABLE expired ADD COLUMN tenant TEXT NOT NULL DEFAULT '';
+CREATE INDEX contacts_by_tenant ON contacts (tenant, id);
+DROP VIEW sessions;
+CREATE VIEW sessions AS
+SELECT
+    c.id,
+    c.tenant,
+    c.label,
+    coalesce(m.sequence, 0) AS sequence,
+    strftime('%Y-%m-%dT%H:%M:%fZ', c.created_at / 1e9, 'unixepoch') AS created_at,
+    strftime('%Y-%m-%dT%H:%M:%fZ', iif(m.sequence > c.inherited, m.at, c.initial_updated_at) / 1e9, 'unixepoch')
+        AS updated_at,
+    c.definition
+FROM contacts AS c
+LEFT JOIN moves AS m
+    ON m.contact = c.number AND m.sequence = (SELECT max(sequence) FROM moves WHERE contact = c.number);
 ";
 
 /// The version of a database; nought where there is nothing in it yet.

@@ -1,0 +1,92 @@
+//! Entries of a file of keys, and new keys.
+
+use std::fmt::Write as _;
+
+use sha2::{Digest as _, Sha256};
+
+use crate::store::Tenant;
+
+use super::{Hash, Holder, Role, Roles};
+
+/// What every key begins with, so that it can be told from other secrets where it has leaked to.
+const PREFIX: &str = "stickslip_";
+/// Random bytes of a new key.
+const RANDOM: usize = 32;
+/// Characters of the name of a key or tenant.
+const NAME_LENGTH: usize = 64;
+
+/// What is wrong with a file of keys.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {why}")]
+pub struct Wrong {
+    /// Its line.
+    pub line: usize,
+    /// What is wrong with it.
+    pub why: String,
+}
+
+/// A key that has just been made.
+pub struct NewKey {
+    /// The key, for the one who is to use it. Nobody can find it out again.
+    pub key: String,
+    /// The entry that makes it known to a service.
+    pub entry: String,
+}
+
+/// Makes a key out of the system's randomness.
+///
+/// # Errors
+/// Why there is none, in one line.
+pub fn new_key(name: &str, roles: &[Role], tenant: &str) -> Result<NewKey, String> {
+    let mut random = [0; RANDOM];
+    getrandom::fill(&mut random).map_err(|error| format!("the system has no randomness: {error}"))?;
+    let key = format!("{PREFIX}{}", hexadecimal(&random));
+    let roles: Vec<&str> = roles.iter().map(|role| role.name()).collect();
+    let hash = hexadecimal(&Sha256::digest(key.as_bytes()));
+    let entry = format!("{name}:{}:{tenant}:sha256:{hash}", roles.join("+"));
+    parse(&entry)?;
+    Ok(NewKey { key, entry })
+}
+
+/// Reads an entry.
+pub(super) fn parse(entry: &str) -> Result<(Hash, Holder), String> {
+    let mut parts = entry.split(':');
+    let parts: [Option<&str>; 6] = std::array::from_fn(|_| parts.next());
+    let [Some(name), Some(roles), Some(tenant), Some("sha256"), Some(hash), None] = parts else {
+        return Err("expected name:roles:tenant:sha256:hash, where the tenant may be empty".to_owned());
+    };
+    if name.is_empty() || !is_name(name) {
+        return Err(refused("the name of a key"));
+    }
+    if !is_name(tenant) {
+        return Err(refused("the name of a tenant"));
+    }
+    let roles: Option<Vec<Role>> = roles.split('+').map(Role::of_name).collect();
+    let roles = roles.ok_or("expected roles out of write, read, metrics, with a + between them")?;
+    let hash = bytes(hash).ok_or("expected the SHA-256 of the key as 64 hexadecimal digits")?;
+    let holder = Holder { name: name.into(), roles: Roles::new(&roles), tenant: Tenant::new(tenant) };
+    Ok((hash, holder))
+}
+
+fn refused(what: &str) -> String {
+    format!("{what} must be at most {NAME_LENGTH} letters, digits, dots, hyphens or underscores")
+}
+
+fn is_name(text: &str) -> bool {
+    text.len() <= NAME_LENGTH && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || b".-_".contains(&byte))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+fn bytes(hexadecimal: &str) -> Option<Hash> {
+    let digits: Vec<u8> =
+        hexadecimal.chars().map(|digit| digit.to_digit(16)?.try_into().ok()).collect::<Option<_>>()?;
+    let bytes: Vec<u8> = digits.chunks(2).map(|pair| pair.iter().fold(0, |byte, digit| byte << 4 | digit)).collect();
+    (digits.len() == 2 * size_of::<Hash>()).then(|| bytes.try_into().ok())?
+}

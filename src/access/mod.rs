@@ -1,0 +1,153 @@
+//! Who may do what: keys, their roles, and the tenants that they belong to. It knows no HTTP.
+//!
+//! Of a key only the hash is kept, SHA-256. A slow hash defends passwords, which can be guessed; a key is made of 256 random
+//! bits, which no speed of guessing reaches, and it is hashed for every request.
+
+mod entry;
+mod role;
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use sha2::{Digest as _, Sha256};
+use subtle::ConstantTimeEq as _;
+
+use crate::store::Tenant;
+
+pub use entry::{NewKey, Wrong, new_key};
+pub use role::{Role, Roles};
+
+/// Characters of a key that a client may present. What is shorter could be guessed, whoever made it.
+const LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
+/// Bytes of a hash by which its key is found.
+const START: usize = 8;
+
+/// SHA-256 of a key.
+type Hash = [u8; 32];
+
+/// Who presents a key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Holder {
+    /// The name of the key, for the log.
+    pub name: Arc<str>,
+    /// What it allows.
+    pub roles: Roles,
+    /// Whose sessions it shows.
+    pub tenant: Tenant,
+}
+
+/// All keys that are known.
+#[derive(Debug, Default)]
+pub struct Keys {
+    // By the start of the hash. The time that a lookup takes tells something about the hash of what was presented at most, and
+    // nobody can choose that bit by bit; the rest is compared in constant time.
+    by_start: HashMap<[u8; START], Vec<(Hash, Holder)>>,
+}
+
+impl Keys {
+    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash`, one a line or with commas between them. Roles have a
+    /// `+` between them, the tenant may be empty, and what follows a `#` is for people.
+    ///
+    /// # Errors
+    /// [`Wrong`]: which line, and why. It shows nothing of a key.
+    pub fn add(&mut self, text: &str) -> Result<(), Wrong> {
+        for (index, line) in text.lines().enumerate() {
+            let said = line.split('#').next().unwrap_or_default();
+            for entry in said.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
+                let wrong = |why: &str| Wrong { line: index + 1, why: why.to_owned() };
+                let (hash, holder) = entry::parse(entry).map_err(|why| wrong(&why))?;
+                let mut known = self.by_start.values().flatten();
+                if known.any(|(_, other)| other.name == holder.name) {
+                    return Err(wrong("there is another key of this name"));
+                }
+                if self.find(&hash).is_some() {
+                    return Err(wrong("the same key has two entries"));
+                }
+                self.by_start.entry(start(&hash)).or_default().push((hash, holder));
+            }
+        }
+        Ok(())
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.by_start.values().map(Vec::len).sum()
+    }
+
+    /// Who holds the key presented, if it is one.
+    #[must_use]
+    pub fn holder(&self, presented: &[u8]) -> Option<&Holder> {
+        if !LENGTH.contains(&presented.len()) {
+            return None;
+        }
+        self.find(&Sha256::digest(presented).into())
+    }
+
+    fn find(&self, hash: &Hash) -> Option<&Holder> {
+        let same = |known: &Hash| bool::from(known[..].ct_eq(&hash[..]));
+        self.by_start.get(&start(hash))?.iter().find(|(known, _)| same(known)).map(|(_, holder)| holder)
+    }
+}
+
+fn start(hash: &Hash) -> [u8; START] {
+    let mut start = [0; START];
+    start.copy_from_slice(&hash[..START]);
+    start
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Keys, Role, new_key};
+    use crate::store::Tenant;
+
+    #[test]
+    fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
+        let bench = new_key("bench", &[Role::Write], "lab").unwrap();
+        let graph = new_key("graph", &[Role::Metrics, Role::Read], "").unwrap();
+        let mut keys = Keys::default();
+        keys.add(&format!("# keys\n{} # the bench\n\n  {},\n", bench.entry, graph.entry)).unwrap();
+        assert_eq!(keys.count(), 2);
+        let holder = keys.holder(bench.key.as_bytes()).unwrap();
+        assert_eq!((&*holder.name, &holder.tenant), ("bench", &Tenant::new("lab")));
+        assert!(
+            holder.roles.allow(Role::Write) && holder.roles.allow(Role::Read) && !holder.roles.allow(Role::Metrics)
+        );
+        let holder = keys.holder(graph.key.as_bytes()).unwrap();
+        assert!(
+            !holder.roles.allow(Role::Write) && holder.roles.allow(Role::Read) && holder.roles.allow(Role::Metrics)
+        );
+        assert_eq!(holder.tenant, Tenant::default());
+        let mut other = bench.key.clone();
+        other.pop();
+        let hash = bench.entry.rsplit(':').next().unwrap();
+        for stranger in ["", "bench", hash, &other, &format!("{}0", bench.key), &"x".repeat(100_000)] {
+            assert_eq!(keys.holder(stranger.as_bytes()), None, "{stranger}");
+        }
+        assert_ne!(new_key("bench", &[Role::Write], "lab").unwrap().key, bench.key);
+    }
+
+    #[test]
+    fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
+        let good = new_key("good", &[Role::Read], "").unwrap().entry;
+        let hash = good.rsplit(':').next().unwrap().to_owned();
+        for (entry, why) in [
+            (hash.clone(), "name:roles:tenant:sha256:hash"),
+            (format!("a:read:sha256:{hash}"), "name:roles:tenant:sha256:hash"),
+            (format!("a:reed::sha256:{hash}"), "write, read, metrics"),
+            (format!("a:::sha256:{hash}"), "write, read, metrics"),
+            (format!("a b:read::sha256:{hash}"), "name"),
+            (format!(":read::sha256:{hash}"), "name"),
+            (format!("a:read:t t:sha256:{hash}"), "tenant"),
+            (format!("a:read::sha256:{}", &hash[1..]), "64 hexadecimal digits"),
+            (format!("a:read::sha256:{}g", &hash[1..]), "64 hexadecimal digits"),
+            (format!("a:read::sha256:{hash}"), "two entries"),
+            (good.replace(&hash[..4], "0000"), "of this name"),
+        ] {
+            let mut keys = Keys::default();
+            let wrong = keys.add(&format!("{good}\n\n{entry}")).unwrap_err();
+            assert_eq!(wrong.line, 3);
+            assert!(wrong.why.contains(why) && !wrong.to_string().contains(&hash[8..]), "{entry}: {wrong}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! `stickslip serve`: its settings, and the process from start to end.
+
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use bytesize::ByteSize;
+use clap::{ArgAction, Args, ValueEnum};
+use stickslip::api::headers::Origin;
+use stickslip::api::{self, Access, App};
+use stickslip::sessions::{self, Sessions};
+use stickslip::simulation::Pool;
+use stickslip::store::{self, Store};
+use tokio::net::TcpListener;
+use tokio::signal::unix::{SignalKind, signal};
+use tracing_subscriber::EnvFilter;
+
+use super::settings::ConfigFile;
+use super::{key, print};
+
+/// How long work that does not look at its flag may hold up the end of the process.
+const LAST_WORK: Duration = Duration::from_millis(500);
+
+/// The shortest time after which an idle contact may expire.
+const SHORTEST_IDLE_TIME: Duration = Duration::from_secs(1);
+
+/// The settings. Each comes as a flag, from the environment or from the file, whatever it is: `settings` sees to that.
+#[derive(Args)]
+pub struct Serve {
+    #[command(flatten)]
+    _file: ConfigFile,
+    /// Address and port to listen on; port 0 takes a free one.
+    #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
+    listen: SocketAddr,
+    /// Keys of those who may use the service: the path of a file with entries as `stickslip key new` prints them, or such entries
+    /// themselves, with commas between them.
+    #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
+    keys: Vec<String>,
+    /// Listen on an address that others can reach although everybody who reaches it may do everything: true or false.
+    #[arg(long, env = "STICKSLIP_INSECURE", num_args = 0..=1, require_equals = true, action = ArgAction::Set,
+        default_value_t = false, default_missing_value = "true")]
+    insecure: bool,
+    /// Origins whose pages a browser may let in, such as https://lab.example, with commas between them.
+    #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
+    cors_origins: Vec<Origin>,
+    /// Where contacts are kept: `sqlite:PATH` in a file, `postgres://…` in a database that several processes share,
+    /// `memory:` in this process until it ends.
+    #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
+    store: String,
+    /// Bytes of memory for the states of contacts, such as 64MiB. A state that is not at hand is replayed when needed.
+    #[arg(long, env = "STICKSLIP_CACHE_BYTES", default_value_t = ByteSize::b(sessions::CAPACITY as u64))]
+    cache_bytes: ByteSize,
+    /// Delete contacts that have not moved for so long, such as 30d or 12h; left out, they stay.
+    #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = idle_time)]
+    expire_after: Option<Duration>,
+    /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
+    #[arg(long, env = "STICKSLIP_LOG", default_value = "info", value_parser = filter)]
+    log: String,
+    /// How to log it.
+    #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
+    log_format: LogFormat,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LogFormat {
+    Text,
+    Json,
+}
+
+/// Serves until it is told to stop.
+pub fn serve(options: Serve) -> Result<(), String> {
+    let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
+    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr);
+    match options.log_format {
+        LogFormat::Text => log.with_ansi(false).init(),
+        LogFormat::Json => log.json().flatten_event(true).init(),
+    }
+    let access = access(&options)?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
+    let served = runtime.block_on(listen(&options, access, Arc::clone(&store)));
+    runtime.shutdown_timeout(LAST_WORK);
+    // The last handle, now that no request holds one: the store is closed before the process ends.
+    drop(store);
+    served
+}
+
+/// Who may use the service. Without keys nobody else may reach it, unless that is wanted.
+fn access(options: &Serve) -> Result<Access, String> {
+    let keys = key::known(&options.keys)?;
+    let listen = options.listen;
+    if keys.is_none() && !listen.ip().to_canonical().is_loopback() {
+        if !options.insecure {
+            return Err(format!(
+                "refusing to listen on {listen} without keys: give --keys, or a loopback address such as 127.0.0.1:{}, or \
+                 --insecure to let in everybody who can reach it",
+                listen.port()
+            ));
+        }
+        tracing::warn!(%listen, "there are no keys: everybody who can reach this address may do everything");
+    }
+    if let Some(keys) = &keys {
+        tracing::info!(keys = keys.count(), "a key is needed");
+    }
+    let origins = options.cors_origins.iter().map(|Origin(origin)| origin.clone());
+    Ok(Access { keys: keys.map(Arc::new), origins: origins.collect() })
+}
+
+fn idle_time(text: &str) -> Result<Duration, String> {
+    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
+    if time < SHORTEST_IDLE_TIME { Err(format!("at least {SHORTEST_IDLE_TIME:?}")) } else { Ok(time) }
+}
+
+fn filter(text: &str) -> Result<String, String> {
+    EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+}
+
+async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Result<(), String> {
+    let address = options.listen;
+    let listener = TcpListener::bind(address).await.map_err(|error| format!("cannot listen on {address}: {error}"))?;
+    let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
+    let signals = (signal(SignalKind::terminate()), signal(SignalKind::interrupt()));
+    let (Ok(mut terminate), Ok(mut interrupt)) = signals else {
+        return Err("cannot listen for signals".to_owned());
+    };
+    let stop = async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = interrupt.recv() => {}
+        }
+    };
+    let pool = Pool::of_the_machine();
+    let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
+    let sessions = Sessions::new(store, pool.clone(), capacity);
+    tokio::spawn(sessions.clone().keep_house(options.expire_after));
+    print(format_args!("stickslip listens on http://{address}, try /docs"))?;
+    api::serve(listener, App { sessions, pool, access }, stop).await.map_err(|error| format!("stopped: {error}"))
+}

@@ -1,0 +1,68 @@
+//! The file with settings: TOML, a key for each by the name of its flag.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, Command};
+use toml::{Table, Value};
+
+use super::refusal::{Refusal, unknown};
+use super::{everywhere, shown};
+
+/// What a file says.
+pub struct ConfigValues {
+    /// The file.
+    pub path: PathBuf,
+    // As they would stand on the command line.
+    values: BTreeMap<String, String>,
+}
+
+impl ConfigValues {
+    /// Reads a file. Whether a value suits its key is seen later; here every key must be known, and have one value.
+    pub fn read(path: &Path, command: &Command) -> Result<ConfigValues, Refusal> {
+        let place = path.display();
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| Refusal::Wrong(format!("cannot read the configuration file {place}: {error}")))?;
+        let table: Table = text.parse().map_err(|error: toml::de::Error| {
+            let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
+            let line = before.matches('\n').count() + 1;
+            Refusal::Wrong(format!("{place}, line {line}: {}", shown(error.message())))
+        })?;
+        let known = || everywhere(command).filter(|arg| arg.get_id() != "config");
+        let mut values = BTreeMap::new();
+        for (key, value) in &table {
+            let written = || format!("{place}: {} = {}", shown(key), shown(&value.to_string()));
+            let Some(arg) = known().find(|arg| arg.get_long() == Some(key)) else {
+                return Err(unknown(&written(), known().filter_map(Arg::get_long)));
+            };
+            let value = plain(value, arg).map_err(|why| Refusal::Wrong(format!("{}: {why}", written())))?;
+            values.insert(key.clone(), value);
+        }
+        Ok(ConfigValues { path: path.to_owned(), values })
+    }
+
+    /// What stands under a key.
+    pub fn get(&self, key: &str) -> Option<&str> {
+        self.values.get(key).map(String::as_str)
+    }
+}
+
+/// A value as it would stand on the command line.
+fn plain(value: &Value, arg: &Arg) -> Result<String, String> {
+    match (value, arg.get_value_delimiter()) {
+        (Value::String(text), _) => Ok(text.clone()),
+        (Value::Integer(_) | Value::Float(_) | Value::Boolean(_) | Value::Datetime(_), _) => Ok(value.to_string()),
+        (Value::Array(elements), Some(delimiter)) => {
+            let one = |element| match element {
+                &Value::Array(_) | &Value::Table(_) => Err("expected a list of plain values".to_owned()),
+                other => plain(other, arg),
+            };
+            let elements: Vec<String> = elements.iter().map(one).collect::<Result<_, _>>()?;
+            if elements.iter().any(|element| element.contains(delimiter)) {
+                return Err(format!("no value of the list may hold a `{delimiter}`"));
+            }
+            Ok(elements.join(&delimiter.to_string()))
+        }
+        (Value::Array(_) | Value::Table(_), _) => Err("expected one plain value".to_owned()),
+    }
+}

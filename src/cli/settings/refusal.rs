@@ -1,0 +1,100 @@
+//! What is wrong with the settings, in one line: the key, its value, and what is allowed.
+
+use std::error::Error as _;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
+
+use super::file::ConfigValues;
+use super::shown;
+
+/// Why there is nothing to run.
+pub enum Refusal {
+    /// The help or the version was asked for.
+    Asked(clap::Error),
+    /// A line that says what is wrong.
+    Wrong(String),
+}
+
+/// Where a value comes from that does not suit.
+pub enum Origin<'a> {
+    /// The command line.
+    Flag,
+    /// The environment.
+    Environment,
+    /// The file.
+    File(&'a ConfigValues),
+}
+
+/// The line for something that is no setting.
+pub fn unknown<'a>(what: &str, known: impl Iterator<Item = &'a str>) -> Refusal {
+    let mut known: Vec<&str> = known.collect();
+    known.sort_unstable();
+    known.dedup();
+    Refusal::Wrong(format!("{what}: there is no such setting, expected one of {}", known.join(", ")))
+}
+
+/// What the parser has against the arguments.
+pub fn line(error: clap::Error, command: &Command, origin: &Origin<'_>) -> Refusal {
+    if !error.use_stderr() {
+        return Refusal::Asked(error);
+    }
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let name = text(ContextKind::InvalidArg).unwrap_or_default();
+    let arg = || all(command).into_iter().find(|arg| arg.get_long().is_some() && arg.get_long() == long(name));
+    let why = match (error.kind(), arg()) {
+        (ErrorKind::UnknownArgument, _) => {
+            let known = all(command).into_iter().filter_map(|arg| arg.get_long().map(|long| format!("--{long}")));
+            let known: Vec<String> = known.collect();
+            return unknown(&shown(name), known.iter().map(String::as_str));
+        }
+        (ErrorKind::InvalidValue | ErrorKind::ValueValidation, Some(arg)) => {
+            let value = text(ContextKind::InvalidValue).unwrap_or_default();
+            let place = place(arg, value, origin);
+            let why = match (error.source(), value) {
+                (Some(source), _) => shown(&source.to_string()),
+                (None, "") => "a value is missing".to_owned(),
+                (None, _) => "not possible".to_owned(),
+            };
+            format!("{place}: {why}; expected: {}", expected(arg, &error))
+        }
+        // About the command line alone: the first paragraph says what is wrong, the others how to ask for help.
+        _ => first_paragraph(&error.to_string()),
+    };
+    Refusal::Wrong(why)
+}
+
+fn place(arg: &Arg, value: &str, origin: &Origin<'_>) -> String {
+    let (long, value) = (arg.get_long().unwrap_or_default(), shown(value));
+    match origin {
+        Origin::Flag => format!("--{long} {value}"),
+        Origin::Environment => format!("{}={value}", arg.get_env().unwrap_or_default().to_string_lossy()),
+        Origin::File(file) => format!("{}: {long} = {value}", file.path.display()),
+    }
+}
+
+/// What is allowed: the possible values, or else what the help says.
+fn expected(arg: &Arg, error: &clap::Error) -> String {
+    match error.get(ContextKind::ValidValue) {
+        Some(ContextValue::Strings(possible)) if !possible.is_empty() => possible.join(" or "),
+        _ => first_paragraph(&arg.get_help().map(ToString::to_string).unwrap_or_default()),
+    }
+}
+
+fn first_paragraph(text: &str) -> String {
+    let paragraph = text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: ");
+    shown(&paragraph.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+/// The name within `--name <VALUE>` or `--name[=<VALUE>]`.
+fn long(arg: &str) -> Option<&str> {
+    arg.strip_prefix("--")?.split([' ', '=', '[']).next()
+}
+
+/// The arguments of a command and of those below it.
+fn all(command: &Command) -> Vec<&Arg> {
+    command.get_subcommands().chain([command]).flat_map(Command::get_arguments).collect()
+}

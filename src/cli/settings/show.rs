@@ -1,0 +1,50 @@
+//! The settings in force, printed as a file that could be given back, with the source of each beside it.
+
+use std::fmt::{self, Display, Formatter};
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction};
+use toml::Value;
+
+use super::{Settings, known, shown};
+
+impl Display for Settings {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        write!(out, "# flag before environment before file before default")?;
+        for arg in known(&self.command).filter(|arg| arg.get_id() != "config") {
+            let key = arg.get_long().unwrap_or_default();
+            match self.value(arg) {
+                Some(value) => write!(out, "\n{key} = {value} # {}", self.source(arg))?,
+                None => write!(out, "\n# {key} is not set")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Settings {
+    /// The value in force as TOML, masked.
+    fn value(&self, arg: &Arg) -> Option<String> {
+        let mut values = self.matches.get_raw(arg.get_id().as_str())?.map(|raw| shown(&raw.to_string_lossy()));
+        if arg.get_value_delimiter().is_some() {
+            return Some(Value::Array(values.map(Value::String).collect()).to_string());
+        }
+        let value = values.next()?;
+        let logical = matches!(arg.get_action(), ArgAction::SetTrue) || value.parse::<bool>().is_ok();
+        let bare = logical || value.parse::<i64>().is_ok();
+        Some(if bare { value } else { Value::String(value).to_string() })
+    }
+
+    fn source(&self, arg: &Arg) -> String {
+        match (self.matches.value_source(arg.get_id().as_str()), &self.file) {
+            (Some(ValueSource::CommandLine), _) => "flag".to_owned(),
+            (Some(ValueSource::EnvVariable), _) => {
+                format!("environment {}", arg.get_env().unwrap_or_default().to_string_lossy())
+            }
+            (_, Some(file)) if arg.get_long().is_some_and(|key| file.get(key).is_some()) => {
+                format!("file {}", shown(&file.path.to_string_lossy()))
+            }
+            _ => "default".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! Who may do what: every role at every endpoint, and what one tenant sees of another.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use common::process::Process;
+use common::{ball, problem};
+use reqwest::{Method, Response};
+use serde_json::{Value, json};
+use stickslip::access::{Role, new_key};
+use stickslip::client::Options;
+use tempfile::{TempDir, tempdir};
+use uuid::Uuid;
+
+/// Every endpoint: what it takes, how it answers who may use it, and the roles that may; none listed is everybody.
+const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 17] = [
+    ("POST", "/simulate", "simulation", 200, &["read", "write"]),
+    ("POST", "/contacts", "ball", 201, &["write"]),
+    ("GET", "/contacts", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
+    ("DELETE", "/contacts/{id}", "", 204, &["write"]),
+    ("POST", "/contacts/{id}/fork", "", 201, &["write"]),
+    ("POST", "/contacts/{id}/move", "move", 200, &["write"]),
+    ("POST", "/contacts/{id}/path", "path", 200, &["write"]),
+    ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}/events", "", 200, &["read", "write"]),
+    ("GET", "/metrics", "", 200, &["metrics"]),
+    ("GET", "/openapi.json", "", 200, &[]),
+    ("GET", "/problems/{code}", "", 200, &[]),
+    ("GET", "/healthz", "", 200, &[]),
+    ("GET", "/readyz", "", 200, &[]),
+    ("GET", "/docs/", "", 200, &[]),
+];
+
+fn body(name: &str) -> Option<Value> {
+    match name {
+        "simulation" => Some(json!({"contact": ball(), "path": {"force": [1.0]}})),
+        "ball" => Some(ball()),
+        "move" => Some(json!({"displacement": 1e-8})),
+        "path" => Some(json!({"path": {"displacement": [1e-8, 0.0]}})),
+        _ => None,
+    }
+}
+
+/// A server with a file of keys.
+struct Guarded {
+    process: Process,
+    http: reqwest::Client,
+    keys: Vec<(&'static str, String)>,
+    _folder: TempDir,
+}
+
+impl Guarded {
+    /// Each key has a name by which it is called, its roles and its tenant.
+    async fn start(store: &str, more: &[&str], keys: &[(&'static str, &[Role], &str)]) -> Guarded {
+        let folder = tempdir().unwrap();
+        let made = keys.iter().map(|(name, roles, tenant)| (*name, new_key(name, roles, tenant).unwrap()));
+        let made: Vec<_> = made.collect();
+        let file = folder.path().join("keys");
+        let entries: Vec<&str> = made.iter().map(|(_, new)| new.entry.as_str()).collect();
+        std::fs::write(&file, format!("# for the test\n{}\n", entries.join("\n"))).unwrap();
+        let log = folder.path().join("log");
+        let arguments = ["--store", store, "--keys", file.to_str().unwrap()];
+        let process = Process::start_with(&[&arguments, more].concat(), &log).await;
+        let keys = made.into_iter().map(|(name, new)| (name, new.key)).collect();
+        Guarded { process, http: reqwest::Client::new(), keys, _folder: folder }
+    }
+
+    fn key(&self, name: &str) -> &str {
+        &self.keys.iter().find(|(known, _)| *known == name).unwrap().1
+    }
+
+    async fn send(
+        &self,
+        who: Option<&str>,
+        method: &str,
+        path: &str,
+        body: Option<&Value>,
+        headers: &[(&str, &str)],
+    ) -> Response {
+        let method: Method = method.parse().unwrap();
+        let mut call = self.http.request(method, format!("{}{path}", self.process.base));
+        if let Some(who) = who {
+            call = call.header("authorization", format!("Bearer {}", self.key(who)));
+        }
+        for (name, value) in headers {
+            call = call.header(*name, *value);
+        }
+        match body {
+            Some(body) => call.json(body).send().await.unwrap(),
+            None => call.send().await.unwrap(),
+        }
+    }
+
+    async fn contact(&self, who: &str) -> Uuid {
+        let client = self.process.client.clone().with_key(self.key(who));
+        client.create(&common::create(), &Options::default()).await.unwrap().id
+    }
+}
+
+fn operations() -> BTreeSet<(String, String)> {
+    let document: Value = serde_json::from_str(stickslip::api::document()).unwrap();
+    let paths = document["paths"].as_object().unwrap().clone();
+    let methods = |item: &Value| item.as_object().unwrap().keys().map(|name| name.to_uppercase()).collect::<Vec<_>>();
+    paths.iter().flat_map(|(path, item)| methods(item).into_iter().map(|method| (method, path.clone()))).collect()
+}
+
+#[tokio::test]
+async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
+    let described = operations();
+    for (method, path) in &described {
+        let listed = ENDPOINTS.iter().any(|(other, at, ..)| other == method && at == path);
+        assert!(listed, "{method} {path} is not in the table of this test");
+    }
+    let keys: [(&'static str, &[Role], &str); 4] = [
+        ("write", &[Role::Write], "lab"),
+        ("read", &[Role::Read], "lab"),
+        ("metrics", &[Role::Metrics], "lab"),
+        ("both", &[Role::Read, Role::Metrics], "lab"),
+    ];
+    let server = Guarded::start("memory:", &[], &keys).await;
+    let mut tried = 0;
+    for (method, route, body_name, success, allowed) in ENDPOINTS {
+        let known = described.contains(&(method.to_owned(), route.to_owned()));
+        if !known && route == "/metrics" {
+            continue;
+        }
+        for who in [None, Some("write"), Some("read"), Some("metrics"), Some("both")] {
+            let roles: &[&str] = match who {
+                None => &[],
+                Some("both") => &["read", "metrics"],
+                Some(_) => std::slice::from_ref(who.as_ref().unwrap()),
+            };
+            let path = route.replace("{id}", &server.contact("write").await.to_string()).replace("{code}", "forbidden");
+            let path = path.replace("/stress", "/stress?points=3");
+            let response = server.send(who, method, &path, body(body_name).as_ref(), &[]).await;
+            let expected = match who {
+                _ if allowed.is_empty() || roles.iter().any(|role| allowed.contains(role)) => success,
+                None => 401,
+                Some(_) => 403,
+            };
+            assert_eq!(response.status().as_u16(), expected, "{who:?} {method} {path}");
+            tried += 1;
+            if expected == 401 {
+                assert_eq!(response.headers()["www-authenticate"], "Bearer");
+                assert_eq!(problem(response).await.code, "unauthorized");
+            } else if expected == 403 {
+                assert!(!response.headers().contains_key("www-authenticate"));
+                assert_eq!(problem(response).await.code, "forbidden");
+            }
+        }
+        // HEAD is as GET.
+        if method == "GET" && allowed == ["read", "write"] {
+            let path = route.replace("{id}", &server.contact("write").await.to_string());
+            let path = path.replace("/stress", "/stress?points=3");
+            for (who, expected) in [(None, 401), (Some("metrics"), 403), (Some("read"), 200)] {
+                assert_eq!(server.send(who, "HEAD", &path, None, &[]).await.status().as_u16(), expected, "{path}");
+            }
+        }
+    }
+    assert!(tried >= 5 * 16);
+    // What nobody has thought of is for the highest role.
+    for (method, path) in [("GET", "/nothing"), ("PUT", "/contacts"), ("GET", "/contacts/"), ("GET", "//contacts")] {
+        for (who, expected) in [(None, vec![401]), (Some("read"), vec![403]), (Some("write"), vec![404, 405])] {
+            let status = server.send(who, method, path, None, &[]).await.status().as_u16();
+            assert!(expected.contains(&status), "{who:?} {method} {path}: {status}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_key_counts_only_whole_and_once_and_as_a_bearer() {
+    let server = Guarded::start("memory:", &[], &[("a", &[Role::Write], ""), ("b", &[Role::Read], "")]).await;
+    let (a, b) = (server.key("a"), server.key("b"));
+    let hash = |key: &str| {
+        use sha2::{Digest as _, Sha256};
+        Sha256::digest(key).iter().map(|byte| format!("{byte:02x}")).collect::<String>()
+    };
+    let send = async |values: &[String]| {
+        let mut call = server.http.get(format!("{}/contacts", server.process.base));
+        for value in values {
+            call = call.header("authorization", value);
+        }
+        call.send().await.unwrap().status().as_u16()
+    };
+    for good in [format!("Bearer {a}"), format!("bearer {b}"), format!("BEARER   {a}  ")] {
+        assert_eq!(send(std::slice::from_ref(&good)).await, 200, "{good}");
+    }
+    for bad in [
+        a.to_owned(),
+        format!("Basic {a}"),
+        "Bearer".to_owned(),
+        "Bearer ".to_owned(),
+        format!("Bearer{a}"),
+        format!("Bearer {}", &a[1..]),
+        format!("Bearer {}", &a[..a.len() - 1]),
+        format!("Bearer {a}0"),
+        format!("Bearer {}", a.to_uppercase()),
+        format!("Bearer {a} {b}"),
+        format!("Bearer {a},{b}"),
+        format!("Bearer {}", hash(a)),
+        format!("Bearer {}", "x".repeat(5_000)),
+    ] {
+        assert_eq!(send(std::slice::from_ref(&bad)).await, 401, "{bad}");
+    }
+    assert_eq!(send(&[format!("Bearer {a}"), format!("Bearer {a}")]).await, 401);
+    let elsewhere = server.http.get(format!("{}/contacts?key={a}&access_token={a}", server.process.base));
+    assert_eq!(elsewhere.header("x-api-key", a).send().await.unwrap().status().as_u16(), 401);
+}
+
+/// All that can be told from a reply, but for what is new in each.
+async fn seen(response: Response, id: Uuid) -> (u16, Vec<(String, String)>, String) {
+    let status = response.status().as_u16();
+    let request_id = response.headers()["x-request-id"].to_str().unwrap().to_owned();
+    let mut headers: Vec<(String, String)> = response
+        .headers()
+        .iter()
+        .filter(|(name, _)| !["x-request-id", "date"].contains(&name.as_str()))
+        .map(|(name, value)| (name.to_string(), value.to_str().unwrap().to_owned()))
+        .collect();
+    headers.sort();
+    let text = response.text().await.unwrap();
+    (status, headers, text.replace(&request_id, "REQUEST").replace(&id.to_string(), "ID"))
+}
+
+/// Method, route, body and headers.
+type Attempt = (&'static str, &'static str, Option<Value>, Vec<(&'static str, &'static str)>);
+
+/// Requests about a session, good and bad.
+fn attempts() -> Vec<Attempt> {
+    let mut all = Vec::new();
+    for (method, route, body_name, ..) in ENDPOINTS.into_iter().filter(|(_, route, ..)| route.contains("{id}")) {
+        all.push((method, route, body(body_name), vec![]));
+        all.push((method, route, body(body_name), vec![("if-match", "\"0\"")]));
+        all.push((method, route, body(body_name), vec![("if-match", "\"9\"")]));
+        all.push((method, route, body(body_name), vec![("if-match", "nonsense")]));
+        all.push((method, route, body(body_name), vec![("idempotency-key", "once")]));
+        all.push((method, route, body(body_name), vec![("last-event-id", "0")]));
+        all.push((method, route, body(body_name), vec![("last-event-id", "7")]));
+        all.push((method, route, Some(json!({"nonsense": 1})), vec![]));
+        all.push((method, route, Some(json!({"force": 1e6})), vec![]));
+    }
+    all
+}
+
+#[tokio::test]
+async fn what_belongs_to_another_tenant_does_not_exist() {
+    let folder = tempdir().unwrap();
+    let file = folder.path().join("tenants.db").to_str().unwrap().to_owned();
+    let keys: [(&'static str, &[Role], &str); 4] = [
+        ("north", &[Role::Write], "north"),
+        ("reader", &[Role::Read], "north"),
+        ("south", &[Role::Write], "south"),
+        ("nameless", &[Role::Write], ""),
+    ];
+    // With states at hand, and with none.
+    for (store, cache) in
+        [("memory:".to_owned(), "1MiB"), (format!("sqlite:{file}"), "1MiB"), (format!("sqlite:{file}"), "0")]
+    {
+        let server = Guarded::start(&store, &["--cache-bytes", cache], &keys).await;
+        let client = |who: &str| server.process.client.clone().with_key(server.key(who));
+        let (id, nobody) = (server.contact("north").await, Uuid::now_v7());
+        let options = Options { idempotency_key: Some(format!("first-{cache}")), ..Options::default() };
+        client("north").apply(id, &stickslip::wire::Move::displacement(1e-8).into(), &options).await.unwrap();
+        let before = client("reader").contact(id).await.unwrap();
+        for who in ["south", "nameless"] {
+            for (method, route, body, headers) in attempts() {
+                let about = async |id: Uuid| {
+                    let path = route.replace("{id}", &id.to_string()).replace("/stress", "/stress?points=3");
+                    seen(server.send(Some(who), method, &path, body.as_ref(), &headers).await, id).await
+                };
+                let (theirs, missing) = (about(id).await, about(nobody).await);
+                assert_eq!(theirs, missing, "{who} {method} {route} {body:?} {headers:?}");
+                assert!(matches!(theirs.0, 404 | 422), "{who} {method} {route} {body:?} {headers:?}: {theirs:?}");
+            }
+            assert!(client(who).contacts(None, None).await.unwrap().items.iter().all(|item| item.id != id));
+            // The key of a request is the tenant's own: nothing is owed for that of another.
+            let retry = client(who).apply(id, &stickslip::wire::Move::displacement(1e-8).into(), &options).await;
+            assert_eq!(retry.unwrap_err().problem().unwrap().status, 404);
+        }
+        assert_eq!(format!("{:?}", client("reader").contact(id).await.unwrap()), format!("{before:?}"));
+        assert_eq!(client("north").history(id, None, None).await.unwrap().items.len(), 1);
+        // The same key of a request makes one contact for each tenant.
+        let options = Options { idempotency_key: Some(format!("made-{cache}")), ..Options::default() };
+        let mut made = BTreeSet::new();
+        for who in ["north", "south", "nameless", "north", "south", "nameless"] {
+            made.insert(client(who).create(&common::create(), &options).await.unwrap().id);
+        }
+        assert_eq!(made.len(), 3);
+        let listed = client("reader").contacts(None, None).await.unwrap().items;
+        assert_eq!(listed.iter().filter(|item| made.contains(&item.id)).count(), 1);
+        // A fork stays in the family.
+        let fork = client("north").fork(id, &Default::default(), &Options::default()).await.unwrap().id;
+        client("reader").contact(fork).await.unwrap();
+        assert_eq!(client("south").contact(fork).await.unwrap_err().problem().unwrap().status, 404);
+        server.process.stop().await;
+    }
+    without_keys_the_nameless_tenant_is_served(&file).await;
+}
+
+/// A server without keys shows what belongs to nobody, and nothing else.
+async fn without_keys_the_nameless_tenant_is_served(file: &str) {
+    let log = PathBuf::from(format!("{file}.log"));
+    let open = Process::start_with(&["--store", &format!("sqlite:{file}")], Path::new(&log)).await;
+    let listed = open.client.contacts(None, None).await.unwrap().items;
+    assert_eq!(listed.len(), 2, "one of each round");
+    let database = rusqlite::Connection::open(file).unwrap();
+    let all: i64 = database.query_row("SELECT count(*) FROM sessions", [], |row| row.get(0)).unwrap();
+    let theirs: String =
+        database.query_row("SELECT id FROM sessions WHERE tenant = 'north' LIMIT 1", [], |row| row.get(0)).unwrap();
+    assert_eq!(all, 10);
+    let refused = open.client.contact(theirs.parse().unwrap()).await.unwrap_err();
+    assert_eq!(refused.problem().unwrap().status, 404);
+    open.stop().await;
+}
+
+#[tokio::test]
+async fn that_a_contact_has_expired_is_told_to_its_tenant_alone() {
+    let keys: [(&'static str, &[Role], &str); 2] =
+        [("north", &[Role::Write], "north"), ("south", &[Role::Read], "south")];
+    let server = Guarded::start("memory:", &["--expire-after", "1s"], &keys).await;
+    let id = server.contact("north").await;
+    let get =
+        async |who: &str| server.send(Some(who), "GET", &format!("/contacts/{id}"), None, &[]).await.status().as_u16();
+    let expired = async {
+        while get("north").await != 410 {
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
+    };
+    tokio::time::timeout(Duration::from_secs(30), expired).await.expect("it did not expire");
+    assert_eq!(get("south").await, 404);
+    let history = server.send(Some("south"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;
+    assert_eq!(history.status().as_u16(), 404);
+}

@@ -1,0 +1,307 @@
+//! What a service shows to the world: where it listens, what browsers may do with it, and that it keeps its secrets.
+
+mod common;
+
+use std::process::Command;
+
+use common::process::{Process, ended};
+use common::{ball, clean};
+use reqwest::header::HeaderMap;
+use serde_json::Value;
+use stickslip::access::{Role, new_key};
+use stickslip::client::Client;
+use tempfile::tempdir;
+
+fn binary(arguments: &[&str]) -> Command {
+    let mut command = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")));
+    command.args(arguments);
+    command
+}
+
+/// The one line with which it ends, having served nobody.
+fn refused(command: &mut Command) -> String {
+    let output = ended(command);
+    let said = String::from_utf8(output.stderr).unwrap();
+    let ended = (output.status.code(), output.stdout.len(), said.lines().count());
+    assert_eq!(ended, (Some(1), 0, 1), "{command:?} {said}");
+    said
+}
+
+#[tokio::test]
+async fn without_keys_nobody_else_is_listened_to_unless_that_is_wanted() {
+    let folder = tempdir().unwrap();
+    let log = folder.path().join("log");
+    let settings = folder.path().join("settings.toml");
+    std::fs::write(&settings, "listen = '0.0.0.0:0'\nstore = 'memory:'\n").unwrap();
+    for address in ["0.0.0.0:0", "[::]:0", "192.0.2.1:8080", "[2001:db8::1]:80", "[::ffff:192.0.2.1]:80"] {
+        let said = refused(&mut binary(&["--store", "memory:", "--listen", address]));
+        assert!(said.contains(address) && said.contains("--keys") && said.contains("--insecure"), "{said}");
+        let said = refused(binary(&["serve", "--store", "memory:"]).env("STICKSLIP_LISTEN", address));
+        assert!(said.contains(address), "{said}");
+    }
+    refused(&mut binary(&["--config", settings.to_str().unwrap()]));
+    refused(&mut binary(&["--config", settings.to_str().unwrap(), "--insecure=false"]));
+    // Keys that are not there are no reason to open up.
+    let empty = folder.path().join("empty");
+    std::fs::write(&empty, "# nobody yet\n").unwrap();
+    for keys in ["", empty.to_str().unwrap(), "/nowhere", "a:read::sha256:00"] {
+        for listen in ["127.0.0.1:0", "0.0.0.0:0"] {
+            let said =
+                refused(binary(&["--store", "memory:", "--listen", listen, "--insecure"]).env("STICKSLIP_KEYS", keys));
+            assert!(said.starts_with("--keys"), "{said}");
+        }
+    }
+    let entry = new_key("a", &[Role::Read], "").unwrap().entry;
+    std::fs::write(&empty, &entry).unwrap();
+    std::fs::write(&settings, "listen = '0.0.0.0:0'\nstore = 'memory:'\ninsecure = true\n").unwrap();
+    let everywhere = ["--listen", "0.0.0.0:0", "--store", "memory:"];
+    let with = |more: &[&str]| {
+        let mut command = binary(&everywhere);
+        command.args(more).stderr(std::fs::File::create(&log).unwrap());
+        command
+    };
+    let mut by_environment = with(&[]);
+    by_environment.env("STICKSLIP_INSECURE", "true");
+    let mut keys_in_environment = with(&[]);
+    keys_in_environment.env("STICKSLIP_KEYS", &entry);
+    for command in [
+        with(&["--insecure"]),
+        by_environment,
+        with(&["--config", settings.to_str().unwrap()]),
+        with(&["--keys", empty.to_str().unwrap()]),
+        keys_in_environment,
+    ] {
+        let process = Process::of(command).await;
+        let client = Client::new(process.base.replace("0.0.0.0", "127.0.0.1"));
+        client.healthz().await.unwrap();
+        let address = process.base.trim_start_matches("http://").to_owned();
+        let check = tokio::task::spawn_blocking(move || binary(&["healthcheck", "--listen", &address]).status());
+        assert!(check.await.unwrap().unwrap().success());
+        process.stop().await;
+    }
+}
+
+fn header<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
+    headers.get(name).map(|value| value.to_str().unwrap())
+}
+
+#[tokio::test]
+async fn every_reply_says_what_browsers_must_not_do_with_it() {
+    let folder = tempdir().unwrap();
+    let entry = new_key("a", &[Role::Read], "").unwrap().entry;
+    let log = folder.path().join("log");
+    let server = Process::start_with(&["--store", "memory:", "--keys", &entry], &log).await;
+    let http = reqwest::Client::builder().redirect(reqwest::redirect::Policy::none()).build().unwrap();
+    for (path, page, status) in [
+        ("/healthz", false, 200),
+        ("/openapi.json", false, 200),
+        ("/contacts", false, 401),
+        ("/nothing", false, 401),
+        ("/docs", true, 303),
+        ("/docs/", true, 200),
+        ("/docs/swagger-ui-bundle.js", true, 200),
+        ("/docs/nothing", true, 404),
+    ] {
+        let response = http.get(format!("{}{path}", server.base)).send().await.unwrap();
+        let headers = response.headers();
+        assert_eq!(response.status().as_u16(), status, "{path}");
+        assert_eq!(header(headers, "x-content-type-options"), Some("nosniff"), "{path}");
+        assert_eq!(header(headers, "x-frame-options"), Some("DENY"), "{path}");
+        assert_eq!(header(headers, "referrer-policy"), Some("no-referrer"), "{path}");
+        assert_eq!(header(headers, "cross-origin-resource-policy"), Some("same-origin"), "{path}");
+        assert_eq!(header(headers, "cache-control"), (!page).then_some("no-store"), "{path}");
+        let policy = header(headers, "content-security-policy").unwrap();
+        assert!(policy.starts_with("default-src 'none';") && policy.contains("frame-ancestors 'none'"), "{policy}");
+        assert_eq!(policy.contains("script-src 'self';"), page, "{path}");
+        assert!(!policy.contains("unsafe-eval") && !policy.contains("script-src 'self' 'unsafe-inline'"));
+        // No origin is let in that nobody has named.
+        assert!(headers.keys().all(|name| !name.as_str().starts_with("access-control")), "{path}");
+    }
+    // The page needs no more than its policy allows: no script stands in it.
+    let page = http.get(format!("{}/docs/", server.base)).send().await.unwrap().text().await.unwrap();
+    for script in page.split("<script").skip(1) {
+        assert!(script.trim_start().starts_with("src=\"./"), "{script}");
+    }
+    assert!(!page.contains("onload=") && !page.contains("http://") && !page.contains("https://"), "{page}");
+}
+
+#[tokio::test]
+async fn a_page_of_a_named_origin_may_do_what_its_key_allows_and_others_nothing() {
+    let folder = tempdir().unwrap();
+    let log = folder.path().join("log");
+    let new = new_key("page", &[Role::Write], "").unwrap();
+    let origins = "https://lab.example,http://localhost:3000";
+    let arguments = ["--store", "memory:", "--keys", &new.entry, "--cors-origins", origins];
+    let server = Process::start_with(&arguments, &log).await;
+    let http = reqwest::Client::new();
+    let url = format!("{}/contacts", server.base);
+    for (origin, allowed) in [
+        ("https://lab.example", true),
+        ("http://localhost:3000", true),
+        ("https://lab.example:444", false),
+        ("http://lab.example", false),
+        ("https://evil.example", false),
+        ("null", false),
+    ] {
+        let expected = allowed.then_some(origin);
+        // A browser asks first, and sends no key along.
+        let asked = http.request(reqwest::Method::OPTIONS, &url).header("origin", origin);
+        let asked = asked.header("access-control-request-method", "POST");
+        let asked =
+            asked.header("access-control-request-headers", "authorization,content-type,idempotency-key,if-match");
+        let answer = asked.send().await.unwrap();
+        assert!(answer.status().is_success(), "{origin}");
+        assert_eq!(header(answer.headers(), "access-control-allow-origin"), expected, "{origin}");
+        let list = |name: &str| header(answer.headers(), name).unwrap_or_default().to_lowercase();
+        for name in ["authorization", "content-type", "idempotency-key", "if-match", "last-event-id", "x-request-id"] {
+            assert!(list("access-control-allow-headers").split(',').any(|allowed| allowed == name), "{name}");
+        }
+        assert_eq!(list("access-control-allow-methods"), "get,post,delete");
+        assert!(!answer.headers().contains_key("access-control-allow-credentials"));
+        // Then it sends the request, and shows the page what it may see.
+        let call = http.post(&url).header("origin", origin).json(&ball());
+        let made = call.header("authorization", format!("Bearer {}", new.key)).send().await.unwrap();
+        assert_eq!(made.status().as_u16(), 201);
+        assert_eq!(header(made.headers(), "access-control-allow-origin"), expected, "{origin}");
+        let exposed = header(made.headers(), "access-control-expose-headers").unwrap().to_lowercase();
+        for name in ["etag", "location", "x-request-id", "retry-after"] {
+            assert!(exposed.split(',').any(|shown| shown == name), "{name}");
+        }
+        // Refusals too can be read by the page.
+        let refused = http.get(&url).header("origin", origin).send().await.unwrap();
+        assert_eq!(refused.status().as_u16(), 401);
+        assert_eq!(header(refused.headers(), "access-control-allow-origin"), expected, "{origin}");
+    }
+    for bad in ["*", "null", "lab.example", "https://lab.example/", "https://a.example,https://*.b.example"] {
+        let output = ended(&mut binary(&["config", "--cors-origins", bad]));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), said.lines().count()), (Some(2), 1), "{said}");
+        assert!(said.contains("--cors-origins") && said.contains("such as https://"), "{said}");
+    }
+}
+
+/// A log holds none of these, in whatever writing.
+fn holds_none(text: &str, secrets: &[&str], place: &str) {
+    for secret in secrets {
+        let found = text.lines().find(|line| line.to_lowercase().contains(&secret.to_lowercase()));
+        assert!(found.is_none(), "{place} shows {secret}: {found:?}");
+    }
+}
+
+fn hash_of(entry: &str) -> &str {
+    entry.rsplit(':').next().unwrap()
+}
+
+#[tokio::test]
+async fn no_secret_is_ever_logged_or_printed() {
+    let folder = tempdir().unwrap();
+    let cluster = common::postgres::Cluster::shared();
+    // The database trusts everybody, so that the password is sent for nothing.
+    let url = cluster.database().await.replace("stickslip@", "stickslip:pass-word-7@");
+    let good = new_key("good", &[Role::Write, Role::Metrics], "lab").unwrap();
+    let weak = new_key("weak", &[Role::Read], "lab").unwrap();
+    let stranger = new_key("stranger", &[Role::Read], "lab").unwrap();
+    let keys = folder.path().join("keys");
+    std::fs::write(&keys, format!("{}\n{}\n", good.entry, weak.entry)).unwrap();
+    let secrets = [
+        "pass-word-7",
+        &good.key["stickslip_".len()..],
+        &weak.key["stickslip_".len()..],
+        &stranger.key["stickslip_".len()..],
+        hash_of(&good.entry),
+        hash_of(&weak.entry),
+    ];
+    for format in ["text", "json"] {
+        let log = folder.path().join(format);
+        let arguments = ["--store", &url, "--keys", keys.to_str().unwrap(), "--log", "trace", "--log-format", format];
+        let server = Process::start_with(&arguments, &log).await;
+        let http = reqwest::Client::new();
+        let mut statuses = Vec::new();
+        for authorization in [
+            format!("Bearer {}", good.key),
+            format!("Bearer {}", weak.key),
+            format!("Bearer {}", stranger.key),
+            format!("Basic {}", good.key),
+            good.key.clone(),
+            format!("Bearer {} {}", good.key, weak.key),
+        ] {
+            let with = |call: reqwest::RequestBuilder| call.header("authorization", authorization.clone());
+            let made = with(http.post(format!("{}/contacts", server.base)).json(&ball())).send().await.unwrap();
+            statuses.push(made.status().as_u16());
+            let made: Value = made.json().await.unwrap();
+            let id = made["id"].as_str().unwrap_or("nobody").to_owned();
+            for path in ["", "/history", "/stress?points=3", "/nothing"] {
+                let url = format!("{}/contacts/{id}{path}", server.base);
+                statuses.push(with(http.get(url)).send().await.unwrap().status().as_u16());
+            }
+            let moved = with(http.post(format!("{}/contacts/{id}/move", server.base)).body("{\"force\": 0.1}"));
+            statuses.push(moved.header("content-type", "application/json").send().await.unwrap().status().as_u16());
+            statuses.push(
+                with(http.delete(format!("{}/contacts/{id}", server.base))).send().await.unwrap().status().into(),
+            );
+        }
+        for expected in [200, 201, 204, 401, 403, 404] {
+            assert!(statuses.contains(&expected), "{statuses:?}");
+        }
+        server.stop().await;
+        let said = std::fs::read_to_string(&log).unwrap();
+        // It did talk: of requests, and of what the libraries below have to tell.
+        assert!(said.contains("TRACE") && said.contains("tokio_postgres") && said.contains("a key was accepted"));
+        holds_none(&said, &secrets, &log.to_string_lossy());
+    }
+    // What is printed of settings, wherever they come from.
+    let inline = format!("{},{}", good.entry, weak.entry);
+    let settings = folder.path().join("settings.toml");
+    std::fs::write(&settings, format!("store = '{url}'\nkeys = ['{}', '{}']\n", good.entry, weak.entry)).unwrap();
+    let mut by_environment = binary(&["config"]);
+    by_environment.envs([("STICKSLIP_STORE", url.as_str()), ("STICKSLIP_KEYS", inline.as_str())]);
+    for mut command in [
+        binary(&["config", "--store", &url, "--keys", &inline]),
+        by_environment,
+        binary(&["config", "--config", settings.to_str().unwrap()]),
+    ] {
+        let output = ended(&mut command);
+        let printed = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(
+            output.status.success()
+                && printed.contains("stickslip:***@")
+                && printed.contains("good:write+metrics:lab:")
+        );
+        holds_none(&printed, &secrets, "config");
+    }
+    // What is said of settings that are wrong.
+    let wrong = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let loud = format!("{url}=loud");
+    let broken = url.replace("127.0.0.1:", "127.0.0.1:x");
+    for arguments in [
+        vec!["--store", &broken],
+        vec!["--store", &url, "--keys", &good.key],
+        vec!["--listen", &good.key],
+        vec!["--listen", &url],
+        vec!["--log-format", &url],
+        vec!["--cache-bytes", &url],
+        vec!["--expire-after", &good.entry],
+        vec!["--log", &loud],
+        vec!["--cors-origins", &url],
+        vec!["--keys", &format!("{}\n{}x", weak.entry, good.entry)],
+        vec!["--keys", &wrong("a", format!("{}\n{}\n", good.entry, good.key))],
+        vec!["--config", &wrong("b", format!("listen = '{url}'"))],
+        vec!["--config", &wrong("c", format!("stores = '{url}'"))],
+        vec!["--config", &wrong("d", format!("store = ['{url}']"))],
+        vec!["--config", &wrong("e", format!("keys = '{}\n", good.entry))],
+        vec!["--config", &wrong("f", format!("keys = {}\n", good.key))],
+    ] {
+        let output = ended(binary(&arguments).current_dir(folder.path()));
+        let printed = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(!output.status.success() && printed.lines().count() == 1, "{arguments:?}: {printed}");
+        holds_none(&printed, &secrets, &format!("{arguments:?}"));
+    }
+    let mut misspelt = binary(&["config"]);
+    let output = ended(misspelt.env("STICKSLIP_STOER", &url).env("STICKSLIP_KEYZ", &good.entry));
+    assert!(!output.status.success());
+    holds_none(&String::from_utf8(output.stderr).unwrap(), &secrets, "a misspelt variable");
+}
