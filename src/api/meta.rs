@@ -2,10 +2,13 @@
 
 use std::any::Any;
 
+use axum::Extension;
 use axum::extract::{Path, State};
 use axum::http::Uri;
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
+
+use crate::simulation::PoolError;
 
 use super::problem::{Kind, Problem};
 use super::{App, reply};
@@ -60,6 +63,11 @@ pub async fn problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Pro
 /// The answer to a path that does not exist.
 pub async fn nothing_here(uri: Uri) -> Problem {
     nothing(&uri)
+}
+
+/// The answer to a request that the server has no room for.
+pub async fn refused(refusal: Option<Extension<PoolError>>) -> Problem {
+    refusal.map_or(PoolError::Busy, |Extension(error)| error).into()
 }
 
 fn nothing(uri: &Uri) -> Problem {

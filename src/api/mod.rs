@@ -1,6 +1,8 @@
 //! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 mod contacts;
+pub mod descriptors;
+pub mod door;
 mod events;
 mod extract;
 pub mod limits;
@@ -23,9 +25,10 @@ use utoipa_swagger_ui::{Config, SwaggerUi};
 use crate::sessions::Sessions;
 use crate::simulation::Pool;
 
+pub use door::{Connections, Door};
 pub use openapi::document;
 pub use problem::Problem;
-pub use serve::serve;
+pub use serve::{serve, serve_through};
 
 /// What the handlers work with. Clones are handles on the same.
 #[derive(Clone)]
@@ -40,11 +43,17 @@ pub struct App {
 pub fn router(app: App) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
-    api.with_state(app)
-        .merge(docs)
-        .fallback(meta::nothing_here)
-        .layer(CatchPanicLayer::custom(meta::panicked))
-        .layer(middleware::from_fn(observe::observe))
+    dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here))
+}
+
+/// The answer to whatever the server has no room for at present.
+fn refusals() -> Router {
+    dressed(Router::new().fallback(meta::refused))
+}
+
+/// What is common to all replies.
+fn dressed(router: Router) -> Router {
+    router.layer(CatchPanicLayer::custom(meta::panicked)).layer(middleware::from_fn(observe::observe))
 }
 
 /// The routes that the OpenAPI document describes.

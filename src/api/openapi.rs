@@ -271,6 +271,7 @@ fn write_refusals(document: &mut Value) {
                 (method == "post", "400", "The body is not JSON"),
                 (path.contains('{'), "404", "There is no such thing"),
                 (path.contains("/{id}"), "410", "The contact was idle for so long that it has expired"),
+                (method == "post", "408", "The body did not arrive in time"),
                 (changes_contact, "409", "The state of the contact forbids this"),
                 (changes_contact, "412", "The contact is not at the sequence given in If-Match"),
                 (method == "post", "413", "The body is too large"),

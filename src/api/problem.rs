@@ -8,6 +8,7 @@
 //! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
+//! - A body that takes too long to arrive: [`Kind::RequestTimeout`].
 //! - Nothing wrong with the request, but no capacity: [`Kind::Overloaded`], with `Retry-After`.
 //! - The storage has no room ([`Kind::StorageFull`]) or cannot be reached ([`Kind::StorageUnavailable`]): not the client's
 //!   fault, and not this program's. Nothing has been acknowledged, and a retry is welcome.
@@ -46,6 +47,8 @@ pub enum Kind {
     Conflict,
     /// The session is not at the sequence given in `If-Match`.
     StaleSequence,
+    /// The body did not arrive in time.
+    RequestTimeout,
     /// The body is too large.
     TooLarge,
     /// The body is not declared as JSON.
@@ -76,7 +79,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 20] = [
+    pub const ALL: [Kind; 21] = [
         Kind::NotJson,
         Kind::NotFound,
         Kind::ContactNotFound,
@@ -84,6 +87,7 @@ impl Kind {
         Kind::MethodNotAllowed,
         Kind::Conflict,
         Kind::StaleSequence,
+        Kind::RequestTimeout,
         Kind::TooLarge,
         Kind::UnsupportedMediaType,
         Kind::InvalidInput,
@@ -112,6 +116,9 @@ impl Kind {
             }
             Kind::Conflict => (StatusCode::CONFLICT, "conflict", "The state of the contact forbids this"),
             Kind::StaleSequence => (StatusCode::PRECONDITION_FAILED, "stale_sequence", "The contact has moved on"),
+            Kind::RequestTimeout => {
+                (StatusCode::REQUEST_TIMEOUT, "request_timeout", "The request did not arrive in time")
+            }
             Kind::TooLarge => (StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The body is too large"),
             Kind::UnsupportedMediaType => {
                 (StatusCode::UNSUPPORTED_MEDIA_TYPE, "unsupported_media_type", "The body must be application/json")
@@ -254,7 +261,7 @@ impl From<Failure> for Problem {
                 Problem::at(kind, pointer, error.to_string())
             }
             Failure::MemoryFull { pointer, .. } => Problem::at(Kind::Conflict, pointer, detail),
-            Failure::TooLong { pointer } => Problem::at(Kind::TooMuchWork, pointer, detail),
+            Failure::TooLong { pointer, .. } => Problem::at(Kind::TooMuchWork, pointer, detail),
             Failure::Stopped => Problem::new(Kind::Overloaded, detail),
         }
     }
@@ -263,7 +270,7 @@ impl From<Failure> for Problem {
 impl From<PoolError> for Problem {
     fn from(error: PoolError) -> Self {
         match error {
-            PoolError::Busy => Problem::new(Kind::Overloaded, error.to_string()),
+            PoolError::Busy | PoolError::QueueFull => Problem::new(Kind::Overloaded, error.to_string()),
             PoolError::Panicked => Problem::internal(error.to_string()),
         }
     }

@@ -44,8 +44,8 @@ impl Sessions {
             return Ok(reply);
         }
         // Whoever hangs up in the queue has left it.
-        let guard = self.cache.lock(id).await;
-        let (stop, _raised_at_the_end) = Stop::guarded();
+        let guard = self.lock(id).await?;
+        let (stop, _raised_at_the_end) = self.pool.deadline();
         let sessions = self.clone();
         let task =
             tokio::spawn(async move { sessions.advance_locked(advance.into(), expected, key, guard, stop).await });
@@ -121,6 +121,9 @@ impl Sessions {
             && advance.stress.is_none()
             && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
             && guard.live.as_ref().is_some_and(|live| !live.shared);
+        // A copy can be large, and as many requests are under way as may be.
+        let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
+        let _held = self.pool.reserve(copied).await?;
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());

@@ -11,6 +11,8 @@ use hashlink::LruCache;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
+use crate::simulation::Reservation;
+
 use super::live::Live;
 
 /// How many bytes of states are kept at hand by default.
@@ -42,6 +44,8 @@ struct States {
 pub(super) struct Guard {
     /// The state, if it is at hand: that after some move that is stored, though perhaps not the last.
     pub(super) live: Option<Live>,
+    /// The memory of a state that did not come out of the cache.
+    pub(super) held: Reservation,
     // Declared, and so released, before the desk is left: whoever comes in between finds the desk and waits at it.
     _lock: OwnedMutexGuard<()>,
     place: Place,
@@ -64,7 +68,7 @@ impl Cache {
     pub(super) async fn lock(self: &Arc<Self>, id: Uuid) -> Guard {
         let (lock, place) = self.enter(id);
         let lock = lock.lock_owned().await;
-        Guard { live: self.take(id), _lock: lock, place }
+        Guard { live: self.take(id), held: Reservation::default(), _lock: lock, place }
     }
 
     /// Bytes of the states at hand, and how many they are.
