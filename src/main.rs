@@ -12,7 +12,7 @@ use bytesize::ByteSize;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::api::descriptors::room_for;
 use stickslip::api::door::MOST;
-use stickslip::api::{self, App, Connections, Door, Problem};
+use stickslip::api::{self, App, Connections, Door, Problem, bound};
 use stickslip::client::Client;
 use stickslip::sessions::{self, Sessions};
 use stickslip::simulation::{self, Capacity, Pool, Stop};
@@ -114,7 +114,7 @@ struct Overload {
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
     max_wait: Duration,
     /// Bytes of memory for large bodies, their work and their replies, all together.
-    #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(simulation::BYTES as u64))]
+    #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(simulation::BYTES as u64), value_parser = work_bytes)]
     work_bytes: ByteSize,
     /// How long the solver works for one request before it is stopped.
     #[arg(long, env = "STICKSLIP_DEADLINE", default_value = "60s", value_parser = duration)]
@@ -250,6 +250,11 @@ fn duration(text: &str) -> Result<Duration, String> {
     if (least..=most).contains(&time) { Ok(time) } else { Err(format!("{least:?} to {most:?} are allowed")) }
 }
 
+fn work_bytes(text: &str) -> Result<ByteSize, String> {
+    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(simulation::LARGEST as u64));
+    if size < least { Err(format!("at least {least}: one request can take as much")) } else { Ok(size) }
+}
+
 fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(0) => Err("at least 1".to_owned()),
@@ -279,6 +284,8 @@ async fn listen(options: &Serve, store: Arc<dyn Store>) -> Result<(), String> {
     };
     let pool = Pool::new(options.overload.capacity());
     let door = Door::new(options.overload.connections());
+    let bytes = bound::memory(door.limits(), pool.capacity(), options.cache_bytes.as_u64());
+    tracing::info!(bytes, "memory stays below this bound");
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let sessions = Sessions::new(store, pool.clone(), capacity);
     tokio::spawn(sessions.clone().keep_house(options.expire_after));

@@ -29,8 +29,10 @@ pub const GRACE: Duration = Duration::from_secs(3);
 pub const KEEP_ALIVE: Duration = Duration::from_secs(15);
 /// Bytes of the head of a request: its first line and its headers.
 pub const HEAD: usize = 32 * 1024;
+/// Bytes that a connection reads ahead, and as many that it has to write.
+pub const BUFFER: usize = 40 * 1024;
 /// Bytes of a reply that are handed on at a time.
-pub const PIECE: usize = 64 * 1024;
+pub const PIECE: usize = 16 * 1024;
 /// Connections beyond all others, for a short time each: to be asked whether the server is well, and to refuse the rest
 /// with a document rather than a closed door.
 pub const SPARE_CONNECTIONS: usize = 128;

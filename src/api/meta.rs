@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::simulation::PoolError;
 
+use super::door::Refusal;
 use super::problem::{Kind, Problem};
 use super::{App, reply};
 
@@ -65,9 +66,13 @@ pub async fn nothing_here(uri: Uri) -> Problem {
     nothing(&uri)
 }
 
-/// The answer to a request that the server has no room for.
-pub async fn refused(refusal: Option<Extension<PoolError>>) -> Problem {
-    refusal.map_or(PoolError::Busy, |Extension(error)| error).into()
+/// The answer to a request that does not come as far as a handler.
+pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
+    match refusal {
+        Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Kind::AmbiguousRequest, why),
+        Some(Extension(Refusal::Full(error))) => error.into(),
+        None => PoolError::Busy.into(),
+    }
 }
 
 fn nothing(uri: &Uri) -> Problem {

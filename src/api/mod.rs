@@ -1,5 +1,6 @@
 //! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
+pub mod bound;
 mod contacts;
 pub mod descriptors;
 pub mod door;
@@ -46,7 +47,7 @@ pub fn router(app: App) -> Router {
     dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here))
 }
 
-/// The answer to whatever the server has no room for at present.
+/// The answer to requests that do not come as far as [`router`].
 fn refusals() -> Router {
     dressed(Router::new().fallback(meta::refused))
 }

@@ -8,6 +8,7 @@
 //! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
+//! - A head that a proxy might read in another way than this server: [`Kind::AmbiguousRequest`].
 //! - A body that takes too long to arrive: [`Kind::RequestTimeout`].
 //! - Nothing wrong with the request, but no capacity: [`Kind::Overloaded`], with `Retry-After`.
 //! - The storage has no room ([`Kind::StorageFull`]) or cannot be reached ([`Kind::StorageUnavailable`]): not the client's
@@ -33,6 +34,8 @@ pub const MEDIA_TYPE: &str = "application/problem+json";
 /// The kinds of problems, each with its status and code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
+    /// The head of the request can be read in more than one way.
+    AmbiguousRequest,
     /// The body is not JSON.
     NotJson,
     /// No such path.
@@ -79,7 +82,8 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 21] = [
+    pub const ALL: [Kind; 22] = [
+        Kind::AmbiguousRequest,
         Kind::NotJson,
         Kind::NotFound,
         Kind::ContactNotFound,
@@ -107,6 +111,9 @@ impl Kind {
     #[must_use]
     pub fn parts(self) -> (StatusCode, &'static str, &'static str) {
         match self {
+            Kind::AmbiguousRequest => {
+                (StatusCode::BAD_REQUEST, "ambiguous_request", "The head of the request is ambiguous")
+            }
             Kind::NotJson => (StatusCode::BAD_REQUEST, "not_json", "The body is not JSON"),
             Kind::NotFound => (StatusCode::NOT_FOUND, "not_found", "There is nothing at this path"),
             Kind::ContactNotFound => (StatusCode::NOT_FOUND, "contact_not_found", "There is no such contact"),

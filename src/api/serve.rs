@@ -15,7 +15,7 @@ use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::door::{Connections, Door, Entry, Figures, Seat, Service, Socket};
-use super::limits::{GRACE, HEAD, PIECE, SPARE_TIME};
+use super::limits::{BUFFER, GRACE, HEAD, SPARE_TIME};
 use super::{App, refusals, router};
 
 /// How long accepting rests after a failure: most often there are too many open files.
@@ -44,7 +44,8 @@ pub async fn serve_through(
 ) -> io::Result<()> {
     let sessions = app.sessions.clone();
     let body_time = door.limits().body;
-    let service = Service { pool: app.pool.clone(), router: router(app), refusals: refusals(), body_time };
+    let (pool, router) = (app.pool.clone(), router(app));
+    let service = Arc::new(Service { pool, router, refusals: refusals(), body_time });
     // Every connection holds a receiver, and is told by it, and counted.
     let (closing, _) = watch::channel(());
     let mut stop = pin!(stop);
@@ -90,7 +91,7 @@ fn is_of_the_client(error: &io::Error) -> bool {
     matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset)
 }
 
-fn receive(door: &Door, stream: TcpStream, address: SocketAddr, service: &Service, closing: &watch::Sender<()>) {
+fn receive(door: &Door, stream: TcpStream, address: SocketAddr, service: &Arc<Service>, closing: &watch::Sender<()>) {
     let seat = match door.knock(address.ip()) {
         Entry::Seat(seat) | Entry::Spare(seat) => seat,
         // Closed at once.
@@ -103,7 +104,7 @@ fn receive(door: &Door, stream: TcpStream, address: SocketAddr, service: &Servic
     let limits = *door.limits();
     let limits = if seat.is_spare() { Connections { head: SPARE_TIME, ..limits } } else { limits };
     let number = seat.number();
-    let task = tokio::spawn(attend(stream, seat, limits, service.clone(), closing.subscribe()));
+    let task = tokio::spawn(attend(stream, seat, limits, Arc::clone(service), closing.subscribe()));
     door.started(number, task.abort_handle());
 }
 
@@ -112,14 +113,14 @@ async fn attend(
     stream: TcpStream,
     seat: Seat,
     limits: Connections,
-    service: Service,
+    service: Arc<Service>,
     mut closing: watch::Receiver<()>,
 ) {
     let (activity, spare) = (Arc::clone(&seat.activity), seat.is_spare());
     let stream = TokioIo::new(Socket::new(stream, Arc::clone(&activity)));
-    let answer = service_fn(|request| service.clone().serve(Arc::clone(&activity), spare, request));
+    let answer = service_fn(|request| Arc::clone(&service).serve(Arc::clone(&activity), spare, request));
     let mut http = http1::Builder::new();
-    http.keep_alive(!spare).max_header_size(HEAD).max_buf_size(PIECE);
+    http.keep_alive(!spare).max_header_size(HEAD).max_buf_size(BUFFER);
     let mut connection = pin!(http.serve_connection(stream, answer));
     let mut alarm = pin!(sleep(limits.head));
     let mut told = false;

@@ -20,6 +20,8 @@ use super::{LONGEST_WORK, Stop, StopOnDrop};
 pub const LONGEST_WAIT: Duration = Duration::from_secs(10);
 /// Bytes of bodies, work and replies that are held at a time unless told otherwise.
 pub const BYTES: usize = 512 * 1024 * 1024;
+/// Bytes that one request takes at the most, whatever it asks for: measured, with room to spare.
+pub const LARGEST: usize = 256 * 1024 * 1024;
 /// Requests that are worked on at a time unless told otherwise.
 pub const REQUESTS: usize = 512;
 /// Requests that wait at a time unless told otherwise.
@@ -51,20 +53,16 @@ impl Default for Capacity {
     /// As many threads as the machine has cores, so that solvers do not crowd out each other or the server.
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        Capacity {
-            threads,
-            requests: REQUESTS,
-            queue: QUEUE,
-            wait: LONGEST_WAIT,
-            deadline: LONGEST_WORK,
-            bytes: BYTES,
-        }
+        Capacity { threads, requests: REQUESTS, queue: QUEUE, wait: LONGEST_WAIT, deadline: LONGEST_WORK, bytes: BYTES }
     }
 }
 
 /// The one place that gives it. Clones are handles on the same.
 #[derive(Clone, Debug)]
-pub struct Pool {
+pub struct Pool(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
     capacity: Capacity,
     threads: Arc<Semaphore>,
     places: Arc<Semaphore>,
@@ -120,13 +118,13 @@ impl Pool {
     #[must_use]
     pub fn new(capacity: Capacity) -> Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
-        Pool {
+        Pool(Arc::new(Shared {
             capacity,
             threads: semaphore(capacity.threads),
             places: semaphore(capacity.requests),
             units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
             queue: semaphore(capacity.queue),
-        }
+        }))
     }
 
     /// A pool as wide as the machine.
@@ -138,7 +136,7 @@ impl Pool {
     /// What there is to give.
     #[must_use]
     pub fn capacity(&self) -> &Capacity {
-        &self.capacity
+        &self.0.capacity
     }
 
     /// What is taken of it.
@@ -146,17 +144,17 @@ impl Pool {
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
-            threads: taken(self.capacity.threads, &self.threads),
-            requests: taken(self.capacity.requests, &self.places),
-            waiting: taken(self.capacity.queue, &self.queue),
-            bytes: UNIT * taken(self.capacity.bytes / UNIT, &self.units),
+            threads: taken(self.0.capacity.threads, &self.0.threads),
+            requests: taken(self.0.capacity.requests, &self.0.places),
+            waiting: taken(self.0.capacity.queue, &self.0.queue),
+            bytes: UNIT * taken(self.0.capacity.bytes / UNIT, &self.0.units),
         }
     }
 
     /// A flag for work that must be done by the deadline.
     #[must_use]
     pub fn deadline(&self) -> (Stop, StopOnDrop) {
-        Stop::within(self.capacity.deadline)
+        Stop::within(self.0.capacity.deadline)
     }
 
     /// Waits for something, though not for ever, and not in any number.
@@ -168,8 +166,8 @@ impl Pool {
         if let Poll::Ready(granted) = futures::poll!(wish.as_mut()) {
             return Ok(granted);
         }
-        let _place = self.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
-        timeout(self.capacity.wait, wish).await.map_err(|_| PoolError::Busy)
+        let _place = self.0.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
+        timeout(self.0.capacity.wait, wish).await.map_err(|_| PoolError::Busy)
     }
 
     async fn permits(&self, semaphore: &Arc<Semaphore>, number: u32) -> Result<OwnedSemaphorePermit, PoolError> {
@@ -185,10 +183,10 @@ impl Pool {
     /// # Errors
     /// As [`Pool::wait`].
     pub async fn enter(&self) -> Result<Place, PoolError> {
-        self.permits(&self.places, 1).await.map(Place)
+        self.permits(&self.0.places, 1).await.map(Place)
     }
 
-    /// So many bytes; half of all, if it is more than that, so that one request never waits for all others to end.
+    /// So many bytes; [`LARGEST`] or all that there are, if it is more than that.
     ///
     /// # Errors
     /// As [`Pool::wait`].
@@ -207,15 +205,15 @@ impl Pool {
             reservation.0 = None;
             return Ok(());
         }
-        let most = (self.capacity.bytes / UNIT / 2).clamp(1, u32::MAX as usize);
+        let most = (self.0.capacity.bytes.min(LARGEST) / UNIT).clamp(1, u32::MAX as usize);
         let wanted = bytes.div_ceil(UNIT).min(most);
         match &mut reservation.0 {
-            None => reservation.0 = Some(self.permits(&self.units, wanted as u32).await?),
+            None => reservation.0 = Some(self.permits(&self.0.units, wanted as u32).await?),
             Some(permit) if permit.num_permits() >= wanted => {
                 drop(permit.split(permit.num_permits() - wanted));
             }
             Some(permit) => {
-                let more = self.permits(&self.units, (wanted - permit.num_permits()) as u32).await?;
+                let more = self.permits(&self.0.units, (wanted - permit.num_permits()) as u32).await?;
                 permit.merge(more);
             }
         }
@@ -234,7 +232,7 @@ impl Pool {
         if cost < INLINE {
             return Ok(work());
         }
-        let permit = self.permits(&self.threads, 1).await?;
+        let permit = self.permits(&self.0.threads, 1).await?;
         let task = spawn_blocking(move || {
             // The permit stays with the work: a caller that gives up does not free a thread that is still busy.
             let _permit = permit;
@@ -278,9 +276,10 @@ mod tests {
         assert_eq!(pool.resize(&mut first, 60 * UNIT).await.unwrap_err(), PoolError::Busy);
         assert_eq!(pool.taken().bytes, 180 * UNIT);
         drop((first, second, third));
-        let half = pool.reserve(1_000 * UNIT).await.unwrap();
-        assert_eq!(pool.taken().bytes, 100 * UNIT);
-        drop(half);
+        // Whoever asks for more than there is gets all of it, alone.
+        let all = pool.reserve(1_000 * UNIT).await.unwrap();
+        assert_eq!(pool.taken().bytes, 200 * UNIT);
+        drop(all);
         assert_eq!(pool.taken().bytes, 0);
     }
 }

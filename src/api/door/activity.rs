@@ -1,5 +1,6 @@
 //! What a connection is doing, and since when.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -32,13 +33,26 @@ pub struct Activity {
     stalled: AtomicU64,
     /// What it has taken since then all the same.
     taken: AtomicU64,
+    fault: OnceLock<&'static str>,
+}
+
+/// What something that has been read belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heard {
+    /// The beginning of a head.
+    First,
+    /// The rest of it.
+    More,
+    /// A request that is being served already.
+    Body,
 }
 
 impl Activity {
     /// Of a connection that has just been opened.
     pub fn new() -> Activity {
         let state = AtomicU64::new(packed(Phase::Head, 0));
-        Activity { opened: Instant::now(), state, stalled: AtomicU64::new(0), taken: AtomicU64::new(0) }
+        let (stalled, taken) = (AtomicU64::new(0), AtomicU64::new(0));
+        Activity { opened: Instant::now(), state, stalled, taken, fault: OnceLock::new() }
     }
 
     fn now(&self) -> u64 {
@@ -49,14 +63,30 @@ impl Activity {
         unpacked(self.state.load(Ordering::Relaxed))
     }
 
-    /// Something has been read.
-    pub fn heard(&self) {
+    /// Something has been read; says what it belongs to.
+    pub fn heard(&self) -> Heard {
         let state = self.state.load(Ordering::Relaxed);
-        if unpacked(state).0 == Phase::Idle {
-            let heard = packed(Phase::Head, self.now());
-            // Unless it is being closed.
-            let _ = self.state.compare_exchange(state, heard, Ordering::Relaxed, Ordering::Relaxed);
+        match unpacked(state).0 {
+            Phase::Idle => {
+                let heard = packed(Phase::Head, self.now());
+                // Unless it is being closed.
+                let _ = self.state.compare_exchange(state, heard, Ordering::Relaxed, Ordering::Relaxed);
+                Heard::First
+            }
+            Phase::Head => Heard::More,
+            Phase::Busy | Phase::Closing => Heard::Body,
         }
+    }
+
+    /// The head that is coming is not to be served.
+    pub fn object(&self, fault: &'static str) {
+        // The first fault is as good as any.
+        let _ = self.fault.set(fault);
+    }
+
+    /// Why the head that has come is not to be served. There is no other on this connection then.
+    pub fn fault(&self) -> Option<&'static str> {
+        self.fault.get().copied()
     }
 
     /// A request is there. False if it is too late for one.

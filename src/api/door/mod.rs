@@ -8,6 +8,7 @@
 
 mod activity;
 mod bodies;
+mod head;
 mod registry;
 mod service;
 mod socket;
@@ -18,7 +19,7 @@ pub(super) use activity::Activity;
 pub use bodies::SlowBody;
 pub use registry::{Door, Figures};
 pub(super) use registry::{Entry, Seat};
-pub(super) use service::Service;
+pub(super) use service::{Refusal, Service};
 pub(super) use socket::Socket;
 
 /// Connections at a time unless told otherwise.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
-use axum::http::{Method, Request, Response};
+use axum::http::{HeaderValue, Method, Request, Response, header};
 use hyper::body::Incoming;
 use tower_service::Service as _;
 
@@ -21,8 +21,16 @@ const ALWAYS: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
 #[error("closed to make room")]
 pub struct Closed;
 
+/// Why a request does not come as far as a handler.
+#[derive(Clone, Copy, Debug)]
+pub enum Refusal {
+    /// There is no room for it.
+    Full(PoolError),
+    /// Its head can be read in more than one way.
+    Ambiguous(&'static str),
+}
+
 /// What serves the requests of all connections.
-#[derive(Clone)]
 pub struct Service {
     /// Everything.
     pub router: Router,
@@ -37,7 +45,7 @@ pub struct Service {
 impl Service {
     /// Serves a request of a connection; of a spare one, only if it asks whether the server is well.
     pub async fn serve(
-        mut self,
+        self: Arc<Self>,
         activity: Arc<Activity>,
         spare: bool,
         request: Request<Incoming>,
@@ -47,25 +55,30 @@ impl Service {
         }
         let busy = Busy(activity);
         let mut request = request.map(|body| Body::new(Timed::new(body, self.body_time)));
-        let always = ALWAYS.contains(&request.uri().path());
-        let place = if always {
+        let fault = busy.0.fault();
+        let place = if let Some(fault) = fault {
+            Err(Refusal::Ambiguous(fault))
+        } else if ALWAYS.contains(&request.uri().path()) {
             Ok(None)
         } else if spare {
-            Err(PoolError::Busy)
+            Err(Refusal::Full(PoolError::Busy))
         } else if request.method() == Method::POST {
             // It takes its place when its body is there.
             Ok(None)
         } else {
-            self.pool.enter().await.map(Some)
+            self.pool.enter().await.map(Some).map_err(Refusal::Full)
         };
         let (reply, place) = match place {
-            Ok(place) => (self.router.call(request).await, place),
+            Ok(place) => (self.router.clone().call(request).await, place),
             Err(refusal) => {
                 request.extensions_mut().insert(refusal);
-                (self.refusals.call(request).await, None)
+                (self.refusals.clone().call(request).await, None)
             }
         };
         let Ok(mut reply) = reply;
+        if fault.is_some() {
+            reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+        }
         let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
         Ok(reply.map(|body| Watched::new(body, busy, place, memory)))
     }

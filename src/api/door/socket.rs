@@ -9,18 +9,21 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
 use super::Activity;
+use super::activity::Heard;
+use super::head::Head;
 
 /// The stream of a connection.
 #[derive(Debug)]
 pub struct Socket {
     stream: TcpStream,
     activity: Arc<Activity>,
+    head: Head,
 }
 
 impl Socket {
     /// Of this connection.
     pub fn new(stream: TcpStream, activity: Arc<Activity>) -> Socket {
-        Socket { stream, activity }
+        Socket { stream, activity, head: Head::default() }
     }
 
     fn noted(&self, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
@@ -35,9 +38,17 @@ impl Socket {
 
 impl AsyncRead for Socket {
     fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        let before = buffer.filled().len();
         let read = Pin::new(&mut self.stream).poll_read(cx, buffer);
         if read.is_ready() {
-            self.activity.heard();
+            match self.activity.heard() {
+                Heard::First => self.head = Head::default(),
+                Heard::More => {}
+                Heard::Body => return read,
+            }
+            if let Some(fault) = self.head.take(&buffer.filled()[before..]) {
+                self.activity.object(fault);
+            }
         }
         read
     }
