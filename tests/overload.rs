@@ -47,6 +47,12 @@ fn long_simulation() -> String {
     .to_string()
 }
 
+/// A path that takes minutes: each of its moves is followed in many small steps.
+fn long_path() -> String {
+    let step = |index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.0 + 0.1 * f64::from(index % 9)});
+    json!({"path": {"moves": (0..80_000).map(step).collect::<Vec<_>>()}, "steps": "last"}).to_string()
+}
+
 fn sound_simulation() -> String {
     json!({"contact": ball(), "path": {"displacement": [1e-7, 0.0]}}).to_string()
 }
@@ -215,14 +221,9 @@ async fn large_bodies_wait_for_memory_or_are_refused() {
 async fn work_ends_at_the_deadline_and_changes_nothing() {
     let service = Service::start(&["--deadline", "1s"]);
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
-    // Each of these moves is followed in many small steps.
-    let moves: Vec<_> = (0..50_000)
-        .map(|index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.0 + 0.1 * f64::from(index % 9)}))
-        .collect();
-    let path = json!({"path": {"moves": moves}, "steps": "last"}).to_string();
     for (place, body, pointer) in [
         ("/simulate".to_owned(), long_simulation(), None),
-        (format!("/contacts/{contact}/path"), path, Some("/path/moves/")),
+        (format!("/contacts/{contact}/path"), long_path(), Some("/path/moves/")),
     ] {
         let answer = service.ask(FLOOD, &post(&place, &body)).await.unwrap();
         assert_eq!(answer.statuses, [422], "{}", answer.text);
@@ -262,11 +263,8 @@ async fn whoever_finds_no_place_is_refused_soon_and_health_is_not() {
 async fn many_moves_of_one_contact_queue_up_to_a_bound() {
     let service = Service::start(&["--max-queue", "5", "--max-wait", "1s", "--deadline", "20s", "--log", "off"]);
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
-    let moves: Vec<_> =
-        (0..20_000).map(|index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.5})).collect();
     let mut long = TcpStream::connect(service.address).await.unwrap();
-    let path = json!({"path": {"moves": moves}, "steps": "last"}).to_string();
-    long.write_all(post(&format!("/contacts/{contact}/path"), &path).as_bytes()).await.unwrap();
+    long.write_all(post(&format!("/contacts/{contact}/path"), &long_path()).as_bytes()).await.unwrap();
     let look = get(&format!("/contacts/{contact}"));
     until("the contact is at work", async || !served(&service, FLOOD, &look).await).await;
     let step = post(&format!("/contacts/{contact}/move"), r#"{"displacement": 1e-8}"#);

@@ -87,13 +87,19 @@ impl Service {
     /// Sends bytes and reads until the server closes the connection, which it must.
     pub async fn exchange(&self, bytes: &[u8]) -> Answer {
         let stream = TcpStream::connect(self.address).await.unwrap();
-        talk(stream, bytes).await
+        talk(stream, bytes, false).await
+    }
+
+    /// The same, but says that nothing more will come.
+    pub async fn send_all(&self, bytes: &[u8]) -> Answer {
+        let stream = TcpStream::connect(self.address).await.unwrap();
+        talk(stream, bytes, true).await
     }
 
     /// The status of a request on a connection of its own; none if it was closed without a reply.
     pub async fn ask(&self, source: &str, request: &str) -> Option<Answer> {
         let stream = self.connect_from(source).await.ok()?;
-        let answer = talk(stream, request.as_bytes()).await;
+        let answer = talk(stream, request.as_bytes(), false).await;
         (!answer.statuses.is_empty()).then_some(answer)
     }
 }
@@ -106,11 +112,15 @@ impl Drop for Service {
     }
 }
 
-async fn talk(stream: TcpStream, bytes: &[u8]) -> Answer {
+async fn talk(stream: TcpStream, bytes: &[u8], end: bool) -> Answer {
     let (mut reader, mut writer) = stream.into_split();
     let write = async {
         // The server may close the connection before it has taken everything.
         let _ = writer.write_all(bytes).await;
+        if end {
+            let _ = writer.shutdown().await;
+        }
+        writer
     };
     let read = async {
         let mut all = Vec::new();
@@ -118,7 +128,8 @@ async fn talk(stream: TcpStream, bytes: &[u8]) -> Answer {
         let _ = reader.read_to_end(&mut all).await;
         all
     };
-    let (all, ()) = timeout(PATIENCE, futures::future::join(read, write)).await.expect("the connection stays open");
+    let (all, _writer) =
+        timeout(PATIENCE, futures::future::join(read, write)).await.expect("the connection stays open");
     let text = String::from_utf8_lossy(&all).into_owned();
     let statuses = text.split("HTTP/1.").skip(1).filter_map(|reply| reply.get(2..5)?.parse().ok()).collect();
     Answer { text, statuses }
