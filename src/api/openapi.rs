@@ -8,7 +8,7 @@ use uuid::Uuid;
 
 use crate::mechanics::DEFAULT_TOLERANCE;
 use crate::mechanics::range::{self, Range};
-use crate::wire::{EndEvent, ProblemDocument, limits};
+use crate::wire::{EndEvent, ProblemDocument, limits, profile};
 
 use super::limits as server;
 use super::problem::MEDIA_TYPE;
@@ -46,7 +46,13 @@ pub struct IdempotencyKey {
 #[derive(OpenApi)]
 #[openapi(
     info(title = "stickslip"),
-    components(schemas(ProblemDocument, EndEvent)),
+    // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
+    components(schemas(
+        ProblemDocument, EndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
+        profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
+        profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
+        profile::TabulatedProfile, profile::SumProfile
+    )),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "contacts", description = "Contacts that live on the server and remember"),
@@ -224,6 +230,9 @@ fn close_choices(document: &mut Value) {
     for alternative in schemas.values_mut().filter_map(|schema| schema.get_mut("oneOf")?.as_array_mut()).flatten() {
         if alternative["type"] == "object" {
             alternative["additionalProperties"] = json!(false);
+        } else if alternative["allOf"].is_array() {
+            // What stands in its parts counts too.
+            alternative["unevaluatedProperties"] = json!(false);
         }
     }
 }

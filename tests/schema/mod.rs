@@ -41,7 +41,8 @@ impl Schemas {
     /// A value that a schema allows, or nearly so.
     pub fn value(&self, schema: &Value, random: &mut Random) -> Value {
         if let Some(reference) = schema["$ref"].as_str() {
-            return self.value(self.document.pointer(reference.trim_start_matches('#')).unwrap(), random);
+            let found = self.document.pointer(reference.trim_start_matches('#'));
+            return self.value(found.unwrap_or_else(|| panic!("{reference} is missing")), random);
         }
         if let Some(names) = schema["enum"].as_array() {
             return pick(names, random).clone();
