@@ -48,7 +48,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Serve HTTP; the same as no command at all.
-    Serve(Serve),
+    Serve(Box<Serve>),
     /// Run the body of POST /simulate from a file and print the reply.
     Simulate {
         /// The file, or - for standard input.
@@ -166,8 +166,8 @@ enum LogFormat {
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome = match cli.command.unwrap_or(Command::Serve(cli.serve)) {
-        Command::Serve(options) => serve(options),
+    let outcome = match cli.command.unwrap_or(Command::Serve(Box::new(cli.serve))) {
+        Command::Serve(options) => serve(&options),
         Command::Simulate { file } => simulate(&file),
         Command::Openapi => print(api::document().trim_end()),
         Command::Healthcheck { listen } => healthcheck(listen),
@@ -227,7 +227,7 @@ fn healthcheck(mut address: SocketAddr) -> Result<(), String> {
     }
 }
 
-fn serve(options: Serve) -> Result<(), String> {
+fn serve(options: &Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
     let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr);
     match options.log_format {
@@ -237,7 +237,7 @@ fn serve(options: Serve) -> Result<(), String> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
-    let served = runtime.block_on(listen(&options, Arc::clone(&store)));
+    let served = runtime.block_on(listen(options, Arc::clone(&store)));
     runtime.shutdown_timeout(LAST_WORK);
     // The last handle, now that no request holds one: the store is closed before the process ends.
     drop(store);

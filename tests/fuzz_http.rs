@@ -19,7 +19,7 @@ use common::{ball, create};
 use futures::future::join_all;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
 use reqwest::{Method, Response};
-use schema::{Schemas, damage, garble, pick};
+use schema::{Schemas, damage, garble, pick, word};
 use serde::de::IgnoredAny;
 use serde_json::Value;
 use stickslip::client::Options;
@@ -73,10 +73,10 @@ fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Reque
     let mut plain = true;
     let id = match random.below(8) {
         0 => "01890a5d-ac96-774b-bcce-b302099a8057".to_owned(),
-        1 => utf8_percent_encode(*pick(&["", "..", "é", "\0", "a b", "7"], random), NON_ALPHANUMERIC).to_string(),
+        1 => utf8_percent_encode(word(&["", "..", "é", "\0", "a b", "7"], random), NON_ALPHANUMERIC).to_string(),
         _ => pick(contacts, random).clone(),
     };
-    let mut target = path.replace("{id}", &id).replace("{code}", *pick(&["not_json", "none", "%ff"], random));
+    let mut target = path.replace("{id}", &id).replace("{code}", word(&["not_json", "none", "%ff"], random));
     let (mut query, mut headers) = (Vec::new(), Vec::new());
     for parameter in operation["parameters"].as_array().into_iter().flatten() {
         if random.below(2) == 0 {

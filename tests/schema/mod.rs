@@ -98,6 +98,10 @@ pub fn pick<'a, T>(all: &'a [T], random: &mut Random) -> &'a T {
     &all[random.below(all.len() as u64) as usize]
 }
 
+pub fn word<'a>(all: &[&'a str], random: &mut Random) -> &'a str {
+    all[random.below(all.len() as u64) as usize]
+}
+
 /// Anywhere in the range, on a logarithmic scale as a rule, or at its very ends.
 fn number(schema: &Value, random: &mut Random) -> f64 {
     let least = schema["minimum"].as_f64().unwrap_or(-1e9);
@@ -206,6 +210,6 @@ pub fn garble(text: &mut String, random: &mut Random) {
             *text = text.replacen('{', &format!("{{{twin},"), 1);
         }
         6 => text.insert(place, *pick(&['\u{0}', '\u{feff}', '"', ',', '-', '\\', 'N'], random)),
-        _ => text.push_str(*pick(&[" ", "{}", "\0", "//", "\u{feff}"], random)),
+        _ => text.push_str(word(&[" ", "{}", "\0", "//", "\u{feff}"], random)),
     }
 }

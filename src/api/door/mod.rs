@@ -1,7 +1,7 @@
 //! Connections: who may come in, how long a client may keep the server waiting, and who has to make room.
 //!
-//! So many connections are open at a time ([`registry`]). A client that sends nothing, or takes nothing of a reply, is timed
-//! by what the connection is doing ([`activity`]), which the socket and the service note as they go. When all are taken, those
+//! So many connections are open at a time (`registry.rs`). A client that sends nothing, or takes nothing of a reply, is timed
+//! by what the connection is doing (`activity.rs`), which the socket and the service note as they go. When all are taken, those
 //! that have been waiting longest for their clients are closed to make room, those of the client with the most
 //! connections first; connections that are being served are never closed. Where nobody can go, a few spare connections
 //! still answer for the health of the server, and refuse everything else with a document.
