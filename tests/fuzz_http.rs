@@ -30,7 +30,7 @@ const SECONDS: u64 = 50;
 /// Requests and connections at a time.
 const AT_ONCE: u64 = 8;
 /// Cases of each kind.
-const CASES: (u64, u64) = (25_000, 50_000);
+const CASES: (u64, u64) = (75_000, 120_000);
 
 fn asked(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
@@ -180,7 +180,7 @@ async fn requests_by_the_schemas() {
     for _ in 0..10 {
         contacts.push(service.client.create(&create(), &Options::default()).await.unwrap().id.to_string());
     }
-    let http = reqwest::Client::new();
+    let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
     let base = format!("http://{}", service.address);
     run(CASES.0, async |number, random| {
         // Deleting is allowed, but not all of them all the time.
@@ -204,11 +204,18 @@ async fn requests_by_the_schemas() {
             }
         }
         match sent {
-            Ok(response) => examine(&request, response, number).await,
+            Ok(response) => {
+                let count = if response.status().is_success() { &answered } else { &refused };
+                count.fetch_add(1, Ordering::Relaxed);
+                examine(&request, response, number).await;
+            }
             Err(error) => panic!("{error:?} for case {number}: {request:?}"),
         }
     })
     .await;
+    let (answered, refused) = (answered.into_inner(), refused.into_inner());
+    println!("{answered} answered, {refused} refused");
+    assert!(answered > 0 && refused > 0);
     is_well(&service);
 }
 
