@@ -122,7 +122,7 @@ async fn attend(
     let mut http = http1::Builder::new();
     http.keep_alive(!spare).max_header_size(HEAD).max_buf_size(BUFFER);
     let mut connection = pin!(http.serve_connection(stream, answer));
-    let mut alarm = pin!(sleep(limits.head));
+    let mut alarm = pin!(sleep(limits.shortest()));
     let mut told = false;
     loop {
         tokio::select! {

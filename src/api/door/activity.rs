@@ -125,7 +125,8 @@ impl Activity {
     pub fn next_look(&self, limits: &Connections) -> Option<Instant> {
         let now = self.now();
         let after = |since: u64, allowed: Duration| since + allowed.as_millis() as u64;
-        let soon = limits.head.min(limits.stall);
+        // What comes next may have a shorter time.
+        let soon = after(now, limits.shortest());
         let stalled = self.stalled.load(Ordering::Relaxed);
         let due = if stalled != 0 {
             if now >= after(stalled - 1, limits.stall) && self.taken.swap(0, Ordering::Relaxed) >= PROGRESS as u64 {
@@ -137,13 +138,12 @@ impl Activity {
         } else {
             match self.state() {
                 (Phase::Head, since) => after(since, limits.head),
-                // What comes next may have a shorter time.
-                (Phase::Idle, since) => after(since, limits.idle).min(after(now, soon)),
-                (Phase::Busy, _) => after(now, soon),
+                (Phase::Idle, since) => after(since, limits.idle),
+                (Phase::Busy, _) => soon,
                 (Phase::Closing, _) => 0,
             }
         };
-        (due > now).then(|| self.opened + Duration::from_millis(due))
+        (due > now).then(|| self.opened + Duration::from_millis(due.min(soon)))
     }
 
     /// Since when it has been waiting for its client, if it is and no request is under way.

@@ -42,6 +42,13 @@ pub struct Connections {
     pub stall: Duration,
 }
 
+impl Connections {
+    /// The shortest of the times that are measured by the connection.
+    pub(super) fn shortest(&self) -> Duration {
+        self.head.min(self.idle).min(self.stall)
+    }
+}
+
 impl Default for Connections {
     fn default() -> Self {
         Connections {
