@@ -11,6 +11,7 @@ use common::raw::{PATIENCE, Service, get, post, room_for};
 use common::{ball, create};
 use futures::future::join_all;
 use serde_json::json;
+use stickslip::api::limits::SPARE_CONNECTIONS;
 use stickslip::api::{Connections, bound};
 use stickslip::client::Options;
 use stickslip::simulation::Capacity;
@@ -165,6 +166,9 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
     // While it lasts: the flood is of one address, and leaves room for others.
     until("the server says that it is well", async || served(&service, HONEST, &get("/healthz")).await).await;
     for _ in 0..5 {
+        // With the spare connections, and what else the process has open.
+        let open = service.open_files();
+        assert!(open < MOST + SPARE_CONNECTIONS + 50, "{open} files are open");
         let simulated = async || served(&service, HONEST, &post("/simulate", &sound_simulation())).await;
         until("an honest client is served", simulated).await;
     }
