@@ -78,7 +78,7 @@ async fn two_thousand_slow_clients_take_little_and_harm_nobody() {
                 sleep(Duration::from_millis(200)).await;
                 alive = stream.write_all(b" ").await.is_ok();
             }
-            closed.fetch_add(usize::from(!alive), Ordering::Relaxed);
+            closed.fetch_add(usize::from(!alive && number % 2 == 0), Ordering::Relaxed);
         }));
     }
     assert!(served(&service, HONEST, &get("/healthz")).await);
