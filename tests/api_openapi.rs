@@ -58,6 +58,19 @@ fn walk(node: &Value, visit: &mut dyn FnMut(&Value)) {
 }
 
 #[test]
+fn every_reference_leads_somewhere() {
+    let document = document();
+    let mut found = 0;
+    walk(&document, &mut |node| {
+        if let Some(reference) = node["$ref"].as_str() {
+            assert!(document.pointer(reference.trim_start_matches('#')).is_some(), "{reference}");
+            found += 1;
+        }
+    });
+    assert!(found > 50, "{found}");
+}
+
+#[test]
 fn every_schema_and_every_field_is_described() {
     let document = document();
     for (name, schema) in document["components"]["schemas"].as_object().unwrap() {
@@ -80,6 +93,10 @@ fn every_schema_and_every_field_is_described() {
 #[test]
 fn every_number_that_can_be_sent_has_its_range_and_every_object_is_closed() {
     for (name, schema) in request_schemas(&document()) {
+        assert!(schema.is_object(), "{name}");
+        for choice in schema["oneOf"].as_array().into_iter().flatten().filter(|choice| choice["allOf"].is_array()) {
+            assert!(choice["unevaluatedProperties"] == false, "{name}: {choice}");
+        }
         walk(&schema, &mut |node| match node["type"].as_str() {
             Some("number" | "integer") => {
                 assert!(node["minimum"].is_number() && node["maximum"].is_number(), "{name}: {node}");
@@ -90,7 +107,7 @@ fn every_number_that_can_be_sent_has_its_range_and_every_object_is_closed() {
             }
             Some("object") => {
                 // A profile's members stand beside its type, and are closed where both are put together.
-                let composed = name == "Profile" || name == "SphereProfile";
+                let composed = name.ends_with("Profile");
                 assert!(composed || node["additionalProperties"] == false, "{name}: {node}");
             }
             _ => {}

@@ -12,7 +12,7 @@ use super::extract::{Command, ContactId, Expected, OptionalCommand};
 use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
 use super::problem::Problem;
 use super::query::Params;
-use super::reply;
+use super::{limits, reply};
 
 /// Create a contact
 ///
@@ -49,7 +49,8 @@ pub struct ListQuery {
 )]
 pub async fn list(Own(app): Own, params: Params) -> Result<Response, Problem> {
     let (after, limit) = params.page("the identifier of a contact")?;
-    Ok(reply::json(reply::written(&app.sessions.list(after, limit).await?)?))
+    let held = app.pool.reserve(limit * limits::SUMMARY).await?;
+    Ok(reply::holding(reply::json(reply::written(&app.sessions.list(after, limit).await?)?), held))
 }
 
 /// Look at a contact
@@ -125,8 +126,8 @@ pub struct StressQuery {
 )]
 pub async fn stress(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
     let (sampling, residual) = params.stress()?;
-    let (sequence, body) = app.sessions.stress(id, sampling, residual).await?;
-    Ok(reply::at_sequence(sequence, body))
+    let (sequence, body, held) = app.sessions.stress(id, sampling, residual).await?;
+    Ok(reply::holding(reply::at_sequence(sequence, body), held))
 }
 
 /// Which moves to list.
@@ -151,6 +152,7 @@ pub struct HistoryQuery {
 )]
 pub async fn history(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
     let (after, limit) = params.page("the number of a move")?;
+    let held = app.pool.reserve(limit * limits::HISTORY_ITEM).await?;
     let page = app.sessions.history(id, after.unwrap_or(0), limit).await?;
-    Ok(reply::json(reply::written(&page)?))
+    Ok(reply::holding(reply::json(reply::written(&page)?), held))
 }

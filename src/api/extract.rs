@@ -1,19 +1,24 @@
 //! What handlers take out of a request. Whatever does not fit leaves as a [`Problem`].
 
+use std::error::Error as _;
+
 use axum::body::Body;
 use axum::extract::{FromRequest, FromRequestParts, Path, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
+use axum::response::Response;
 use futures::StreamExt as _;
+use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 use uuid::Uuid;
 
-use crate::simulation::cost;
+use crate::simulation::{Place, Pool, Reservation, cost};
 use crate::store::RequestKey;
 use crate::wire::{self, Document};
 
+use super::door::SlowBody;
 use super::problem::{Kind, Problem};
-use super::{App, limits};
+use super::{App, limits, reply};
 
 /// A checked body, and the headers that make it safe to repeat.
 pub struct Command<T: Document> {
@@ -21,6 +26,29 @@ pub struct Command<T: Document> {
     pub body: T::Checked,
     /// The idempotency key, with what it stands for.
     pub key: Option<RequestKey>,
+    /// What the request takes of the server.
+    pub held: Held,
+}
+
+/// What a request takes of the server: a place until it is answered, and memory until the client has the reply.
+pub struct Held {
+    memory: Reservation,
+    _place: Place,
+}
+
+impl Held {
+    /// Takes so much memory, from now on.
+    ///
+    /// # Errors
+    /// A [`Problem`] if there is not so much at present.
+    pub async fn resize(&mut self, pool: &Pool, bytes: usize) -> Result<(), Problem> {
+        Ok(pool.resize(&mut self.memory, bytes).await?)
+    }
+
+    /// Hands the memory on to the reply.
+    pub fn on(self, response: Response) -> Response {
+        reply::holding(response, self.memory)
+    }
 }
 
 /// As [`Command`], but no body at all counts as `{}`.
@@ -57,7 +85,14 @@ async fn command<T: Document + 'static>(request: Request, app: &App, optional: b
     if declared == Some(false) || (declared.is_none() && !optional) {
         return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
     }
-    let mut bytes = read(body).await?;
+    if let Some(coding) = parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes())) {
+        let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
+        let detail = format!("Content-Encoding `{coding}` is not taken: send the body as it is");
+        return Err(Problem::new(Kind::UnsupportedMediaType, detail));
+    }
+    let (mut bytes, mut memory) = read(body, &app.pool).await?;
+    // Not before the body is there: a slow client takes no place from others.
+    let place = app.pool.enter().await?;
     if optional && bytes.is_empty() {
         bytes.extend_from_slice(b"{}");
     } else if declared.is_none() {
@@ -65,12 +100,21 @@ async fn command<T: Document + 'static>(request: Request, app: &App, optional: b
     }
     let key = idempotency_key(&parts.headers)?;
     let length = bytes.len();
+    let price = if length > cost::INLINE_BODY { cost::INLINE } else { 0 };
+    if price > 0 {
+        app.pool.resize(&mut memory, length.saturating_mul(limits::EXPANSION)).await?;
+    }
     let work = move || {
         let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
-        wire::read::<T>(&bytes).map(|body| Command { body, key })
+        wire::read::<T>(&bytes).map(|body| (body, key))
     };
-    let price = if length > cost::INLINE_BODY { cost::INLINE } else { 0 };
-    app.pool.run(price, work).await?.map_err(Problem::from)
+    let (body, key) = app.pool.run(price, work).await??;
+    Ok(Command { body, key, held: Held { memory, _place: place } })
+}
+
+/// No coding at all, as it may be said too.
+fn is_identity(coding: &[u8]) -> bool {
+    coding.trim_ascii().is_empty() || coding.trim_ascii().eq_ignore_ascii_case(b"identity")
 }
 
 /// `application/json`, with or without a charset.
@@ -79,13 +123,21 @@ fn is_json(content_type: &[u8]) -> bool {
     essence.trim_ascii().eq_ignore_ascii_case(b"application/json")
 }
 
-async fn read(body: Body) -> Result<Vec<u8>, Problem> {
+async fn read(body: Body, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem> {
+    let declared = body.size_hint().upper().and_then(|length| usize::try_from(length).ok()).unwrap_or(usize::MAX);
     let mut stream = body.into_data_stream();
     let (mut bytes, mut length) = (Vec::new(), 0_usize);
+    let mut memory = Reservation::default();
     while let Some(chunk) = stream.next().await {
-        let chunk = chunk.map_err(|_| Problem::new(Kind::NotJson, "the body broke off"))?;
+        let chunk = chunk.map_err(broken)?;
         length = length.saturating_add(chunk.len());
         if length <= limits::BODY {
+            // As it comes: what a client declares and does not send takes nothing from others.
+            if length > bytes.capacity() {
+                let room = (2 * length).min(declared).max(length);
+                pool.resize(&mut memory, room).await?;
+                bytes.reserve_exact(room - bytes.len());
+            }
             bytes.extend_from_slice(&chunk);
         } else if length > limits::DRAIN {
             break;
@@ -95,7 +147,15 @@ async fn read(body: Body) -> Result<Vec<u8>, Problem> {
         let detail = format!("the body has more than the {} bytes that are allowed", limits::BODY);
         return Err(Problem::new(Kind::TooLarge, detail));
     }
-    Ok(bytes)
+    Ok((bytes, memory))
+}
+
+fn broken(error: axum::Error) -> Problem {
+    if error.source().is_some_and(|source| source.is::<SlowBody>()) {
+        Problem::new(Kind::RequestTimeout, "the body did not arrive in time")
+    } else {
+        Problem::new(Kind::NotJson, "the body broke off")
+    }
 }
 
 fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {

@@ -2,11 +2,15 @@
 
 use std::any::Any;
 
+use axum::Extension;
 use axum::extract::{Path, State};
 use axum::http::Uri;
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
+use crate::simulation::PoolError;
+
+use super::door::Refusal;
 use super::problem::{Kind, Problem};
 use super::{App, reply};
 
@@ -60,6 +64,15 @@ pub async fn problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Pro
 /// The answer to a path that does not exist.
 pub async fn nothing_here(uri: Uri) -> Problem {
     nothing(&uri)
+}
+
+/// The answer to a request that does not come as far as a handler.
+pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
+    match refusal {
+        Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Kind::AmbiguousRequest, why),
+        Some(Extension(Refusal::Full(error))) => error.into(),
+        None => PoolError::Busy.into(),
+    }
 }
 
 fn nothing(uri: &Uri) -> Problem {

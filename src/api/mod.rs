@@ -1,7 +1,10 @@
 //! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 pub mod access;
+pub mod bound;
 mod contacts;
+pub mod descriptors;
+pub mod door;
 mod events;
 mod extract;
 pub mod headers;
@@ -26,9 +29,10 @@ use crate::sessions::Sessions;
 use crate::simulation::Pool;
 
 pub use access::Access;
+pub use door::{Connections, Door};
 pub use openapi::document;
 pub use problem::Problem;
-pub use serve::serve;
+pub use serve::{serve, serve_through};
 
 /// What the handlers work with. Clones are handles on the same.
 #[derive(Clone)]
@@ -45,9 +49,18 @@ pub struct App {
 pub fn router(app: App) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
-    let Access { keys, origins } = app.access.clone();
-    let mut routes =
-        api.with_state(app).merge(docs).fallback(meta::nothing_here).layer(CatchPanicLayer::custom(meta::panicked));
+    let access = app.access.clone();
+    dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here), access)
+}
+
+/// The answer to requests that do not come as far as [`router`].
+fn refusals() -> Router {
+    dressed(Router::new().fallback(meta::refused), Access::default())
+}
+
+/// What is common to all replies.
+fn dressed(router: Router, Access { keys, origins }: Access) -> Router {
+    let mut routes = router.layer(CatchPanicLayer::custom(meta::panicked));
     if let Some(keys) = keys {
         routes = routes.layer(middleware::from_fn_with_state(keys, access::admit));
     }

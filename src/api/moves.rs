@@ -1,14 +1,17 @@
 //! `/contacts/{id}/move` and `/contacts/{id}/path`: sessions move on.
 
 use axum::response::Response;
+use uuid::Uuid;
 
-use crate::wire::{MoveReply, MoveRequest, PathReply, PathRequest};
+use crate::simulation::cost;
+use crate::wire::session::Advance;
+use crate::wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest};
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected};
 use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
 use super::problem::Problem;
-use super::reply;
+use super::{App, reply};
 
 /// Move a contact
 ///
@@ -32,7 +35,7 @@ pub async fn apply(
     Expected(expected): Expected,
     command: Command<MoveRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.advance(id, command.body, expected, command.key).await?))
+    advance(&app, id, expected, command).await
 }
 
 /// Take a contact along a path
@@ -56,5 +59,15 @@ pub async fn path(
     Expected(expected): Expected,
     command: Command<PathRequest>,
 ) -> Result<Response, Problem> {
-    Ok(reply::of_change(app.sessions.advance(id, command.body, expected, command.key).await?))
+    advance(&app, id, expected, command).await
+}
+
+async fn advance<T: Document<Checked = Advance>>(
+    app: &App,
+    id: Uuid,
+    expected: Option<u64>,
+    Command { body, key, mut held }: Command<T>,
+) -> Result<Response, Problem> {
+    held.resize(&app.pool, cost::bytes_of_advance(&body)).await?;
+    Ok(held.on(reply::of_change(app.sessions.advance(id, body, expected, key).await?)))
 }

@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::access::Role;
 use crate::mechanics::DEFAULT_TOLERANCE;
 use crate::mechanics::range::{self, Range};
-use crate::wire::{EndEvent, ProblemDocument, limits};
+use crate::wire::{EndEvent, ProblemDocument, limits, profile};
 
 use super::access::{Need, need};
 use super::limits as server;
@@ -48,7 +48,13 @@ pub struct IdempotencyKey {
 #[derive(OpenApi)]
 #[openapi(
     info(title = "stickslip"),
-    components(schemas(ProblemDocument, EndEvent)),
+    // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
+    components(schemas(
+        ProblemDocument, EndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
+        profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
+        profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
+        profile::TabulatedProfile, profile::SumProfile
+    )),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "contacts", description = "Contacts that live on the server and remember"),
@@ -227,6 +233,9 @@ fn close_choices(document: &mut Value) {
     for alternative in schemas.values_mut().filter_map(|schema| schema.get_mut("oneOf")?.as_array_mut()).flatten() {
         if alternative["type"] == "object" {
             alternative["additionalProperties"] = json!(false);
+        } else if alternative["allOf"].is_array() {
+            // What stands in its parts counts too.
+            alternative["unevaluatedProperties"] = json!(false);
         }
     }
 }
@@ -306,6 +315,7 @@ fn write_refusals(document: &mut Value) {
                 (method == "post", "400", "The body is not JSON"),
                 (path.contains('{'), "404", "There is no such thing"),
                 (path.contains("/{id}"), "410", "The contact was idle for so long that it has expired"),
+                (method == "post", "408", "The body did not arrive in time"),
                 (changes_contact, "409", "The state of the contact forbids this"),
                 (changes_contact, "412", "The contact is not at the sequence given in If-Match"),
                 (method == "post", "413", "The body is too large"),

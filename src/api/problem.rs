@@ -10,6 +10,8 @@
 //! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
+//! - A head that a proxy might read in another way than this server: [`Kind::AmbiguousRequest`].
+//! - A body that takes too long to arrive: [`Kind::RequestTimeout`].
 //! - Nothing wrong with the request, but no capacity: [`Kind::Overloaded`], with `Retry-After`.
 //! - The storage has no room ([`Kind::StorageFull`]) or cannot be reached ([`Kind::StorageUnavailable`]): not the client's
 //!   fault, and not this program's. Nothing has been acknowledged, and a retry is welcome.
@@ -34,6 +36,8 @@ pub const MEDIA_TYPE: &str = "application/problem+json";
 /// The kinds of problems, each with its status and code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
+    /// The head of the request can be read in more than one way.
+    AmbiguousRequest,
     /// The body is not JSON.
     NotJson,
     /// There is no key with the request, or none that is known.
@@ -52,6 +56,8 @@ pub enum Kind {
     Conflict,
     /// The session is not at the sequence given in `If-Match`.
     StaleSequence,
+    /// The body did not arrive in time.
+    RequestTimeout,
     /// The body is too large.
     TooLarge,
     /// The body is not declared as JSON.
@@ -82,7 +88,8 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 22] = [
+    pub const ALL: [Kind; 24] = [
+        Kind::AmbiguousRequest,
         Kind::NotJson,
         Kind::Unauthorized,
         Kind::Forbidden,
@@ -92,6 +99,7 @@ impl Kind {
         Kind::MethodNotAllowed,
         Kind::Conflict,
         Kind::StaleSequence,
+        Kind::RequestTimeout,
         Kind::TooLarge,
         Kind::UnsupportedMediaType,
         Kind::InvalidInput,
@@ -111,6 +119,9 @@ impl Kind {
     #[must_use]
     pub fn parts(self) -> (StatusCode, &'static str, &'static str) {
         match self {
+            Kind::AmbiguousRequest => {
+                (StatusCode::BAD_REQUEST, "ambiguous_request", "The head of the request is ambiguous")
+            }
             Kind::NotJson => (StatusCode::BAD_REQUEST, "not_json", "The body is not JSON"),
             Kind::Unauthorized => (StatusCode::UNAUTHORIZED, "unauthorized", "A key is needed"),
             Kind::Forbidden => (StatusCode::FORBIDDEN, "forbidden", "The key does not allow this"),
@@ -122,6 +133,9 @@ impl Kind {
             }
             Kind::Conflict => (StatusCode::CONFLICT, "conflict", "The state of the contact forbids this"),
             Kind::StaleSequence => (StatusCode::PRECONDITION_FAILED, "stale_sequence", "The contact has moved on"),
+            Kind::RequestTimeout => {
+                (StatusCode::REQUEST_TIMEOUT, "request_timeout", "The request did not arrive in time")
+            }
             Kind::TooLarge => (StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The body is too large"),
             Kind::UnsupportedMediaType => {
                 (StatusCode::UNSUPPORTED_MEDIA_TYPE, "unsupported_media_type", "The body must be application/json")
@@ -267,7 +281,7 @@ impl From<Failure> for Problem {
                 Problem::at(kind, pointer, error.to_string())
             }
             Failure::MemoryFull { pointer, .. } => Problem::at(Kind::Conflict, pointer, detail),
-            Failure::TooLong { pointer } => Problem::at(Kind::TooMuchWork, pointer, detail),
+            Failure::TooLong { pointer, .. } => Problem::at(Kind::TooMuchWork, pointer, detail),
             Failure::Stopped => Problem::new(Kind::Overloaded, detail),
         }
     }
@@ -276,7 +290,7 @@ impl From<Failure> for Problem {
 impl From<PoolError> for Problem {
     fn from(error: PoolError) -> Self {
         match error {
-            PoolError::Busy => Problem::new(Kind::Overloaded, error.to_string()),
+            PoolError::Busy | PoolError::QueueFull => Problem::new(Kind::Overloaded, error.to_string()),
             PoolError::Panicked => Problem::internal(error.to_string()),
         }
     }

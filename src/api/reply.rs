@@ -1,8 +1,11 @@
 //! Replies that are ready-made JSON.
 
+use std::sync::Arc;
+
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
+use crate::simulation::Reservation;
 use crate::store::Reply;
 
 use super::problem::Problem;
@@ -29,6 +32,15 @@ pub fn of_change(reply: Reply) -> Response {
         if let Ok(place) = HeaderValue::from_str(&format!("/contacts/{id}")) {
             response.headers_mut().insert(header::LOCATION, place);
         }
+    }
+    response
+}
+
+/// A reply whose memory stays spoken for until the client has it.
+pub fn holding(mut response: Response, held: Reservation) -> Response {
+    if held.is_counted() {
+        // Extensions want to be cloned.
+        response.extensions_mut().insert(Arc::new(held));
     }
     response
 }

@@ -3,7 +3,7 @@
 use axum::extract::State;
 use axum::response::Response;
 
-use crate::simulation::{self, Stop, cost};
+use crate::simulation::{self, cost};
 use crate::wire::{SimulateReply, SimulateRequest};
 
 use super::extract::Command;
@@ -50,9 +50,10 @@ use super::{App, reply};
     responses((status = 200, description = "States, and what else was asked for", body = SimulateReply))
 )]
 pub async fn simulate(State(app): State<App>, command: Command<SimulateRequest>) -> Result<Response, Problem> {
-    let (stop, _guard) = Stop::guarded();
-    let simulation = command.body;
+    let (stop, _guard) = app.pool.deadline();
+    let (simulation, mut held) = (command.body, command.held);
+    held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;
     let cost = cost::of_simulation(&simulation);
     let work = move || reply::written(&simulation::simulate(&simulation, &stop)?);
-    Ok(reply::json(app.pool.run(cost, work).await??))
+    Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
 }

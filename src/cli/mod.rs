@@ -2,6 +2,7 @@
 
 mod healthcheck;
 mod key;
+mod overload;
 mod serve;
 mod settings;
 mod simulate;

@@ -8,7 +8,7 @@ use std::time::Duration;
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use stickslip::api::headers::Origin;
-use stickslip::api::{self, Access, App};
+use stickslip::api::{self, Access, App, Door, bound};
 use stickslip::sessions::{self, Sessions};
 use stickslip::simulation::Pool;
 use stickslip::store::{self, Store};
@@ -16,6 +16,7 @@ use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
 
+use super::overload::Overload;
 use super::settings::ConfigFile;
 use super::{key, print};
 
@@ -54,6 +55,8 @@ pub struct Serve {
     /// Delete contacts that have not moved for so long, such as 30d or 12h; left out, they stay.
     #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = idle_time)]
     expire_after: Option<Duration>,
+    #[command(flatten)]
+    overload: Overload,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info", value_parser = filter)]
     log: String,
@@ -131,10 +134,14 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
             _ = interrupt.recv() => {}
         }
     };
-    let pool = Pool::of_the_machine();
+    let pool = Pool::new(options.overload.capacity());
+    let door = Door::new(options.overload.connections());
+    let bytes = bound::memory(door.limits(), pool.capacity(), options.cache_bytes.as_u64());
+    tracing::info!(bytes, "memory stays below this bound");
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let sessions = Sessions::new(store, pool.clone(), capacity);
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
-    api::serve(listener, App { sessions, pool, access }, stop).await.map_err(|error| format!("stopped: {error}"))
+    let app = App { sessions, pool, access };
+    api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))
 }

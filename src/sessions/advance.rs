@@ -45,8 +45,8 @@ impl Sessions {
             return Ok(reply);
         }
         // Whoever hangs up in the queue has left it.
-        let mut guard = self.cache.lock(&self.tenant, id).await;
-        let (stop, _raised_at_the_end) = Stop::guarded();
+        let mut guard = self.lock(id).await?;
+        let (stop, _raised_at_the_end) = self.pool.deadline();
         let advance = Arc::new(advance);
         // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
         let mut certain = guard.live.is_none();
@@ -109,6 +109,9 @@ impl Sessions {
             && advance.stress.is_none()
             && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
             && guard.live.as_ref().is_some_and(|live| !live.shared);
+        // A copy can be large, and as many requests are under way as may be.
+        let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
+        let _held = self.pool.reserve(copied).await?;
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());

@@ -11,6 +11,7 @@ use hashlink::LruCache;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
+use crate::simulation::Reservation;
 use crate::store::Tenant;
 
 use super::live::Live;
@@ -48,6 +49,8 @@ struct States {
 pub(super) struct Guard {
     /// The state, if it is at hand: that after some move that is stored, though perhaps not the last.
     pub(super) live: Option<Box<Live>>,
+    /// The memory of a state that did not come out of the cache.
+    pub(super) held: Reservation,
     // Declared, and so released, before the desk is left: whoever comes in between finds the desk and waits at it.
     _lock: OwnedMutexGuard<()>,
     place: Place,
@@ -70,7 +73,7 @@ impl Cache {
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
         let (lock, place) = self.enter((tenant.clone(), id));
         let lock = lock.lock_owned().await;
-        Guard { live: self.take(&place.name), _lock: lock, place }
+        Guard { live: self.take(&place.name), held: Reservation::default(), _lock: lock, place }
     }
 
     /// Whether the state of a session is at hand.

@@ -34,7 +34,7 @@ use crate::store::{Reply, RequestKey, Session, Store, StoreError, Tenant};
 use crate::wire::session::Creation;
 
 pub use cache::CAPACITY;
-use cache::Cache;
+use cache::{Cache, Guard};
 pub use error::SessionError;
 pub use events::{Happening, STREAMS};
 use live::Live;
@@ -89,6 +89,11 @@ impl Sessions {
         self.cache.held()
     }
 
+    /// A session to work on: waits for those who came before, as long as the pool lets it.
+    async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
+        Ok(self.pool.wait(self.cache.lock(&self.tenant, id)).await?)
+    }
+
     /// Makes a session.
     ///
     /// # Errors
@@ -129,7 +134,7 @@ impl Sessions {
         if let Some(reply) = self.earlier(key.as_ref()).await? {
             return Ok(reply);
         }
-        let mut guard = self.cache.lock(&self.tenant, id).await;
+        let mut guard = self.lock(id).await?;
         let mut found = 0;
         for _ in 0..ATTEMPTS {
             let mut copy = self.present(&mut guard).await?.clone();
@@ -164,7 +169,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; it is still there then.
     pub async fn delete(&self, id: Uuid, expected: Option<u64>) -> Result<(), SessionError> {
-        let mut guard = self.cache.lock(&self.tenant, id).await;
+        let mut guard = self.lock(id).await?;
         let found = match &guard.live {
             Some(live) => live.session.sequence,
             None => self.own(id).await?.sequence,

@@ -2,7 +2,7 @@
 
 use uuid::Uuid;
 
-use crate::simulation::{self, Stop, cost, stresses};
+use crate::simulation::{self, Reservation, cost, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
 use super::{SessionError, Sessions, written};
@@ -13,7 +13,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
-        let mut guard = self.cache.lock(&self.tenant, id).await;
+        let mut guard = self.lock(id).await?;
         let live = self.present(&mut guard).await?;
         Ok(SessionReply {
             id,
@@ -26,17 +26,24 @@ impl Sessions {
         })
     }
 
-    /// The stresses of a session, as JSON, with the sequence that they belong to.
+    /// The stresses of a session, as JSON, with the sequence that they belong to, and the memory that they take.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
-    pub async fn stress(&self, id: Uuid, sampling: Sampling, residual: bool) -> Result<(u64, Vec<u8>), SessionError> {
-        let (stop, _guard) = Stop::guarded();
+    pub async fn stress(
+        &self,
+        id: Uuid,
+        sampling: Sampling,
+        residual: bool,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        let (stop, _guard) = self.pool.deadline();
         // The lock is held for a copy alone, so that the session can move on meanwhile.
-        let (contact, sequence) = {
-            let mut guard = self.cache.lock(&self.tenant, id).await;
+        let (contact, sequence, held) = {
+            let mut guard = self.lock(id).await?;
             let live = self.present(&mut guard).await?;
-            (live.contact.clone(), live.session.sequence)
+            let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
+            let held = self.pool.reserve(bytes).await?;
+            (live.contact.clone(), live.session.sequence, held)
         };
         let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
         let cost = cost::on(contact.profile(), cost, residual);
@@ -51,7 +58,7 @@ impl Sessions {
                 residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
             })
         };
-        Ok((sequence, self.pool.run(cost, work).await??))
+        Ok((sequence, self.pool.run(cost, work).await??, held))
     }
 
     /// A page of sessions, oldest first.

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use crate::simulation::cost;
 use crate::store::{Record, Session, StoreError};
-use crate::wire::{At, Faults};
+use crate::wire::{At, Faults, limits};
 
 use super::cache::Guard;
 use super::live::Live;
@@ -14,6 +14,10 @@ use super::{SessionError, Sessions};
 
 /// Moves that are fetched from the store at a time.
 const PAGE: usize = 10_000;
+/// Pieces of memory that a move leaves, as a guess for a state that is not known yet.
+const PIECES: usize = 4;
+/// Bytes of one piece.
+const PIECE_BYTES: usize = 96;
 
 impl Sessions {
     /// The session as it is at hand, or else as it is stored. Other processes may have moved it on, or deleted it: what comes
@@ -79,6 +83,8 @@ impl Sessions {
         let snapshot = self.store.snapshot(id).await;
         let session = self.own(id).await?;
         let (sequence, updated_at) = (session.sequence, session.updated_at);
+        let pieces = usize::try_from(sequence).unwrap_or(usize::MAX).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
+        guard.held = self.pool.reserve(pieces * PIECE_BYTES).await?;
         let mut faults = Faults::default();
         let setup = session.definition.check(At::Root, &mut faults);
         let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;

@@ -5,8 +5,9 @@
 //! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few.
 
 use crate::mechanics::Profile;
+use crate::wire::session::Advance;
 use crate::wire::simulate::Simulation;
-use crate::wire::{Solver, limits};
+use crate::wire::{self, Plan, Solver, Steps, limits};
 
 /// Estimated nanoseconds of work.
 pub type Nanoseconds = u64;
@@ -29,6 +30,19 @@ const RADIUS: u64 = 200;
 const SEARCH: u64 = 1_000_000;
 /// One spring in one move, or seen from one radius.
 const SPRING: u64 = 3;
+
+/// One move as it is kept while it is made, and the piece of memory that it leaves.
+const MOVE_BYTES: usize = 256;
+/// One state in a reply, and as JSON in a text that grows by doubling.
+const STATE_BYTES: usize = 768;
+/// One move on its way to the store.
+const RECORD_BYTES: usize = 512;
+/// One radius with all that may be asked of it, likewise.
+const RADIUS_BYTES: usize = 320;
+/// One point of a table.
+const POINT_BYTES: usize = 1_280;
+/// One spring.
+const SPRING_BYTES: usize = 64;
 
 /// What `moves` moves, `curved` of them curved, then stresses at `radii` radii, then perhaps the extrema cost with the exact solver. `depth` is
 /// the memory before the moves; each adds at most one piece to it.
@@ -59,6 +73,49 @@ fn factor(profile: &Profile) -> u64 {
         Profile::Sum(sum) => sum.parts().iter().map(factor).sum(),
         _ => 5,
     }
+}
+
+/// Bytes that stresses at so many radii take, as numbers and as JSON.
+#[must_use]
+pub fn bytes_of_stress(radii: usize) -> usize {
+    radii * RADIUS_BYTES
+}
+
+/// Bytes that moves take: themselves, the memory that they leave, and the states after them if they are asked for.
+fn bytes_of_moves(plan: &Plan, steps: Steps) -> usize {
+    let shown = if steps == Steps::All { STATE_BYTES } else { 0 };
+    plan.length() * (MOVE_BYTES + shown)
+}
+
+/// Bytes that a shape takes: the series that the mechanics makes of tables.
+#[must_use]
+pub fn bytes_of_shape(profile: &wire::Profile) -> usize {
+    match profile {
+        wire::Profile::Tabulated(table) => table.r.len() * POINT_BYTES,
+        wire::Profile::Sum(sum) => sum.parts.iter().map(bytes_of_shape).sum(),
+        _ => 0,
+    }
+}
+
+/// Bytes that a simulation takes, with its reply; rather too many than too few.
+#[must_use]
+pub fn bytes_of_simulation(simulation: &Simulation) -> usize {
+    let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
+    let springs = match simulation.solver {
+        Some(Solver::Springs(springs)) => springs.count * SPRING_BYTES,
+        _ => 0,
+    };
+    bytes_of_moves(&simulation.plan, simulation.steps)
+        + bytes_of_stress(radii)
+        + bytes_of_shape(&simulation.definition.profile)
+        + springs
+}
+
+/// Bytes that moves of a session take, with their records and the reply; rather too many than too few.
+#[must_use]
+pub fn bytes_of_advance(advance: &Advance) -> usize {
+    let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
+    bytes_of_moves(&advance.plan, advance.steps) + advance.plan.length() * RECORD_BYTES + bytes_of_stress(radii)
 }
 
 /// What a simulation costs.

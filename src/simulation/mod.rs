@@ -13,11 +13,13 @@ mod stop;
 mod tests;
 mod warnings;
 
-pub use pool::{LONGEST_WAIT, Pool, PoolError};
+pub use pool::{BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, QUEUE, REQUESTS, Reservation, Taken};
 pub use run::{Timer, accuracy, contact, follow, protocol, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
 pub use warnings::{Seen, warnings};
+
+use std::time::Duration;
 
 use crate::mechanics;
 use crate::wire::limits;
@@ -42,10 +44,12 @@ pub enum Failure {
         depth: usize,
     },
     /// The work is more than a server does for one request.
-    #[error("this takes longer than the {} s that are allowed", LONGEST_WORK.as_secs())]
+    #[error("this takes longer than the {} s that are allowed", allowed.as_secs_f64())]
     TooLong {
         /// JSON pointer to what asks for the work, if it is known.
         pointer: String,
+        /// How long work may take.
+        allowed: Duration,
     },
     /// Nobody is waiting for the result any longer.
     #[error("stopped, as nobody waits for the result any longer")]

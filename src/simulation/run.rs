@@ -151,7 +151,7 @@ pub fn follow<S: Solver>(
     for (index, step) in moves.enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
-            Err(Failure::TooLong { .. }) => Failure::TooLong { pointer: plan.place_of(index, None) },
+            Err(Failure::TooLong { allowed, .. }) => Failure::TooLong { pointer: plan.place_of(index, None), allowed },
             Err(stopped) => stopped,
             Ok(()) => {
                 let named = quantity(&error).filter(|name| step.names(name));
@@ -202,8 +202,9 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// [`Failure`] if the memory is so deep that they would take longer than is allowed, or nobody waits for them.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     let cost = Duration::from_nanos(cost::estimated_cost(0, 0, solver.depth(), 0, true));
-    if cost > LONGEST_WORK {
-        return Err(Failure::TooLong { pointer: "/residual".to_owned() });
+    let allowed = stop.allowed().unwrap_or(LONGEST_WORK);
+    if cost > allowed {
+        return Err(Failure::TooLong { pointer: "/residual".to_owned(), allowed });
     }
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => Ok(residual.into()),

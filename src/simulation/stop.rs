@@ -1,32 +1,49 @@
 //! Telling work on another thread that nobody waits for it any longer, or that it has had its time.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use super::Failure;
 
-/// How long a server computes for one request.
+/// How long a server computes for one request unless it is told otherwise.
 pub const LONGEST_WORK: Duration = Duration::from_secs(60);
 
 /// What a long loop looks at. Work on the blocking pool outlives the handler that asked for it; this ends it.
 #[derive(Clone, Debug, Default)]
-pub struct Stop {
-    raised: Arc<AtomicBool>,
-    deadline: Option<Instant>,
+pub struct Stop(Arc<Flag>);
+
+#[derive(Debug, Default)]
+struct Flag {
+    raised: AtomicBool,
+    allowed: Option<Duration>,
+    // The first look at the flag: what a request has waited for a thread is not held against it.
+    begun: OnceLock<Instant>,
 }
 
 /// Raises the flag when dropped: held by a handler, it does so when the client hangs up.
 #[derive(Debug)]
-pub struct StopOnDrop(Arc<AtomicBool>);
+pub struct StopOnDrop(Stop);
 
 impl Stop {
-    /// A flag that goes up when the guard is dropped, or by itself after [`LONGEST_WORK`]. The default one never does.
+    /// As [`Stop::within`] the time of [`LONGEST_WORK`].
     #[must_use]
     pub fn guarded() -> (Stop, StopOnDrop) {
-        let stop = Stop { raised: Arc::default(), deadline: Some(Instant::now() + LONGEST_WORK) };
-        let guard = StopOnDrop(Arc::clone(&stop.raised));
-        (stop, guard)
+        Stop::within(LONGEST_WORK)
+    }
+
+    /// A flag that goes up when the guard is dropped, or by itself when the work has taken so long. The default one never
+    /// does.
+    #[must_use]
+    pub fn within(allowed: Duration) -> (Stop, StopOnDrop) {
+        let stop = Stop(Arc::new(Flag { allowed: Some(allowed), ..Flag::default() }));
+        (stop.clone(), StopOnDrop(stop))
+    }
+
+    /// How long the work may take, if there is a bound.
+    #[must_use]
+    pub fn allowed(&self) -> Option<Duration> {
+        self.0.allowed
     }
 
     /// Ends the work if the flag is up.
@@ -35,11 +52,13 @@ impl Stop {
     /// [`Failure::Stopped`] if the guard is gone, [`Failure::TooLong`] if the time is up.
     pub fn check(&self) -> Result<(), Failure> {
         // Nothing is published through the flag, so that no ordering is needed.
-        if self.raised.load(Ordering::Relaxed) {
+        if self.0.raised.load(Ordering::Relaxed) {
             return Err(Failure::Stopped);
         }
-        match self.deadline {
-            Some(deadline) if Instant::now() >= deadline => Err(Failure::TooLong { pointer: String::new() }),
+        match self.0.allowed {
+            Some(allowed) if self.0.begun.get_or_init(Instant::now).elapsed() >= allowed => {
+                Err(Failure::TooLong { pointer: String::new(), allowed })
+            }
             _ => Ok(()),
         }
     }
@@ -47,12 +66,14 @@ impl Stop {
 
 impl Drop for StopOnDrop {
     fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.0.raised.store(true, Ordering::Relaxed);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::{Failure, Stop};
 
     #[test]
@@ -61,5 +82,15 @@ mod tests {
         assert_eq!(stop.check(), Ok(()));
         drop(guard);
         assert_eq!(stop.check(), Err(Failure::Stopped));
+    }
+
+    #[test]
+    fn time_runs_from_the_first_look() {
+        let allowed = Duration::from_millis(20);
+        let (stop, _guard) = Stop::within(allowed);
+        std::thread::sleep(2 * allowed);
+        assert_eq!(stop.check(), Ok(()));
+        std::thread::sleep(2 * allowed);
+        assert_eq!(stop.check(), Err(Failure::TooLong { pointer: String::new(), allowed }));
     }
 }

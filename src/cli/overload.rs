@@ -1,0 +1,97 @@
+//! How much the service takes on, as settings.
+
+use std::time::Duration;
+
+use bytesize::ByteSize;
+use clap::Args;
+use stickslip::api::Connections;
+use stickslip::api::descriptors::room_for;
+use stickslip::api::door::MOST;
+use stickslip::simulation::{self, Capacity};
+
+/// The times that clients can be given.
+const SHORTEST_TIME: Duration = Duration::from_millis(10);
+const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// How much the service takes on at a time, and how long it waits: docs/overload.md says what follows from it.
+#[derive(Args)]
+pub struct Overload {
+    /// Connections at a time.
+    #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = MOST, value_parser = at_least_one)]
+    max_connections: usize,
+    /// Connections of one client address at a time; left out, half of all. Behind a proxy all clients have one address.
+    #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
+    max_connections_per_client: Option<usize>,
+    /// Requests worked on at a time; more wait.
+    #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = simulation::REQUESTS, value_parser = at_least_one)]
+    max_requests: usize,
+    /// Requests that wait at a time; more are refused.
+    #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = simulation::QUEUE, value_parser = at_least_one)]
+    max_queue: usize,
+    /// How long a request waits before it is refused.
+    #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
+    max_wait: Duration,
+    /// Bytes of memory for large bodies, their work and their replies, all together.
+    #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(simulation::BYTES as u64), value_parser = work_bytes)]
+    work_bytes: ByteSize,
+    /// How long the solver works for one request before it is stopped.
+    #[arg(long, env = "STICKSLIP_DEADLINE", default_value = "60s", value_parser = duration)]
+    deadline: Duration,
+    /// How long a client may take to send the head of a request.
+    #[arg(long, env = "STICKSLIP_HEAD_TIME", default_value = "10s", value_parser = duration)]
+    head_time: Duration,
+    /// How long a client may take to send a body.
+    #[arg(long, env = "STICKSLIP_BODY_TIME", default_value = "30s", value_parser = duration)]
+    body_time: Duration,
+    /// How long a connection may be idle between requests.
+    #[arg(long, env = "STICKSLIP_IDLE_TIME", default_value = "60s", value_parser = duration)]
+    idle_time: Duration,
+    /// How long a client may take nothing of a reply or of events.
+    #[arg(long, env = "STICKSLIP_STALL_TIME", default_value = "30s", value_parser = duration)]
+    stall_time: Duration,
+}
+
+impl Overload {
+    /// What the solvers take on.
+    pub fn capacity(&self) -> Capacity {
+        Capacity {
+            requests: self.max_requests,
+            queue: self.max_queue,
+            wait: self.max_wait,
+            deadline: self.deadline,
+            bytes: usize::try_from(self.work_bytes.as_u64()).unwrap_or(usize::MAX),
+            ..Capacity::default()
+        }
+    }
+
+    /// The connections, as far as the process may have so many files open.
+    pub fn connections(&self) -> Connections {
+        let most = room_for(self.max_connections);
+        if most < self.max_connections {
+            let asked = self.max_connections;
+            tracing::warn!(asked, most, "fewer connections than asked for: raise the limit of open files (ulimit -n)");
+        }
+        let per_client = self.max_connections_per_client.unwrap_or(most.div_ceil(2));
+        let (head, body, idle, stall) = (self.head_time, self.body_time, self.idle_time, self.stall_time);
+        Connections { most, per_client, head, body, idle, stall }
+    }
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
+    let (least, most) = (SHORTEST_TIME, LONGEST_TIME);
+    if (least..=most).contains(&time) { Ok(time) } else { Err(format!("{least:?} to {most:?} are allowed")) }
+}
+
+fn work_bytes(text: &str) -> Result<ByteSize, String> {
+    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(simulation::LARGEST as u64));
+    if size < least { Err(format!("at least {least}: one request can take as much")) } else { Ok(size) }
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("at least 1".to_owned()),
+        Ok(number) => Ok(number),
+        Err(_) => Err("not a whole number".to_owned()),
+    }
+}

@@ -1,0 +1,156 @@
+//! The real binary under hostile clients: raw sockets, and what the process takes of memory and processors.
+
+use std::fs::File;
+use std::io::{BufRead as _, BufReader};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use stickslip::client::Client;
+use tempfile::TempDir;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::{TcpSocket, TcpStream};
+use tokio::time::timeout;
+
+/// Against hanging alone.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A server in a process of its own, killed when dropped.
+pub struct Service {
+    child: Child,
+    folder: TempDir,
+    pub address: SocketAddr,
+    pub client: Client,
+}
+
+/// What came back on a connection until it was closed.
+pub struct Answer {
+    pub text: String,
+    /// The status of each reply.
+    pub statuses: Vec<u16>,
+}
+
+impl Service {
+    /// Starts it in memory and with these arguments, and waits until it listens. The log goes to a file.
+    pub fn start(arguments: &[&str]) -> Service {
+        let folder = tempfile::tempdir().unwrap();
+        let log = File::create(folder.path().join("log")).unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
+            .args(["serve", "--listen", "127.0.0.1:0", "--store", "memory:"])
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(log)
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
+        let address = base.trim_start_matches("http://").parse().unwrap();
+        Service { child, folder, address, client: Client::new(base) }
+    }
+
+    /// Everything in the log so far.
+    pub fn log(&self) -> String {
+        std::fs::read_to_string(self.folder.path().join("log")).unwrap()
+    }
+
+    /// The most memory that the process has had so far, bytes.
+    pub fn peak(&self) -> usize {
+        self.status("VmHWM:")
+    }
+
+    fn status(&self, name: &str) -> usize {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let line = status.lines().find(|line| line.starts_with(name)).unwrap();
+        line.split_whitespace().nth(1).unwrap().parse::<usize>().unwrap() * 1024
+    }
+
+    /// Files that the process has open; a connection is one of them.
+    pub fn open_files(&self) -> usize {
+        std::fs::read_dir(format!("/proc/{}/fd", self.child.id())).unwrap().count()
+    }
+
+    /// Processor time that the process has had so far, ticks of the clock.
+    pub fn processor_ticks(&self) -> u64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+        let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
+        fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+    }
+
+    /// Opens a connection from an address of this machine.
+    pub async fn connect_from(&self, source: &str) -> std::io::Result<TcpStream> {
+        let socket = TcpSocket::new_v4()?;
+        socket.bind(format!("{source}:0").parse().unwrap())?;
+        socket.connect(self.address).await
+    }
+
+    /// Sends bytes and reads until the server closes the connection, which it must.
+    pub async fn exchange(&self, bytes: &[u8]) -> Answer {
+        let stream = TcpStream::connect(self.address).await.unwrap();
+        talk(stream, bytes, false).await
+    }
+
+    /// The same, but says that nothing more will come.
+    pub async fn send_all(&self, bytes: &[u8]) -> Answer {
+        let stream = TcpStream::connect(self.address).await.unwrap();
+        talk(stream, bytes, true).await
+    }
+
+    /// The status of a request on a connection of its own; none if it was closed without a reply.
+    pub async fn ask(&self, source: &str, request: &str) -> Option<Answer> {
+        let stream = self.connect_from(source).await.ok()?;
+        let answer = talk(stream, request.as_bytes(), false).await;
+        (!answer.statuses.is_empty()).then_some(answer)
+    }
+}
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+async fn talk(stream: TcpStream, bytes: &[u8], end: bool) -> Answer {
+    let (mut reader, mut writer) = stream.into_split();
+    let write = async {
+        // The server may close the connection before it has taken everything.
+        let _ = writer.write_all(bytes).await;
+        if end {
+            let _ = writer.shutdown().await;
+        }
+        writer
+    };
+    let read = async {
+        let mut all = Vec::new();
+        // A reset is an end like any other.
+        let _ = reader.read_to_end(&mut all).await;
+        all
+    };
+    let (all, _writer) =
+        timeout(PATIENCE, futures::future::join(read, write)).await.expect("the connection stays open");
+    let text = String::from_utf8_lossy(&all).into_owned();
+    let statuses = text.split("HTTP/1.").skip(1).filter_map(|reply| reply.get(2..5)?.parse().ok()).collect();
+    Answer { text, statuses }
+}
+
+/// A request with a JSON body, after which the connection is closed.
+pub fn post(path: &str, body: &str) -> String {
+    format!(
+        "POST {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\ncontent-type: application/json\r\n\
+         content-length: {}\r\n\r\n{body}",
+        body.len()
+    )
+}
+
+/// A request without a body, after which the connection is closed.
+pub fn get(path: &str) -> String {
+    format!("GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n")
+}
+
+/// Sees to it that this process may have so many connections.
+pub fn room_for(connections: usize) {
+    let room = stickslip::api::descriptors::room_for(connections);
+    assert!(room >= connections, "this test needs {connections} connections: ulimit -Hn 8192");
+}
