@@ -13,6 +13,8 @@
 //!
 //! [`sessions`] are contacts that live: a cache over the store, one writer at a time each, replay, and retries.
 //!
+//! [`metrics`] are the counters that every floor may use, and the page that shows them.
+//!
 //! [`client`] is a typed client for the service.
 //!
 //! [`api`] is HTTP: the routes, the problem documents, the OpenAPI document. The binary adds the command line.
@@ -21,6 +23,7 @@ pub mod api;
 pub mod client;
 pub mod figures;
 pub mod mechanics;
+pub mod metrics;
 pub mod sessions;
 pub mod simulation;
 pub mod store;

@@ -5,6 +5,7 @@ mod events;
 mod extract;
 pub mod limits;
 mod meta;
+mod metrics;
 mod moves;
 mod observe;
 mod openapi;
@@ -13,6 +14,9 @@ mod query;
 mod reply;
 mod serve;
 mod simulate;
+mod traffic;
+
+use std::sync::Arc;
 
 use axum::{Router, middleware};
 use tower_http::catch_panic::CatchPanicLayer;
@@ -38,13 +42,14 @@ pub struct App {
 
 /// All routes.
 pub fn router(app: App) -> Router {
-    let (api, _) = described().split_for_parts();
+    let (api, document) = described().split_for_parts();
+    let traffic = Arc::new(traffic::Traffic::of(&document));
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     api.with_state(app)
         .merge(docs)
         .fallback(meta::nothing_here)
         .layer(CatchPanicLayer::custom(meta::panicked))
-        .layer(middleware::from_fn(observe::observe))
+        .layer(middleware::from_fn_with_state(traffic, observe::observe))
 }
 
 /// The routes that the OpenAPI document describes.
@@ -63,4 +68,5 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(meta::problem))
         .routes(routes!(meta::healthz))
         .routes(routes!(meta::readyz))
+        .routes(routes!(metrics::metrics))
 }

@@ -11,6 +11,8 @@ use hashlink::LruCache;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
+use crate::metrics::Counter;
+
 use super::live::Live;
 
 /// How many bytes of states are kept at hand by default.
@@ -22,6 +24,8 @@ pub(super) struct Cache {
     desks: Mutex<HashMap<Uuid, Desk>>,
     states: Mutex<States>,
     capacity: usize,
+    // How often a state that was asked for was at hand.
+    hits: Counter,
 }
 
 /// A session that somebody works on or waits for. It goes with the last of them, so that a session has one lock at a time.
@@ -57,7 +61,7 @@ impl Cache {
     /// A cache of at most so many bytes.
     pub(super) fn new(capacity: usize) -> Cache {
         let states = States { by_id: LruCache::new_unbounded(), bytes: 0 };
-        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity }
+        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity, hits: Counter::default() }
     }
 
     /// Waits until the session is one's own. Whoever gives up waiting has left.
@@ -65,6 +69,16 @@ impl Cache {
         let (lock, place) = self.enter(id);
         let lock = lock.lock_owned().await;
         Guard { live: self.take(id), _lock: lock, place }
+    }
+
+    /// How many bytes there may be.
+    pub(super) fn capacity(&self) -> usize {
+        self.capacity
+    }
+
+    /// How often a state was at hand.
+    pub(super) fn hits(&self) -> u64 {
+        self.hits.get()
     }
 
     /// Bytes of the states at hand, and how many they are.
@@ -84,6 +98,7 @@ impl Cache {
         let mut states = self.states();
         let (live, bytes) = states.by_id.remove(&id)?;
         states.bytes -= bytes;
+        self.hits.add(1);
         Some(live)
     }
 

@@ -16,6 +16,7 @@ mod events;
 mod house;
 mod idempotency;
 mod live;
+mod meters;
 mod read;
 mod replay;
 mod snapshot;
@@ -35,6 +36,7 @@ use cache::Cache;
 pub use error::SessionError;
 pub use events::{Happening, STREAMS};
 use live::Live;
+pub use meters::Readings;
 
 /// How often a change that another process has forestalled is tried. Each time, that process has got on.
 const ATTEMPTS: usize = 100;
@@ -48,6 +50,7 @@ pub struct Sessions {
     // A permit for each snapshot that is being kept.
     snapshots: Arc<Semaphore>,
     streams: events::Streams,
+    meters: Arc<meters::Meters>,
 }
 
 impl Sessions {
@@ -60,6 +63,7 @@ impl Sessions {
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             streams: events::Streams::new(),
+            meters: Arc::default(),
         }
     }
 

@@ -74,7 +74,7 @@ impl Sessions {
 
     /// Brings a session that is not at hand from the store.
     async fn open(&self, guard: &mut Guard) -> Result<(), SessionError> {
-        let id = guard.id();
+        let (id, begin) = (guard.id(), Instant::now());
         // The snapshot first: taken later, it might be of a move that the session found has not made yet.
         let snapshot = self.store.snapshot(id).await;
         let session = self.store.find(id).await.map_err(|error| self.failed(guard, error))?;
@@ -97,6 +97,7 @@ impl Sessions {
             }
             live.shared = false;
         }
+        self.meters.open.observe_time(begin.elapsed());
         Ok(())
     }
 

@@ -13,7 +13,7 @@ mod stop;
 mod tests;
 mod warnings;
 
-pub use pool::{LONGEST_WAIT, Pool, PoolError};
+pub use pool::{LONGEST_WAIT, Pool, PoolError, PoolMeters};
 pub use run::{Timer, accuracy, contact, follow, protocol, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};

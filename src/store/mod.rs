@@ -6,6 +6,7 @@
 //! their URLs.
 
 pub mod changes;
+pub mod commits;
 pub mod memory;
 pub mod open;
 pub mod postgres;
@@ -20,6 +21,7 @@ use uuid::Uuid;
 use crate::wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
+pub use commits::Commits;
 pub use memory::MemoryStore;
 pub use open::{OpenError, open};
 pub use postgres::PostgresStore;
@@ -177,4 +179,9 @@ pub trait Store: Send + Sync + 'static {
 
     /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
     fn changes(&self) -> &Changes;
+
+    /// What it has committed; none if it has nothing to commit.
+    fn commits(&self) -> Option<&Commits> {
+        None
+    }
 }

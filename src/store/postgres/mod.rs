@@ -30,7 +30,7 @@ use uuid::Uuid;
 
 use crate::wire::SessionSummary;
 
-use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
+use super::{Answer, Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError};
 
 use fault::{Fault, Pauses};
 use job::{Change, Job};
@@ -219,6 +219,10 @@ impl Store for PostgresStore {
 
     fn changes(&self) -> &Changes {
         &self.changes
+    }
+
+    fn commits(&self) -> Option<&Commits> {
+        Some(&self.writer.commits)
     }
 
     fn sequence(&self, id: Uuid) -> Answer<'_, u64> {

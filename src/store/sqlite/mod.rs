@@ -26,7 +26,7 @@ use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::{Answer, Changes, Receipt, Record, Session, Snapshot, Store, StoreError};
+use super::{Answer, Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError};
 use crate::wire::SessionSummary;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
@@ -47,6 +47,7 @@ pub struct SqliteStore {
     writer: Option<JoinHandle<()>>,
     readers: Readers,
     changes: Arc<Changes>,
+    commits: Arc<Commits>,
 }
 
 impl SqliteStore {
@@ -57,7 +58,9 @@ impl SqliteStore {
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
         let file::Opened { database, lock } = file::open(path)?;
         let changes = Arc::new(Changes::default());
-        let writer = Writer::new(database, Arc::clone(&changes)).map_err(|error| error.to_string())?;
+        let commits = Arc::new(Commits::new("sqlite"));
+        let writer =
+            Writer::new(database, Arc::clone(&changes), Arc::clone(&commits)).map_err(|error| error.to_string())?;
         let (queue, requests) = mpsc::channel(QUEUE);
         let held = Arc::clone(&lock);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
@@ -66,11 +69,12 @@ impl SqliteStore {
         });
         let thread = thread.map_err(|error| error.to_string())?;
         let readers = Readers::new(path.to_owned(), lock);
-        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes })
+        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes, commits })
     }
 
     async fn change(&self, change: Change) -> Result<u64, StoreError> {
         let gone = || StoreError::Failed("the writer of the database has ended".to_owned());
+        let _pending = self.commits.pending.enter();
         let (reply, outcome) = oneshot::channel();
         let queue = self.queue.as_ref().ok_or_else(gone)?;
         queue.send(Request { change, reply }).await.map_err(|_| gone())?;
@@ -174,5 +178,9 @@ impl Store for SqliteStore {
 
     fn changes(&self) -> &Changes {
         &self.changes
+    }
+
+    fn commits(&self) -> Option<&Commits> {
+        Some(&self.commits)
     }
 }

@@ -6,12 +6,13 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::time::Instant;
 
 use rusqlite::Connection;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::{Changes, StoreError};
+use crate::store::{Changes, Commits, StoreError};
 
 use super::change::{Change, Done, Fork, Undone};
 use super::fault::{Stage, store_error, worth_splitting};
@@ -35,6 +36,7 @@ type Reply = oneshot::Sender<Result<u64, StoreError>>;
 pub(super) struct Writer {
     database: Connection,
     changes: Arc<Changes>,
+    commits: Arc<Commits>,
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
@@ -52,14 +54,14 @@ struct Failure {
 }
 
 impl Writer {
-    pub(super) fn new(database: Connection, changes: Arc<Changes>) -> rusqlite::Result<Writer> {
+    pub(super) fn new(database: Connection, changes: Arc<Changes>, commits: Arc<Commits>) -> rusqlite::Result<Writer> {
         fork::abandon_all(&database)?;
         let sql = "SELECT max(coalesce((SELECT max(number) FROM contacts), 0),
                               coalesce((SELECT max(contact) FROM moves), 0),
                               coalesce((SELECT max(contact) FROM unowned), 0))";
         let highest: i64 = database.query_row(sql, [], |row| row.get(0))?;
         let forks = VecDeque::new();
-        Ok(Writer { database, changes, next_number: highest + 1, forks, unowned: true, healthy: true })
+        Ok(Writer { database, changes, commits, next_number: highest + 1, forks, unowned: true, healthy: true })
     }
 
     /// Serves until nobody can ask any more, then leaves the database file whole.
@@ -113,7 +115,7 @@ impl Writer {
     }
 
     fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
-        let mut number = self.next_number;
+        let (mut number, begin) = (self.next_number, Instant::now());
         let outcomes = self.transaction(|database| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
@@ -127,6 +129,7 @@ impl Writer {
             Ok(outcomes)
         })?;
         self.next_number = number;
+        self.commits.committed(batch.len(), begin.elapsed());
         Ok(outcomes)
     }
 
@@ -185,7 +188,7 @@ impl Writer {
             Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
             Err(error) => Err((error, Stage::Before)),
         };
-        self.healthy = outcome.is_ok();
+        self.note(outcome.as_ref().err().map(|(error, _)| error));
         outcome.map_err(|(error, stage)| {
             // Some failures end the transaction by themselves.
             if !self.database.is_autocommit()
@@ -195,6 +198,21 @@ impl Writer {
             }
             Failure { error, stage }
         })
+    }
+
+    /// Notes how a transaction ended, and logs it where the one before ended otherwise.
+    fn note(&mut self, failure: Option<&rusqlite::Error>) {
+        match failure {
+            Some(error) => {
+                self.commits.failed.add(1);
+                if self.healthy {
+                    tracing::error!(%error, "the database takes no changes; their clients are told until it does");
+                }
+            }
+            None if !self.healthy => tracing::info!("the database takes changes again"),
+            None => {}
+        }
+        self.healthy = failure.is_none();
     }
 
     fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {
