@@ -20,6 +20,10 @@ use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
 
+#[cfg(target_env = "musl")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// How long work that does not look at its flag may hold up the end of the process.
 const LAST_WORK: Duration = Duration::from_millis(500);
 
@@ -55,6 +59,24 @@ enum Command {
         /// Where it listens.
         #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
         listen: SocketAddr,
+    },
+    /// Copy the store to a file, while the service runs or not.
+    Backup {
+        /// The file to make; one that is there is left as it is.
+        file: PathBuf,
+        /// The store, `sqlite:PATH`.
+        #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
+        store: String,
+    },
+    /// Look whether a store is sound: make every contact again from its moves, and compare. Nothing is written.
+    Check {
+        /// The store, `sqlite:PATH` or `postgres://…`; the service may be running.
+        #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
+        store: String,
+        /// How far recorded states may differ from replayed ones, relatively; nought means not in a single bit. Moves made
+        /// by another version of the engine may differ by 1e-12.
+        #[arg(long, env = "STICKSLIP_CHECK_TOLERANCE", default_value_t = 0.0)]
+        tolerance: f64,
     },
     /// Draw the figures of the paper, as SVG and CSV.
     Figures {
@@ -100,6 +122,8 @@ fn main() -> ExitCode {
         Command::Simulate { file } => simulate(&file),
         Command::Openapi => print(api::document().trim_end()),
         Command::Healthcheck { listen } => healthcheck(listen),
+        Command::Backup { file, store } => backup(&store, &file),
+        Command::Check { store, tolerance } => check(&store, tolerance),
         Command::Figures { out } => stickslip::figures::write(&out)
             .map_err(|error| format!("cannot write figures to {}: {error}", out.display())),
     };
@@ -154,6 +178,24 @@ fn healthcheck(mut address: SocketAddr) -> Result<(), String> {
         Ok(Err(error)) => Err(format!("{address} is not well: {error}")),
         Err(_) => Err(format!("{address} does not answer")),
     }
+}
+
+fn backup(store: &str, file: &std::path::Path) -> Result<(), String> {
+    let bytes = store::backup(store, file).map_err(|error| error.to_string())?;
+    print(format_args!("{} holds the store, {bytes} bytes", file.display()))
+}
+
+fn check(store: &str, tolerance: f64) -> Result<(), String> {
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    let checked = runtime.block_on(async {
+        let store = store::open_to_read(store).await.map_err(|error| error.to_string())?;
+        // A finding that cannot be printed counts all the same.
+        let mut report = |finding: &sessions::Finding| drop(print(finding));
+        sessions::check(&*store, tolerance, &mut report).await.map_err(|error| error.to_string())
+    })?;
+    print(checked)?;
+    if checked.findings == 0 { Ok(()) } else { Err("the store is not sound".to_owned()) }
 }
 
 fn serve(options: Serve) -> Result<(), String> {

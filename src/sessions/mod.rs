@@ -11,6 +11,7 @@
 
 mod advance;
 mod cache;
+mod check;
 mod error;
 mod events;
 mod house;
@@ -33,6 +34,7 @@ use crate::wire::session::Creation;
 
 pub use cache::CAPACITY;
 use cache::Cache;
+pub use check::{Checked, Finding, check};
 pub use error::SessionError;
 pub use events::{Happening, STREAMS};
 use live::Live;

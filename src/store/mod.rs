@@ -23,7 +23,7 @@ use crate::wire::{ContactDefinition, Move, SessionSummary, State};
 pub use changes::Changes;
 pub use commits::Commits;
 pub use memory::MemoryStore;
-pub use open::{OpenError, open};
+pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
 pub use sqlite::SqliteStore;
 
@@ -183,5 +183,10 @@ pub trait Store: Send + Sync + 'static {
     /// What it has committed; none if it has nothing to commit.
     fn commits(&self) -> Option<&Commits> {
         None
+    }
+
+    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no session.
+    fn examine(&self) -> Answer<'_, Vec<String>> {
+        Box::pin(std::future::ready(Ok(Vec::new())))
     }
 }

@@ -7,7 +7,7 @@ pub mod postgres;
 pub mod process;
 
 use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
 
 use reqwest::{Method, Response};
@@ -95,6 +95,11 @@ impl Binary {
         let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
         Binary { child, client: Client::new(base) }
     }
+}
+
+/// What the binary does when called so, once it has ended by itself.
+pub fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stickslip")).args(arguments).output().unwrap()
 }
 
 impl Drop for Binary {

@@ -76,6 +76,30 @@ impl PostgresStore {
         let listener = tokio::spawn(listen::listen(Arc::clone(&link), Arc::clone(&changes))).abort_handle();
         Ok(PostgresStore { link, writer, changes, listener })
     }
+
+    /// Connects to a database to look at, beside the processes that work with it. Its tables must be there already.
+    ///
+    /// # Errors
+    /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
+    pub async fn open_to_read(url: &str) -> Result<PostgresStore, StoreError> {
+        let target = Target::parse(url).map_err(StoreError::Failed)?;
+        let place = target.place();
+        let checked = async { schema::check(&target.open().await?).await };
+        checked
+            .await
+            .map_err(|error: SchemaError| StoreError::Failed(format!("{place}: {}", Fault::from(error).finally())))?;
+        let link = Arc::new(Link::new(target, false)?);
+        let changes = Arc::new(Changes::default());
+        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
+        let listener = tokio::spawn(std::future::pending::<()>()).abort_handle();
+        Ok(PostgresStore { link, writer, changes, listener })
+    }
+
+    /// Which database it is, without the password.
+    #[must_use]
+    pub fn place(&self) -> String {
+        self.link.target.place()
+    }
 }
 
 impl Drop for PostgresStore {
@@ -219,6 +243,15 @@ impl Store for PostgresStore {
 
     fn changes(&self) -> &Changes {
         &self.changes
+    }
+
+    fn examine(&self) -> Answer<'_, Vec<String>> {
+        async {
+            let strays = self.link.rows(sql::STRAYS, &[]).await?;
+            let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
+            Ok(strays.iter().map(|row| line(row.get(0))).collect())
+        }
+        .boxed()
     }
 
     fn commits(&self) -> Option<&Commits> {

@@ -5,6 +5,7 @@
 //! between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in `docs/storage.md`. What may
 //! fail, and what it means then, is in `fault.rs`.
 
+mod backup;
 mod change;
 mod fault;
 mod file;
@@ -68,8 +69,26 @@ impl SqliteStore {
             drop(held);
         });
         let thread = thread.map_err(|error| error.to_string())?;
-        let readers = Readers::new(path.to_owned(), lock);
+        let readers = Readers::new(path.to_owned(), Some(lock));
         Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes, commits })
+    }
+
+    /// Opens a file to look at, beside the process that serves it or alone. Changes fail.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in one line.
+    pub fn open_to_read(path: &Path) -> Result<SqliteStore, String> {
+        backup::look(path)?;
+        let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
+        Ok(SqliteStore { queue: None, writer: None, readers: Readers::new(path.to_owned(), None), changes, commits })
+    }
+
+    /// Copies the store in a file to another that is not there yet, while it is in use or not; says how many bytes that has.
+    ///
+    /// # Errors
+    /// Why there is no copy, in one line.
+    pub fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
+        backup::backup(path, copy)
     }
 
     async fn change(&self, change: Change) -> Result<u64, StoreError> {
@@ -182,5 +201,9 @@ impl Store for SqliteStore {
 
     fn commits(&self) -> Option<&Commits> {
         Some(&self.commits)
+    }
+
+    fn examine(&self) -> Answer<'_, Vec<String>> {
+        self.look(read::examine)
     }
 }
