@@ -205,6 +205,16 @@ fn serve(options: Serve) -> Result<(), String> {
         LogFormat::Text => log.with_ansi(false).init(),
         LogFormat::Json => log.json().flatten_event(true).init(),
     }
+    log_panics();
+    let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
+    tracing::info!(
+        version = env!("CARGO_PKG_VERSION"),
+        commit = option_env!("STICKSLIP_COMMIT"),
+        pid = std::process::id(),
+        cache_bytes = options.cache_bytes.as_u64(),
+        expire_after_s,
+        "starting"
+    );
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
@@ -212,7 +222,18 @@ fn serve(options: Serve) -> Result<(), String> {
     runtime.shutdown_timeout(LAST_WORK);
     // The last handle, now that no request holds one: the store is closed before the process ends.
     drop(store);
+    if served.is_ok() {
+        tracing::info!("stopped");
+    }
     served
+}
+
+/// Sends panics to the log, with their place. The request that one of them ends is told by the line of that request.
+fn log_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(ToString::to_string);
+        tracing::error!(place, what = panic.payload_as_str(), "panicked");
+    }));
 }
 
 fn idle_time(text: &str) -> Result<Duration, String> {
@@ -238,6 +259,7 @@ async fn listen(options: &Serve, store: Arc<dyn Store>) -> Result<(), String> {
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let sessions = Sessions::new(store, pool.clone(), capacity);
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
+    tracing::info!(%address, threads = pool.meters().threads, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     api::serve(listener, App { sessions, pool }, stop).await.map_err(|error| format!("stopped: {error}"))
 }

@@ -77,6 +77,7 @@ impl Server {
 /// The real binary with a server in it; killed when it is dropped.
 pub struct Binary {
     pub child: Child,
+    pub address: String,
     pub client: Client,
 }
 
@@ -93,7 +94,7 @@ impl Binary {
         let mut line = String::new();
         BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
         let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
-        Binary { child, client: Client::new(base) }
+        Binary { child, address: base.to_owned(), client: Client::new(base) }
     }
 }
 
