@@ -18,7 +18,9 @@ use stickslip::store::{self, Store};
 use stickslip::wire::{self, SimulateRequest};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
+use tracing_subscriber::{EnvFilter, Layer as _, fmt};
 
 #[cfg(target_env = "musl")]
 #[global_allocator]
@@ -107,6 +109,9 @@ struct Serve {
     /// How to log it.
     #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
+    /// Send a trace of each request to an OpenTelemetry collector, such as `http://localhost:4318` (OTLP over HTTP).
+    #[arg(long, env = "STICKSLIP_OTLP_ENDPOINT", value_parser = collector)]
+    otlp_endpoint: Option<String>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -200,11 +205,19 @@ fn check(store: &str, tolerance: f64) -> Result<(), String> {
 
 fn serve(options: Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
-    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr);
-    match options.log_format {
-        LogFormat::Text => log.with_ansi(false).init(),
-        LogFormat::Json => log.json().flatten_event(true).init(),
-    }
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    let traces = options.otlp_endpoint.as_deref().map(|endpoint| {
+        let _inside = runtime.enter();
+        stickslip::otlp::layer(endpoint)
+    });
+    let (spans, exporter) = traces.unzip();
+    let log = fmt::layer().with_writer(io::stderr);
+    let lines = match options.log_format {
+        LogFormat::Text => log.with_ansi(false).boxed(),
+        LogFormat::Json => log.json().flatten_event(true).boxed(),
+    };
+    tracing_subscriber::registry().with(spans).with(lines.with_filter(filter)).init();
     log_panics();
     let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
     tracing::info!(
@@ -215,10 +228,11 @@ fn serve(options: Serve) -> Result<(), String> {
         expire_after_s,
         "starting"
     );
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
-    let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
     let served = runtime.block_on(listen(&options, Arc::clone(&store)));
+    if let Some(exporter) = exporter {
+        runtime.block_on(exporter.finish());
+    }
     runtime.shutdown_timeout(LAST_WORK);
     // The last handle, now that no request holds one: the store is closed before the process ends.
     drop(store);
@@ -234,6 +248,13 @@ fn log_panics() {
         let place = panic.location().map(ToString::to_string);
         tracing::error!(place, what = panic.payload_as_str(), "panicked");
     }));
+}
+
+fn collector(text: &str) -> Result<String, String> {
+    match text.strip_prefix("http://") {
+        Some(place) if !place.is_empty() => Ok(text.to_owned()),
+        _ => Err("expected http:// and the place of a collector".to_owned()),
+    }
 }
 
 fn idle_time(text: &str) -> Result<Duration, String> {

@@ -21,6 +21,8 @@ pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 struct UnderWay<'a> {
     start: Instant,
     id: &'a str,
+    /// What the client says that the request is a part of, for traces.
+    traceparent: Option<&'a str>,
     method: &'a Method,
     route: Option<&'a str>,
     endpoint: &'a Endpoint,
@@ -32,6 +34,8 @@ pub async fn observe(State(traffic): State<Arc<Traffic>>, mut request: Request, 
     let start = Instant::now();
     let id = request_id(&request);
     let method = request.method().clone();
+    let traceparent =
+        request.headers().get("traceparent").filter(|value| value.len() <= limits::REQUEST_ID_LENGTH).cloned();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
@@ -40,7 +44,8 @@ pub async fn observe(State(traffic): State<Arc<Traffic>>, mut request: Request, 
     }
     let endpoint = traffic.endpoint(route, &method);
     let _in_flight = endpoint.in_flight.enter();
-    let mut under_way = UnderWay { start, id: &id, method: &method, route, endpoint, answered: false };
+    let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
+    let mut under_way = UnderWay { start, id: &id, traceparent, method: &method, route, endpoint, answered: false };
     let mut response = next.run(request).await;
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
@@ -61,13 +66,17 @@ impl UnderWay<'_> {
         self.answered = true;
         let time = self.start.elapsed();
         self.endpoint.answered(status.as_u16(), time);
-        let UnderWay { id: request_id, method, .. } = *self;
+        let UnderWay { id: request_id, traceparent, method, .. } = *self;
         let (route, status, duration_ms) = (self.route.unwrap_or("none"), status.as_u16(), time.as_secs_f64() * 1e3);
         match status {
-            500 => tracing::error!(request_id, %method, route, status, duration_ms, code, cause, "request failed"),
+            500 => {
+                tracing::error!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
+            }
             // A fault of the surroundings, which may last, and come with every request.
-            501.. => tracing::warn!(request_id, %method, route, status, duration_ms, code, cause, "request failed"),
-            _ => tracing::info!(request_id, %method, route, status, duration_ms, code, "request"),
+            501.. => {
+                tracing::warn!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
+            }
+            _ => tracing::info!(request_id, %method, route, status, duration_ms, code, traceparent, "request"),
         }
     }
 }
@@ -75,11 +84,11 @@ impl UnderWay<'_> {
 impl Drop for UnderWay<'_> {
     fn drop(&mut self) {
         if !self.answered {
-            let UnderWay { id: request_id, method, .. } = *self;
+            let UnderWay { id: request_id, traceparent, method, .. } = *self;
             let time = self.start.elapsed();
             self.endpoint.answered(ABANDONED, time);
             let (route, duration_ms) = (self.route.unwrap_or("none"), time.as_secs_f64() * 1e3);
-            tracing::info!(request_id, %method, route, status = ABANDONED, duration_ms, "the client left");
+            tracing::info!(request_id, %method, route, status = ABANDONED, duration_ms, traceparent, "the client left");
         }
     }
 }
