@@ -15,6 +15,10 @@
 //!
 //! [`access`] says who may do what: keys, roles and tenants.
 //!
+//! [`metrics`] are the counters that every floor may use, and the page that shows them.
+//!
+//! [`otlp`] makes traces of the log, for OpenTelemetry.
+//!
 //! [`client`] is a typed client for the service.
 //!
 //! [`api`] is HTTP: the routes, the problem documents, the OpenAPI document. The binary adds the command line.
@@ -24,6 +28,8 @@ pub mod api;
 pub mod client;
 pub mod figures;
 pub mod mechanics;
+pub mod metrics;
+pub mod otlp;
 pub mod sessions;
 pub mod simulation;
 pub mod store;

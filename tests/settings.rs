@@ -11,7 +11,7 @@ use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 9] = [
+const CASES: [(&str, [&str; 3]); 21] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
     ("keys", ["a.keys", "b.keys", "c.keys"]),
     ("insecure", ["true", "true", "true"]),
@@ -21,6 +21,18 @@ const CASES: [(&str, [&str; 3]); 9] = [
     ("expire-after", ["1h", "2h", "30d"]),
     ("log", ["warn", "debug", "stickslip=trace"]),
     ("log-format", ["json", "json", "json"]),
+    ("otlp-endpoint", ["http://a.example:4318", "http://b.example", "http://c.example"]),
+    ("max-connections", ["10", "20", "30"]),
+    ("max-connections-per-client", ["1", "2", "3"]),
+    ("max-requests", ["10", "20", "30"]),
+    ("max-queue", ["10", "20", "30"]),
+    ("max-wait", ["1s", "2s", "500ms"]),
+    ("work-bytes", ["256MiB", "300MiB", "1GiB"]),
+    ("deadline", ["1s", "2s", "1h"]),
+    ("head-time", ["1s", "2s", "1m"]),
+    ("body-time", ["1s", "2s", "1m"]),
+    ("idle-time", ["1s", "2s", "1h"]),
+    ("stall-time", ["1s", "2s", "1m"]),
 ];
 
 fn variable(key: &str) -> String {

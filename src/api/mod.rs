@@ -10,6 +10,7 @@ mod extract;
 pub mod headers;
 pub mod limits;
 mod meta;
+mod metrics;
 mod moves;
 mod observe;
 mod openapi;
@@ -18,6 +19,9 @@ mod query;
 mod reply;
 mod serve;
 mod simulate;
+mod traffic;
+
+use std::sync::Arc;
 
 use axum::{Router, middleware};
 use tower_http::catch_panic::CatchPanicLayer;
@@ -45,21 +49,27 @@ pub struct App {
     pub access: Access,
 }
 
+/// What counts the requests of [`router`] and of [`refusals`].
+fn traffic() -> Arc<traffic::Traffic> {
+    // Our own document is sound; without it, endpoints would be shown from their first request on.
+    Arc::new(traffic::Traffic::of(&serde_json::from_str(document()).unwrap_or_default()))
+}
+
 /// All routes.
-pub fn router(app: App) -> Router {
+fn router(app: App, traffic: Arc<traffic::Traffic>) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
-    dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here), access)
+    dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here), access, traffic)
 }
 
 /// The answer to requests that do not come as far as [`router`].
-fn refusals() -> Router {
-    dressed(Router::new().fallback(meta::refused), Access::default())
+fn refusals(traffic: Arc<traffic::Traffic>) -> Router {
+    dressed(Router::new().fallback(meta::refused), Access::default(), traffic)
 }
 
 /// What is common to all replies.
-fn dressed(router: Router, Access { keys, origins }: Access) -> Router {
+fn dressed(router: Router, Access { keys, origins }: Access, traffic: Arc<traffic::Traffic>) -> Router {
     let mut routes = router.layer(CatchPanicLayer::custom(meta::panicked));
     if let Some(keys) = keys {
         routes = routes.layer(middleware::from_fn_with_state(keys, access::admit));
@@ -68,7 +78,7 @@ fn dressed(router: Router, Access { keys, origins }: Access) -> Router {
         // Before keys are asked for: a browser asks whether it may send one.
         routes = routes.layer(headers::cross_origin(&origins));
     }
-    routes.layer(middleware::from_fn(observe::observe))
+    routes.layer(middleware::from_fn_with_state(traffic, observe::observe))
 }
 
 /// The routes that the OpenAPI document describes.
@@ -87,4 +97,5 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(meta::problem))
         .routes(routes!(meta::healthz))
         .routes(routes!(meta::readyz))
+        .routes(routes!(metrics::metrics))
 }

@@ -1,51 +1,98 @@
-//! Around every request: an identifier, one line in the log, and the document of a problem.
+//! Around every request: an identifier, one line in the log, one count, and the document of a problem.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use axum::body::Body;
-use axum::extract::{MatchedPath, Request};
-use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::Response;
 use uuid::Uuid;
 
 use super::problem::{Kind, MEDIA_TYPE, Problem};
-use super::{headers, limits};
+use super::traffic::{ABANDONED, Endpoint, Traffic};
+use super::{headers, limits, metrics};
 
 /// The header that carries a request's identifier, both ways.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
+/// A request under way. If it is dropped before it is answered, its client has left.
+struct UnderWay<'a> {
+    start: Instant,
+    id: &'a str,
+    /// What the client says that the request is a part of, for traces.
+    traceparent: Option<&'a str>,
+    method: &'a Method,
+    route: Option<&'a str>,
+    endpoint: &'a Endpoint,
+    answered: bool,
+}
+
 /// Serves a request, and sees to all that is common to every reply.
-pub async fn observe(request: Request, next: Next) -> Response {
+pub async fn observe(State(traffic): State<Arc<Traffic>>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     let id = request_id(&request);
     let method = request.method().clone();
+    let traceparent =
+        request.headers().get("traceparent").filter(|value| value.len() <= limits::REQUEST_ID_LENGTH).cloned();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
+    let route = route.as_ref().map(MatchedPath::as_str);
+    if route == Some(metrics::ROUTE) {
+        request.extensions_mut().insert(Arc::clone(&traffic));
+    }
+    let endpoint = traffic.endpoint(route, &method);
+    let _in_flight = endpoint.in_flight.enter();
+    let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
+    let mut under_way = UnderWay { start, id: &id, traceparent, method: &method, route, endpoint, answered: false };
     let mut response = next.run(request).await;
 
-    let status = response.status();
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
     let code = problem.as_ref().map(Problem::code);
     let cause = problem.as_ref().and_then(Problem::cause).map(str::to_owned);
     if let Some(problem) = problem {
         response = dressed(response, problem, &id);
     }
-    let page = route.as_ref().is_some_and(|route| route.as_str().starts_with("/docs"));
+    let page = route.is_some_and(|route| route.starts_with("/docs"));
     headers::protect(response.headers_mut(), page);
     if let Ok(value) = HeaderValue::from_str(&id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }
-
-    let route = route.as_ref().map_or("none", MatchedPath::as_str);
-    let (request_id, status) = (id.as_str(), status.as_u16());
-    let duration_ms = start.elapsed().as_secs_f64() * 1e3;
-    if status >= 500 {
-        tracing::error!(request_id, %method, route, status, duration_ms, code, cause, "request failed");
-    } else {
-        tracing::info!(request_id, %method, route, status, duration_ms, code, "request");
-    }
+    under_way.answer(response.status(), code, cause.as_deref());
     response
+}
+
+impl UnderWay<'_> {
+    fn answer(&mut self, status: StatusCode, code: Option<&str>, cause: Option<&str>) {
+        self.answered = true;
+        let time = self.start.elapsed();
+        self.endpoint.answered(status.as_u16(), time);
+        let UnderWay { id: request_id, traceparent, method, .. } = *self;
+        let (route, status, duration_ms) = (self.route.unwrap_or("none"), status.as_u16(), time.as_secs_f64() * 1e3);
+        match status {
+            500 => {
+                tracing::error!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
+            }
+            // A fault of the surroundings, which may last, and come with every request.
+            501.. => {
+                tracing::warn!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
+            }
+            _ => tracing::info!(request_id, %method, route, status, duration_ms, code, traceparent, "request"),
+        }
+    }
+}
+
+impl Drop for UnderWay<'_> {
+    fn drop(&mut self) {
+        if !self.answered {
+            let UnderWay { id: request_id, traceparent, method, .. } = *self;
+            let time = self.start.elapsed();
+            self.endpoint.answered(ABANDONED, time);
+            let (route, duration_ms) = (self.route.unwrap_or("none"), time.as_secs_f64() * 1e3);
+            tracing::info!(request_id, %method, route, status = ABANDONED, duration_ms, traceparent, "the client left");
+        }
+    }
 }
 
 /// The identifier that the client has given the request, or one of our own.

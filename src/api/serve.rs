@@ -16,7 +16,7 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::door::{Connections, Door, Entry, Figures, Seat, Service, Socket};
 use super::limits::{BUFFER, GRACE, HEAD, SPARE_TIME};
-use super::{App, refusals, router};
+use super::{App, refusals, router, traffic};
 
 /// How long accepting rests after a failure: most often there are too many open files.
 const REST: Duration = Duration::from_millis(50);
@@ -44,8 +44,9 @@ pub async fn serve_through(
 ) -> io::Result<()> {
     let sessions = app.sessions.clone();
     let body_time = door.limits().body;
-    let (pool, router) = (app.pool.clone(), router(app));
-    let service = Arc::new(Service { pool, router, refusals: refusals(), body_time });
+    let (pool, traffic) = (app.pool.clone(), traffic());
+    let (router, refusals) = (router(app, Arc::clone(&traffic)), refusals(traffic));
+    let service = Arc::new(Service { pool, router, refusals, body_time });
     // Every connection holds a receiver, and is told by it, and counted.
     let (closing, _) = watch::channel(());
     let mut stop = pin!(stop);

@@ -6,6 +6,7 @@ mod overload;
 mod serve;
 mod settings;
 mod simulate;
+mod upkeep;
 
 use std::fmt::Display;
 use std::io::{self, Write as _};
@@ -19,6 +20,7 @@ use healthcheck::Healthcheck;
 use key::Key;
 use serve::Serve;
 use settings::{Refusal, Settings};
+use upkeep::{Backup, Check};
 
 /// Frictional contact with memory, exactly: a service, and the same on the command line.
 #[derive(Parser)]
@@ -48,6 +50,10 @@ enum Command {
     /// Keys for those who may use a service.
     #[command(subcommand)]
     Key(Key),
+    /// Copy the store to a file, while the service runs or not.
+    Backup(Backup),
+    /// Look whether a store is sound: make every contact again from its moves, and compare. Nothing is written.
+    Check(Check),
     /// Draw the figures of the paper, as SVG and CSV.
     Figures {
         /// The folder to write them to.
@@ -87,6 +93,8 @@ impl Command {
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
             Command::Key(key) => key::key(key),
+            Command::Backup(backup) => backup.run(),
+            Command::Check(check) => check.run(),
             Command::Figures { out } => {
                 figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
             }

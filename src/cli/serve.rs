@@ -14,7 +14,9 @@ use stickslip::simulation::Pool;
 use stickslip::store::{self, Store};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
+use tracing_subscriber::{EnvFilter, Layer as _, fmt};
 
 use super::overload::Overload;
 use super::settings::ConfigFile;
@@ -63,6 +65,9 @@ pub struct Serve {
     /// How to log it.
     #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
+    /// Send a trace of each request to an OpenTelemetry collector, such as `http://localhost:4318` (OTLP over HTTP).
+    #[arg(long, env = "STICKSLIP_OTLP_ENDPOINT", value_parser = collector)]
+    otlp_endpoint: Option<String>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -74,20 +79,57 @@ enum LogFormat {
 /// Serves until it is told to stop.
 pub fn serve(options: Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
-    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr);
-    match options.log_format {
-        LogFormat::Text => log.with_ansi(false).init(),
-        LogFormat::Json => log.json().flatten_event(true).init(),
-    }
-    let access = access(&options)?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    let traces = options.otlp_endpoint.as_deref().map(|endpoint| {
+        let _inside = runtime.enter();
+        stickslip::otlp::layer(endpoint)
+    });
+    let (spans, exporter) = traces.unzip();
+    let log = fmt::layer().with_writer(io::stderr);
+    let lines = match options.log_format {
+        LogFormat::Text => log.with_ansi(false).boxed(),
+        LogFormat::Json => log.json().flatten_event(true).boxed(),
+    };
+    tracing_subscriber::registry().with(spans).with(lines.with_filter(filter)).init();
+    log_panics();
+    let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
+    tracing::info!(
+        version = env!("CARGO_PKG_VERSION"),
+        commit = option_env!("STICKSLIP_COMMIT"),
+        pid = std::process::id(),
+        cache_bytes = options.cache_bytes.as_u64(),
+        expire_after_s,
+        "starting"
+    );
+    let access = access(&options)?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
     let served = runtime.block_on(listen(&options, access, Arc::clone(&store)));
+    if let Some(exporter) = exporter {
+        runtime.block_on(exporter.finish());
+    }
     runtime.shutdown_timeout(LAST_WORK);
     // The last handle, now that no request holds one: the store is closed before the process ends.
     drop(store);
+    if served.is_ok() {
+        tracing::info!("stopped");
+    }
     served
+}
+
+/// Sends panics to the log, with their place. The request that one of them ends is told by the line of that request.
+fn log_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(ToString::to_string);
+        tracing::error!(place, what = panic.payload_as_str(), "panicked");
+    }));
+}
+
+fn collector(text: &str) -> Result<String, String> {
+    match text.strip_prefix("http://") {
+        Some(place) if !place.is_empty() => Ok(text.to_owned()),
+        _ => Err("expected http:// and the place of a collector".to_owned()),
+    }
 }
 
 /// Who may use the service. Without keys nobody else may reach it, unless that is wanted.
@@ -141,6 +183,7 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let sessions = Sessions::new(store, pool.clone(), capacity);
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
+    tracing::info!(%address, threads = pool.meters().threads, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     let app = App { sessions, pool, access };
     api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))

@@ -54,6 +54,11 @@ impl Reader<'_> {
         Some(u16::from_le_bytes(*head))
     }
 
+    /// Takes the versions at the beginning; whether they are those of this program.
+    fn is_ours(&mut self) -> bool {
+        self.version() == Some(LAYOUT) && self.version() == Some(ENGINE)
+    }
+
     /// A number whatever its bits.
     fn any(&mut self) -> Option<f64> {
         let (head, rest) = self.0.split_first_chunk()?;
@@ -106,13 +111,19 @@ impl Contact {
         writer.0
     }
 
+    /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are sound.
+    #[must_use]
+    pub fn packs_like(bytes: &[u8]) -> bool {
+        Reader(bytes).is_ours()
+    }
+
     /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a contact of
     /// the same definition, such as the virgin one. `None` for bytes that are cut short, of another version, of a contact
     /// with another preload, or no state of a contact at all; damage that leaves sound numbers goes unnoticed.
     #[must_use]
     pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
         let mut reader = Reader(bytes);
-        if reader.version()? != LAYOUT || reader.version()? != ENGINE {
+        if !reader.is_ours() {
             return None;
         }
         for value in self.marks() {

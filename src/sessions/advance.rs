@@ -76,8 +76,10 @@ impl Sessions {
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
             // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
             let receipt = idempotency::receipt(key.clone(), &reply);
+            let moves = records.len() as u64;
             match self.store.append(guard.id(), sequence, records, receipt).await {
                 Ok(()) => {
+                    self.meters.moves.add(moves);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);

@@ -11,6 +11,7 @@ use hashlink::LruCache;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
+use crate::metrics::Counter;
 use crate::simulation::Reservation;
 use crate::store::Tenant;
 
@@ -29,6 +30,8 @@ pub(super) struct Cache {
     desks: Mutex<HashMap<Name, Desk>>,
     states: Mutex<States>,
     capacity: usize,
+    // How often a state that was asked for was at hand.
+    hits: Counter,
 }
 
 /// A session that somebody works on or waits for. It goes with the last of them, so that a session has one lock at a time.
@@ -66,7 +69,7 @@ impl Cache {
     /// A cache of at most so many bytes.
     pub(super) fn new(capacity: usize) -> Cache {
         let states = States { by_name: LruCache::new_unbounded(), bytes: 0 };
-        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity }
+        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity, hits: Counter::default() }
     }
 
     /// Waits until the session is one's own. Whoever gives up waiting has left.
@@ -79,6 +82,16 @@ impl Cache {
     /// Whether the state of a session is at hand.
     pub(super) fn holds(&self, tenant: &Tenant, id: Uuid) -> bool {
         self.states().by_name.contains_key(&(tenant.clone(), id))
+    }
+
+    /// How many bytes there may be.
+    pub(super) fn capacity(&self) -> usize {
+        self.capacity
+    }
+
+    /// How often a state was at hand.
+    pub(super) fn hits(&self) -> u64 {
+        self.hits.get()
     }
 
     /// Bytes of the states at hand, and how many they are.
@@ -98,6 +111,7 @@ impl Cache {
         let mut states = self.states();
         let (live, bytes) = states.by_name.remove(name)?;
         states.bytes -= bytes;
+        self.hits.add(1);
         Some(live)
     }
 

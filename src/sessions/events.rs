@@ -42,6 +42,11 @@ impl Streams {
     pub(super) fn new() -> Streams {
         Streams { places: Arc::new(Semaphore::new(STREAMS)), ending: Arc::new(watch::Sender::new(false)) }
     }
+
+    /// How many listen.
+    pub(super) fn open(&self) -> usize {
+        STREAMS - self.places.available_permits()
+    }
 }
 
 /// A listener.

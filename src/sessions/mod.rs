@@ -14,11 +14,13 @@
 
 mod advance;
 mod cache;
+mod check;
 mod error;
 mod events;
 mod house;
 mod idempotency;
 mod live;
+mod meters;
 mod read;
 mod replay;
 mod snapshot;
@@ -35,9 +37,11 @@ use crate::wire::session::Creation;
 
 pub use cache::CAPACITY;
 use cache::{Cache, Guard};
+pub use check::{Checked, Finding, check};
 pub use error::SessionError;
 pub use events::{Happening, STREAMS};
 use live::Live;
+pub use meters::Readings;
 
 /// How often a change that another process has forestalled is tried. Each time, that process has got on.
 const ATTEMPTS: usize = 100;
@@ -52,6 +56,7 @@ pub struct Sessions {
     // A permit for each snapshot that is being kept.
     snapshots: Arc<Semaphore>,
     streams: events::Streams,
+    meters: Arc<meters::Meters>,
 }
 
 impl Sessions {
@@ -66,6 +71,7 @@ impl Sessions {
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             streams: events::Streams::new(),
+            meters: Arc::default(),
         }
     }
 

@@ -78,7 +78,7 @@ impl Sessions {
 
     /// Brings a session that is not at hand from the store.
     async fn open(&self, guard: &mut Guard) -> Result<(), SessionError> {
-        let id = guard.id();
+        let (id, begin) = (guard.id(), Instant::now());
         // The snapshot first: taken later, it might be of a move that the session found has not made yet.
         let snapshot = self.store.snapshot(id).await;
         let session = self.own(id).await?;
@@ -103,6 +103,7 @@ impl Sessions {
             }
             live.shared = false;
         }
+        self.meters.open.observe_time(begin.elapsed());
         Ok(())
     }
 

@@ -100,6 +100,29 @@ fn unsealed(virgin: &Contact, bytes: &[u8]) -> Option<Contact> {
     (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| virgin.unpack(state))?
 }
 
+/// What a snapshot is worth.
+pub(super) enum Worth {
+    /// It is the state, to the last bit.
+    Same,
+    /// Another engine made it; it is never read.
+    Foreign,
+    /// It is not what was written; it is never read.
+    Damaged,
+    /// It is another state.
+    Wrong,
+}
+
+/// Compares a snapshot with the state that it should be.
+pub(super) fn worth(state: &Contact, snapshot: &[u8]) -> Worth {
+    let sound = snapshot.split_last_chunk::<CHECKSUM>();
+    match sound.filter(|(state, checksum)| crc32fast::hash(state) == u32::from_le_bytes(**checksum)) {
+        None => Worth::Damaged,
+        Some((state, _)) if !Contact::packs_like(state) => Worth::Foreign,
+        Some(_) if snapshot == sealed(state) => Worth::Same,
+        Some(_) => Worth::Wrong,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::Beyond;

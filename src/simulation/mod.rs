@@ -13,7 +13,9 @@ mod stop;
 mod tests;
 mod warnings;
 
-pub use pool::{BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, QUEUE, REQUESTS, Reservation, Taken};
+pub use pool::{
+    BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, PoolMeters, QUEUE, REQUESTS, Reservation, Taken,
+};
 pub use run::{Timer, accuracy, contact, follow, protocol, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};

@@ -7,11 +7,13 @@ use std::future::Future;
 use std::pin::pin;
 use std::sync::Arc;
 use std::task::Poll;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
+
+use crate::metrics::{Counter, Gauge, Histogram, SECONDS, SHORT_SECONDS};
 
 use super::cost::{INLINE, Nanoseconds};
 use super::{LONGEST_WORK, Stop, StopOnDrop};
@@ -68,6 +70,7 @@ struct Shared {
     places: Arc<Semaphore>,
     units: Arc<Semaphore>,
     queue: Arc<Semaphore>,
+    meters: Arc<PoolMeters>,
 }
 
 /// A place among the requests that are worked on, until dropped.
@@ -77,6 +80,23 @@ pub struct Place(#[expect(dead_code, reason = "held for its drop")] OwnedSemapho
 /// Bytes that are spoken for, until dropped. None is as good as few.
 #[derive(Debug, Default)]
 pub struct Reservation(Option<OwnedSemaphorePermit>);
+
+/// What a pool counts.
+#[derive(Debug)]
+pub struct PoolMeters {
+    /// Its threads.
+    pub threads: usize,
+    /// Work that waits for a thread.
+    pub waiting: Gauge,
+    /// Work on a thread.
+    pub running: Gauge,
+    /// Work for which no thread became free in time.
+    pub refused: Counter,
+    /// How long work waited for a thread, s.
+    pub wait: Histogram,
+    /// How long work took, at once or on a thread, s.
+    pub work: Histogram,
+}
 
 /// What is taken at present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +144,7 @@ impl Pool {
             places: semaphore(capacity.requests),
             units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
             queue: semaphore(capacity.queue),
+            meters: Arc::new(PoolMeters::new(capacity.threads.max(1))),
         }))
     }
 
@@ -220,7 +241,13 @@ impl Pool {
         Ok(())
     }
 
-    /// Does the work: at once if it is cheap, else on a thread of its own.
+    /// What it has counted.
+    #[must_use]
+    pub fn meters(&self) -> &PoolMeters {
+        &self.0.meters
+    }
+
+    /// Does the work: at once if it is cheap, else on a thread of its own. What costs nothing is not counted.
     ///
     /// # Errors
     /// As [`Pool::wait`], or [`PoolError::Panicked`] if the work did.
@@ -229,16 +256,51 @@ impl Pool {
         cost: Nanoseconds,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T, PoolError> {
-        if cost < INLINE {
+        if cost == 0 {
             return Ok(work());
         }
-        let permit = self.permits(&self.0.threads, 1).await?;
+        if cost < INLINE {
+            return Ok(self.0.meters.timed(work));
+        }
+        let meters = Arc::clone(&self.0.meters);
+        let (waiting, begin) = (meters.waiting.enter(), Instant::now());
+        let permit = match self.permits(&self.0.threads, 1).await {
+            Ok(permit) => permit,
+            Err(error) => {
+                meters.refused.add(1);
+                return Err(error);
+            }
+        };
+        meters.wait.observe_time(begin.elapsed());
+        drop(waiting);
+        let meters = Arc::clone(&self.0.meters);
         let task = spawn_blocking(move || {
             // The permit stays with the work: a caller that gives up does not free a thread that is still busy.
             let _permit = permit;
-            work()
+            let _running = meters.running.enter();
+            meters.timed(work)
         });
         task.await.map_err(|_| PoolError::Panicked)
+    }
+}
+
+impl PoolMeters {
+    fn new(threads: usize) -> PoolMeters {
+        PoolMeters {
+            threads,
+            waiting: Gauge::default(),
+            running: Gauge::default(),
+            refused: Counter::default(),
+            wait: Histogram::new(SECONDS),
+            work: Histogram::new(SHORT_SECONDS),
+        }
+    }
+
+    fn timed<T>(&self, work: impl FnOnce() -> T) -> T {
+        let begin = Instant::now();
+        let done = work();
+        self.work.observe_time(begin.elapsed());
+        done
     }
 }
 

@@ -6,6 +6,7 @@
 //! their URLs.
 
 pub mod changes;
+pub mod commits;
 pub mod memory;
 pub mod open;
 pub mod postgres;
@@ -20,8 +21,9 @@ use uuid::Uuid;
 use crate::wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
+pub use commits::Commits;
 pub use memory::MemoryStore;
-pub use open::{OpenError, open};
+pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
 pub use sqlite::SqliteStore;
 
@@ -210,4 +212,14 @@ pub trait Store: Send + Sync + 'static {
 
     /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
     fn changes(&self) -> &Changes;
+
+    /// What it has committed; none if it has nothing to commit.
+    fn commits(&self) -> Option<&Commits> {
+        None
+    }
+
+    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no session.
+    fn examine(&self) -> Answer<'_, Vec<String>> {
+        Box::pin(std::future::ready(Ok(Vec::new())))
+    }
 }

@@ -15,33 +15,92 @@ pub struct OpenError {
     pub why: String,
 }
 
+/// What a URL names.
+enum Kind<'a> {
+    Memory,
+    Sqlite(&'a Path),
+    Postgres,
+}
+
+impl OpenError {
+    fn new(store: impl Into<String>, why: impl Into<String>) -> OpenError {
+        OpenError { store: store.into(), why: why.into() }
+    }
+
+    /// Of a URL that may hold a password, or be meant to.
+    fn of(url: &str, why: impl Into<String>) -> OpenError {
+        let (kind, _) = url.split_once(':').unwrap_or((url, ""));
+        OpenError::new(format!("{kind}:"), why)
+    }
+}
+
+fn kind(url: &str) -> Result<Kind<'_>, OpenError> {
+    if url == "memory:" {
+        return Ok(Kind::Memory);
+    }
+    if let Some(path) = url.strip_prefix("sqlite:") {
+        // As URLs go: two slashes stand before a host, and there is none.
+        let path = path.strip_prefix("//").unwrap_or(path);
+        if path.is_empty() || path == ":memory:" {
+            return Err(OpenError::new(url, "expected the path of a file after sqlite:"));
+        }
+        return Ok(Kind::Sqlite(Path::new(path)));
+    }
+    if url.starts_with("postgres://") || url.starts_with("postgresql://") {
+        return Ok(Kind::Postgres);
+    }
+    Err(OpenError::of(url, "unknown kind of store, expected sqlite:PATH, postgres://… or memory:"))
+}
+
 /// Opens a store: `memory:`, `sqlite:` and the path of a file, which is made if it is missing, or the URL of a PostgreSQL
 /// database, `postgres://…`.
 ///
 /// # Errors
 /// [`OpenError`] if the URL names no store, or one that cannot be used.
 pub async fn open(url: &str) -> Result<Arc<dyn Store>, OpenError> {
-    let failed = |why: &str| OpenError { store: url.to_owned(), why: why.to_owned() };
-    if url == "memory:" {
-        tracing::warn!("contacts are kept in memory: all of them are gone when this process ends");
-        return Ok(Arc::new(MemoryStore::new()));
-    }
-    if let Some(path) = url.strip_prefix("sqlite:") {
-        // As URLs go: two slashes stand before a host, and there is none.
-        let path = path.strip_prefix("//").unwrap_or(path);
-        if path.is_empty() || path == ":memory:" {
-            return Err(failed("expected the path of a file after sqlite:"));
+    match kind(url)? {
+        Kind::Memory => {
+            tracing::warn!("contacts are kept in memory: all of them are gone when this process ends");
+            Ok(Arc::new(MemoryStore::new()))
         }
-        let store = SqliteStore::open(Path::new(path)).map_err(|why| failed(&why))?;
-        tracing::info!(path, "contacts are kept in a file");
-        return Ok(Arc::new(store));
+        Kind::Sqlite(path) => {
+            let store = SqliteStore::open(path).map_err(|why| OpenError::new(url, why))?;
+            tracing::info!(path = %path.display(), "contacts are kept in a file");
+            Ok(Arc::new(store))
+        }
+        Kind::Postgres => {
+            let store = PostgresStore::open(url).await.map_err(|error| OpenError::of(url, error.to_string()))?;
+            tracing::info!(place = store.place(), "contacts are kept in a database");
+            Ok(Arc::new(store))
+        }
     }
-    // From here on the URL may hold a password, or be meant to.
-    let (kind, rest) = url.split_once(':').unwrap_or((url, ""));
-    let failed = |why: String| OpenError { store: format!("{kind}:"), why };
-    if matches!(kind, "postgres" | "postgresql") && rest.starts_with("//") {
-        let store = PostgresStore::open(url).await.map_err(|error| failed(error.to_string()))?;
-        return Ok(Arc::new(store));
+}
+
+/// Opens a store to look at and no more, beside those who work with it. Nothing is made, or brought up to date.
+///
+/// # Errors
+/// [`OpenError`] if the URL names no store, or one that cannot be read.
+pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
+    match kind(url)? {
+        Kind::Memory => Err(OpenError::new(url, "it is in the memory of the process that serves it, and nowhere else")),
+        Kind::Sqlite(path) => Ok(Arc::new(SqliteStore::open_to_read(path).map_err(|why| OpenError::new(url, why))?)),
+        Kind::Postgres => {
+            let store = PostgresStore::open_to_read(url).await;
+            Ok(Arc::new(store.map_err(|error| OpenError::of(url, error.to_string()))?))
+        }
     }
-    Err(failed("unknown kind of store, expected sqlite:PATH, postgres://… or memory:".to_owned()))
+}
+
+/// Copies a store to a file that is not there yet, while it is in use or not; says how many bytes that has.
+///
+/// # Errors
+/// [`OpenError`] if the store is none that is kept in a file, or why there is no copy.
+pub fn backup(url: &str, copy: &Path) -> Result<u64, OpenError> {
+    match kind(url)? {
+        Kind::Memory => Err(OpenError::new(url, "it is in the memory of the process that serves it, and nowhere else")),
+        Kind::Sqlite(path) => SqliteStore::backup(path, copy).map_err(|why| OpenError::new(url, why)),
+        Kind::Postgres => {
+            Err(OpenError::of(url, "a database is backed up by its own means: pg_dump --format=custom --file=FILE URL"))
+        }
+    }
 }

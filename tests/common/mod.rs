@@ -8,7 +8,7 @@ pub mod process;
 pub mod raw;
 
 use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
 
 use reqwest::{Method, Response};
@@ -78,6 +78,7 @@ impl Server {
 /// The real binary with a server in it; killed when it is dropped.
 pub struct Binary {
     pub child: Child,
+    pub address: String,
     pub client: Client,
 }
 
@@ -94,8 +95,13 @@ impl Binary {
         let mut line = String::new();
         BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
         let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
-        Binary { child, client: Client::new(base) }
+        Binary { child, address: base.to_owned(), client: Client::new(base) }
     }
+}
+
+/// What the binary does when called so, once it has ended by itself.
+pub fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stickslip")).args(arguments).output().unwrap()
 }
 
 impl Drop for Binary {

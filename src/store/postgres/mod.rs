@@ -30,7 +30,9 @@ use uuid::Uuid;
 
 use crate::wire::SessionSummary;
 
-use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::{
+    Answer, Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant,
+};
 
 use fault::{Fault, Pauses};
 use job::{Change, Job};
@@ -75,6 +77,30 @@ impl PostgresStore {
         let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
         let listener = tokio::spawn(listen::listen(Arc::clone(&link), Arc::clone(&changes))).abort_handle();
         Ok(PostgresStore { link, writer, changes, listener })
+    }
+
+    /// Connects to a database to look at, beside the processes that work with it. Its tables must be there already.
+    ///
+    /// # Errors
+    /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
+    pub async fn open_to_read(url: &str) -> Result<PostgresStore, StoreError> {
+        let target = Target::parse(url).map_err(StoreError::Failed)?;
+        let place = target.place();
+        let checked = async { schema::check(&target.open().await?).await };
+        checked
+            .await
+            .map_err(|error: SchemaError| StoreError::Failed(format!("{place}: {}", Fault::from(error).finally())))?;
+        let link = Arc::new(Link::new(target, false)?);
+        let changes = Arc::new(Changes::default());
+        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
+        let listener = tokio::spawn(std::future::pending::<()>()).abort_handle();
+        Ok(PostgresStore { link, writer, changes, listener })
+    }
+
+    /// Which database it is, without the password.
+    #[must_use]
+    pub fn place(&self) -> String {
+        self.link.target.place()
     }
 }
 
@@ -223,6 +249,19 @@ impl Store for PostgresStore {
 
     fn changes(&self) -> &Changes {
         &self.changes
+    }
+
+    fn examine(&self) -> Answer<'_, Vec<String>> {
+        async {
+            let strays = self.link.rows(sql::STRAYS, &[]).await?;
+            let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
+            Ok(strays.iter().map(|row| line(row.get(0))).collect())
+        }
+        .boxed()
+    }
+
+    fn commits(&self) -> Option<&Commits> {
+        Some(&self.writer.commits)
     }
 
     fn sequence(&self, id: Uuid) -> Answer<'_, u64> {

@@ -1,5 +1,7 @@
 //! The tables, versioned: a database is brought up to date at start, by one replica at a time.
 
+use std::cmp::Ordering;
+
 use tokio_postgres::{Client, Error};
 
 /// The migrations, oldest first. A published one is never edited: the version of a database is how many it has seen.
@@ -85,6 +87,9 @@ pub(super) enum SchemaError {
     /// A later version of this program has been here.
     #[error("the database has schema version {found}, this program knows up to {known}: start the newer program")]
     Newer { found: i32, known: i32 },
+    /// An earlier version has been here, and this program may not change anything.
+    #[error("the database has schema version {found}: `stickslip serve` brings it to version {known}")]
+    Older { found: i32, known: i32 },
     /// The database refused or was lost.
     #[error(transparent)]
     Database(#[from] Error),
@@ -109,4 +114,14 @@ pub(super) async fn migrate(client: &mut Client) -> Result<(), SchemaError> {
         return Err(SchemaError::Newer { found, known });
     }
     Ok(transaction.commit().await?)
+}
+
+/// Looks whether the tables are as this program knows them, and changes nothing.
+pub(super) async fn check(client: &Client) -> Result<(), SchemaError> {
+    let (found, known): (i32, _) = (client.query_one(CURRENT, &[]).await?.get(0), MIGRATIONS.len() as i32);
+    match found.cmp(&known) {
+        Ordering::Less => Err(SchemaError::Older { found, known }),
+        Ordering::Equal => Ok(()),
+        Ordering::Greater => Err(SchemaError::Newer { found, known }),
+    }
 }

@@ -155,3 +155,14 @@ WITH gone AS (
     INSERT INTO expired (id, tenant) SELECT id, tenant FROM gone ON CONFLICT DO NOTHING
 )
 SELECT id FROM gone";
+
+/// Moves whose session is not there: from owner to owner by the index, past their moves.
+pub(super) const STRAYS: &str = "
+WITH RECURSIVE owners (contact) AS (
+    (SELECT contact FROM moves ORDER BY contact LIMIT 1)
+    UNION ALL
+    SELECT (SELECT moves.contact FROM moves WHERE moves.contact > owners.contact ORDER BY moves.contact LIMIT 1)
+    FROM owners WHERE owners.contact IS NOT NULL
+)
+SELECT contact FROM owners
+WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.id = owners.contact)";

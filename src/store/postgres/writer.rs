@@ -2,13 +2,13 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use futures::future::join_all;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
-use crate::store::{Changes, RECEIPT_LIFETIME, StoreError};
+use crate::store::{Changes, Commits, RECEIPT_LIFETIME, StoreError};
 
 use super::explain::{Verdict, explain};
 use super::fault::{Fault, Pauses};
@@ -29,14 +29,16 @@ const LOSSES: usize = 4;
 /// Where changes are handed in.
 pub(super) struct Writer {
     queue: mpsc::Sender<Job>,
+    pub(super) commits: Arc<Commits>,
 }
 
 impl Writer {
     /// Starts the writer. It ends, after what waits, when this handle is dropped.
     pub(super) fn start(link: Arc<Link>, changes: Arc<Changes>) -> Writer {
         let (queue, jobs) = mpsc::channel(QUEUE);
-        tokio::spawn(Desk { link, changes, line: None }.run(jobs));
-        Writer { queue }
+        let commits = Arc::new(Commits::new("postgres"));
+        tokio::spawn(Desk { link, changes, commits: Arc::clone(&commits), line: None }.run(jobs));
+        Writer { queue, commits }
     }
 
     /// Makes a change, and returns when it is committed.
@@ -44,6 +46,7 @@ impl Writer {
         &self,
         job: impl FnOnce(oneshot::Sender<Result<(), StoreError>>) -> Job,
     ) -> Result<(), StoreError> {
+        let _pending = self.commits.pending.enter();
         let (answer, answered) = oneshot::channel();
         match timeout(PATIENCE, self.queue.send(job(answer))).await {
             Ok(Ok(())) => {}
@@ -58,6 +61,7 @@ impl Writer {
 struct Desk {
     link: Arc<Link>,
     changes: Arc<Changes>,
+    commits: Arc<Commits>,
     line: Option<Line>,
 }
 
@@ -85,10 +89,12 @@ impl Desk {
     async fn settle(&mut self, mut batch: Vec<Job>, mut in_doubt: bool) {
         let (mut pauses, mut collisions, mut losses) = (Pauses::default(), 0, 0);
         while !batch.is_empty() {
+            let begin = Instant::now();
             let fault = match self.line().await {
                 Ok(line) => match line.fly(&batch).await {
                     Ok(found) => {
                         self.link.outage.end();
+                        self.commits.committed(batch.len(), begin.elapsed());
                         for job in batch {
                             self.landed(found.get(&job.id()).copied(), job, in_doubt);
                         }
@@ -103,6 +109,7 @@ impl Desk {
                 },
                 Err(fault) => fault,
             };
+            self.commits.failed.add(1);
             match fault {
                 Fault::Lost(text) => {
                     self.line = None;

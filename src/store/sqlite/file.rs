@@ -158,7 +158,7 @@ fn supported(version: i32) -> Result<(), String> {
     }
 }
 
-fn lock(file: &File) -> Result<(), String> {
+pub(super) fn lock(file: &File) -> Result<(), String> {
     match file.try_lock() {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => Err("another process is using it".to_owned()),
@@ -192,7 +192,7 @@ fn length_at(path: &Path) -> u64 {
 }
 
 /// Makes a rename durable.
-fn sync_folder(path: &Path) -> io::Result<()> {
+pub(super) fn sync_folder(path: &Path) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     File::open(folder)?.sync_all()
 }

@@ -5,6 +5,7 @@
 //! between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in `docs/storage.md`. What may
 //! fail, and what it means then, is in `fault.rs`.
 
+mod backup;
 mod change;
 mod fault;
 mod file;
@@ -27,7 +28,7 @@ use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::{Answer, Changes, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::{Answer, Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
 use crate::wire::SessionSummary;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
@@ -48,6 +49,7 @@ pub struct SqliteStore {
     writer: Option<JoinHandle<()>>,
     readers: Readers,
     changes: Arc<Changes>,
+    commits: Arc<Commits>,
 }
 
 impl SqliteStore {
@@ -58,7 +60,9 @@ impl SqliteStore {
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
         let file::Opened { database, lock } = file::open(path)?;
         let changes = Arc::new(Changes::default());
-        let writer = Writer::new(database, Arc::clone(&changes)).map_err(|error| error.to_string())?;
+        let commits = Arc::new(Commits::new("sqlite"));
+        let writer =
+            Writer::new(database, Arc::clone(&changes), Arc::clone(&commits)).map_err(|error| error.to_string())?;
         let (queue, requests) = mpsc::channel(QUEUE);
         let held = Arc::clone(&lock);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
@@ -66,12 +70,31 @@ impl SqliteStore {
             drop(held);
         });
         let thread = thread.map_err(|error| error.to_string())?;
-        let readers = Readers::new(path.to_owned(), lock);
-        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes })
+        let readers = Readers::new(path.to_owned(), Some(lock));
+        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes, commits })
+    }
+
+    /// Opens a file to look at, beside the process that serves it or alone. Changes fail.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in one line.
+    pub fn open_to_read(path: &Path) -> Result<SqliteStore, String> {
+        backup::look(path)?;
+        let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
+        Ok(SqliteStore { queue: None, writer: None, readers: Readers::new(path.to_owned(), None), changes, commits })
+    }
+
+    /// Copies the store in a file to another that is not there yet, while it is in use or not; says how many bytes that has.
+    ///
+    /// # Errors
+    /// Why there is no copy, in one line.
+    pub fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
+        backup::backup(path, copy)
     }
 
     async fn change(&self, change: Change) -> Result<u64, StoreError> {
         let gone = || StoreError::Failed("the writer of the database has ended".to_owned());
+        let _pending = self.commits.pending.enter();
         let (reply, outcome) = oneshot::channel();
         let queue = self.queue.as_ref().ok_or_else(gone)?;
         queue.send(Request { change, reply }).await.map_err(|_| gone())?;
@@ -175,5 +198,13 @@ impl Store for SqliteStore {
 
     fn changes(&self) -> &Changes {
         &self.changes
+    }
+
+    fn commits(&self) -> Option<&Commits> {
+        Some(&self.commits)
+    }
+
+    fn examine(&self) -> Answer<'_, Vec<String>> {
+        self.look(read::examine)
     }
 }

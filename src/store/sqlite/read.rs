@@ -96,6 +96,42 @@ pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Resul
     Ok((idle, (passed == IDLE_PAGE).then_some(last)))
 }
 
+/// What is wrong with the file, or with what belongs to no session alone.
+pub(super) fn examine(database: &Connection) -> Result<Vec<String>, ReadError> {
+    let texts = |sql: &str| -> rusqlite::Result<Vec<String>> {
+        database.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
+    };
+    let mut found = texts("PRAGMA integrity_check(100)")?;
+    found.retain(|line| line != "ok");
+    // From owner to owner by the index, past their moves.
+    found.extend(texts(
+        "WITH RECURSIVE owners (contact) AS (
+             SELECT min(contact) FROM moves
+             UNION ALL
+             SELECT (SELECT min(contact) FROM moves WHERE contact > owners.contact) FROM owners
+             WHERE contact IS NOT NULL)
+         SELECT 'the moves of contact number ' || contact || ' belong to no contact' FROM owners
+         WHERE contact IS NOT NULL AND contact NOT IN (SELECT number FROM contacts)
+             AND contact NOT IN (SELECT contact FROM unowned)",
+    )?);
+    found.extend(texts(
+        "SELECT 'the snapshot of contact number ' || contact || ' belongs to no contact' FROM snapshots
+         WHERE contact NOT IN (SELECT number FROM contacts)",
+    )?);
+    // The last move of a session says itself how many there are; a reply that was sent is a second witness.
+    found.extend(texts(
+        "WITH replies AS (
+             SELECT CASE WHEN json_valid(CAST(body AS TEXT)) THEN CAST(body AS TEXT) ->> '$.id' END AS id,
+                    max(sequence) AS sequence
+             FROM receipts GROUP BY 1)
+         SELECT 'contact ' || c.id || ': move ' || r.sequence || ' was acknowledged, and the last one stored is '
+             || coalesce((SELECT max(sequence) FROM moves WHERE contact = c.number), 0)
+         FROM replies AS r INNER JOIN contacts AS c ON c.id = r.id
+         WHERE r.sequence > coalesce((SELECT max(sequence) FROM moves WHERE contact = c.number), 0)",
+    )?);
+    Ok(found)
+}
+
 fn number(database: &Connection, id: Uuid) -> Result<i64, ReadError> {
     let mut statement = database.prepare_cached("SELECT number FROM contacts WHERE id = ?1")?;
     let found = statement.query_row([id.to_string()], |row| row.get(0)).optional()?;

@@ -1,7 +1,7 @@
 //! Looking at the database beside the writer. In write-ahead mode neither waits for the other.
 
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rusqlite::{Connection, OpenFlags};
@@ -29,7 +29,7 @@ struct Idle {
     connections: Mutex<Vec<Connection>>,
     path: PathBuf,
     // Dropped after the connections: to close any handle of the file would end the locks that SQLite holds on it.
-    _lock: Arc<File>,
+    _lock: Option<Arc<File>>,
 }
 
 /// Why a look came to nothing.
@@ -56,7 +56,7 @@ impl From<ReadError> for StoreError {
 }
 
 impl Readers {
-    pub(super) fn new(path: PathBuf, lock: Arc<File>) -> Readers {
+    pub(super) fn new(path: PathBuf, lock: Option<Arc<File>>) -> Readers {
         let idle = Idle { connections: Mutex::default(), path, _lock: lock };
         Readers { permits: Arc::new(Semaphore::new(READERS)), idle: Arc::new(idle) }
     }
@@ -92,11 +92,7 @@ impl Idle {
         if let Some(connection) = self.lock().pop() {
             return Ok(connection);
         }
-        let connection = Connection::open_with_flags(
-            &self.path,
-            OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX,
-        )?;
-        connection.busy_timeout(super::BUSY)?;
+        let connection = reading(&self.path)?;
         connection.set_prepared_statement_cache_capacity(STATEMENTS);
         Ok(connection)
     }
@@ -108,4 +104,12 @@ impl Idle {
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Connection>> {
         self.connections.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// A connection that can only read.
+pub(super) fn reading(path: &Path) -> rusqlite::Result<Connection> {
+    let connection =
+        Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
+    connection.busy_timeout(super::BUSY)?;
+    Ok(connection)
 }

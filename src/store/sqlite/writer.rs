@@ -6,12 +6,13 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::time::Instant;
 
 use rusqlite::Connection;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::{Changes, StoreError};
+use crate::store::{Changes, Commits, StoreError};
 
 use super::change::{Change, Done, Fork, Undone};
 use super::fault::{Stage, store_error, worth_splitting};
@@ -37,6 +38,7 @@ pub(super) struct Writer {
     database: Connection,
     changes: Arc<Changes>,
     known: Known,
+    commits: Arc<Commits>,
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
@@ -54,7 +56,7 @@ struct Failure {
 }
 
 impl Writer {
-    pub(super) fn new(database: Connection, changes: Arc<Changes>) -> rusqlite::Result<Writer> {
+    pub(super) fn new(database: Connection, changes: Arc<Changes>, commits: Arc<Commits>) -> rusqlite::Result<Writer> {
         fork::abandon_all(&database)?;
         let sql = "SELECT max(coalesce((SELECT max(number) FROM contacts), 0),
                               coalesce((SELECT max(contact) FROM moves), 0),
@@ -65,6 +67,7 @@ impl Writer {
             database,
             changes,
             known: Known::nothing(),
+            commits,
             next_number: highest + 1,
             forks,
             unowned: true,
@@ -123,7 +126,7 @@ impl Writer {
     }
 
     fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
-        let mut number = self.next_number;
+        let (mut number, begin) = (self.next_number, Instant::now());
         let outcomes = self.transaction(|database, known| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
@@ -137,6 +140,7 @@ impl Writer {
             Ok(outcomes)
         })?;
         self.next_number = number;
+        self.commits.committed(batch.len(), begin.elapsed());
         Ok(outcomes)
     }
 
@@ -198,7 +202,7 @@ impl Writer {
             Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
             Err(error) => Err((error, Stage::Before)),
         };
-        self.healthy = outcome.is_ok();
+        self.note(outcome.as_ref().err().map(|(error, _)| error));
         outcome.map_err(|(error, stage)| {
             self.known.clear();
             // Some failures end the transaction by themselves.
@@ -209,6 +213,21 @@ impl Writer {
             }
             Failure { error, stage }
         })
+    }
+
+    /// Notes how a transaction ended, and logs it where the one before ended otherwise.
+    fn note(&mut self, failure: Option<&rusqlite::Error>) {
+        match failure {
+            Some(error) => {
+                self.commits.failed.add(1);
+                if self.healthy {
+                    tracing::error!(%error, "the database takes no changes; their clients are told until it does");
+                }
+            }
+            None if !self.healthy => tracing::info!("the database takes changes again"),
+            None => {}
+        }
+        self.healthy = failure.is_none();
     }
 
     fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {

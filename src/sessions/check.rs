@@ -1,0 +1,259 @@
+//! Is what is stored what happened? Every session is made again from its moves, and compared.
+//!
+//! Nothing is written, and one page of moves at a time is in memory. Others may work on the store meanwhile: of a session
+//! that moves on, the moves that it had when it was looked at are checked.
+
+use std::fmt;
+
+use uuid::Uuid;
+
+use crate::mechanics::Contact;
+use crate::store::{Record, Session, Snapshot, Store, StoreError};
+use crate::wire::{At, Faults, State};
+
+use super::live::Live;
+use super::snapshot::{Worth, worth};
+
+/// Sessions and moves that are fetched at a time.
+const SESSIONS: usize = 1_000;
+const MOVES: usize = 10_000;
+/// Differences of one session that are told one by one.
+const TOLD: u64 = 5;
+
+/// Something that is not as it should be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// The session that it is about, unless it is about the storage.
+    pub contact: Option<Uuid>,
+    /// What it is.
+    pub what: String,
+}
+
+/// What has been looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Checked {
+    /// Sessions.
+    pub contacts: u64,
+    /// Moves.
+    pub moves: u64,
+    /// Snapshots that were compared.
+    pub snapshots: u64,
+    /// Snapshots of another engine, which are never read.
+    pub foreign_snapshots: u64,
+    /// What was found.
+    pub findings: u64,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.contact {
+            Some(id) => write!(formatter, "contact {id}: {}", self.what),
+            None => formatter.write_str(&self.what),
+        }
+    }
+}
+
+impl fmt::Display for Checked {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Checked { contacts, moves, snapshots, foreign_snapshots, findings } = self;
+        write!(formatter, "checked {contacts} contacts, {moves} moves, {snapshots} snapshots: {findings} findings")?;
+        if *foreign_snapshots > 0 {
+            write!(formatter, "; {foreign_snapshots} snapshots are of another engine and are not used")?;
+        }
+        Ok(())
+    }
+}
+
+/// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by `tolerance`,
+/// relative to the largest that the session has seen; nought means not in a single bit.
+///
+/// # Errors
+/// [`StoreError::Unavailable`] if the store cannot be asked to the end.
+pub async fn check(
+    store: &dyn Store,
+    tolerance: f64,
+    report: &mut (dyn FnMut(&Finding) + Send),
+) -> Result<Checked, StoreError> {
+    let mut check = Check { store, tolerance, report, checked: Checked::default() };
+    match store.examine().await {
+        Ok(found) => found.into_iter().for_each(|what| check.found(None, what)),
+        Err(error) => check.unreadable(None, "the storage", error)?,
+    }
+    let mut after = None;
+    loop {
+        let page = match store.list(None, after, SESSIONS).await {
+            Ok(page) => page,
+            Err(error) => {
+                check.unreadable(None, "the rest of the contacts", error)?;
+                break;
+            }
+        };
+        let Some(last) = page.last() else { break };
+        after = Some(last.id);
+        for session in page {
+            check.session(session.id).await?;
+        }
+    }
+    Ok(check.checked)
+}
+
+struct Check<'a> {
+    store: &'a dyn Store,
+    tolerance: f64,
+    report: &'a mut (dyn FnMut(&Finding) + Send),
+    checked: Checked,
+}
+
+impl Check<'_> {
+    fn found(&mut self, contact: Option<Uuid>, what: String) {
+        self.checked.findings += 1;
+        (self.report)(&Finding { contact, what });
+    }
+
+    /// What a store cannot read is a finding, unless it can read nothing.
+    fn unreadable(&mut self, contact: Option<Uuid>, what: &str, error: StoreError) -> Result<(), StoreError> {
+        match error {
+            // Somebody has deleted it since it was listed.
+            StoreError::NotFound | StoreError::Expired(_) => Ok(()),
+            StoreError::Failed(why) => {
+                self.found(contact, format!("{what} cannot be read: {why}"));
+                Ok(())
+            }
+            other => Err(other),
+        }
+    }
+
+    async fn session(&mut self, id: Uuid) -> Result<(), StoreError> {
+        // The snapshot first: taken later, it might be of a move that the session found has not made yet.
+        let snapshot = match self.store.snapshot(id).await {
+            Ok(snapshot) => snapshot,
+            Err(error) => {
+                self.unreadable(Some(id), "its snapshot", error)?;
+                None
+            }
+        };
+        let session = match self.store.find(id).await {
+            Ok(session) => session,
+            Err(error) => return self.unreadable(Some(id), "its definition", error),
+        };
+        self.checked.contacts += 1;
+        let sequence = session.sequence;
+        if let Some(ahead) = snapshot.as_ref().map(|snapshot| snapshot.sequence).filter(|taken| *taken > sequence) {
+            self.found(Some(id), format!("its snapshot is of move {ahead}, and the last one stored is {sequence}"));
+        }
+        match start(session) {
+            Ok(contact) => self.replay(id, sequence, contact, snapshot).await,
+            Err(why) => {
+                self.found(Some(id), format!("its definition makes no contact: {why}"));
+                Ok(())
+            }
+        }
+    }
+
+    async fn replay(
+        &mut self,
+        id: Uuid,
+        last: u64,
+        mut contact: Contact,
+        snapshot: Option<Snapshot>,
+    ) -> Result<(), StoreError> {
+        let (mut at, mut scale, mut different) = (0, [0.0; QUANTITIES], 0);
+        self.compare_snapshot(id, at, &contact, snapshot.as_ref());
+        while at < last {
+            let page = match self.store.history(id, at, MOVES).await {
+                Ok(page) => page,
+                Err(error) => return self.unreadable(Some(id), &format!("its moves after {at}"), error),
+            };
+            if page.is_empty() {
+                // Somebody may have deleted it meanwhile.
+                if self.store.sequence(id).await.is_ok() {
+                    self.found(Some(id), format!("it is at move {last}, and the moves after {at} are missing"));
+                }
+                return Ok(());
+            }
+            for record in page.into_iter().take_while(|record| record.sequence <= last) {
+                if record.sequence != at + 1 {
+                    self.found(Some(id), format!("move {} is missing", at + 1));
+                    return Ok(());
+                }
+                at = record.sequence;
+                self.checked.moves += 1;
+                if let Err(error) = contact.apply_within(&record.step.step(), record.tolerance) {
+                    self.found(Some(id), format!("move {at} cannot be made: {error}"));
+                    return Ok(());
+                }
+                if let Some(difference) = difference(&record, &contact.state().into(), &mut scale, self.tolerance) {
+                    different += 1;
+                    if different <= TOLD {
+                        self.found(Some(id), difference);
+                    }
+                }
+                self.compare_snapshot(id, at, &contact, snapshot.as_ref());
+            }
+        }
+        if different > TOLD {
+            self.found(Some(id), format!("{} further moves differ", different - TOLD));
+        }
+        Ok(())
+    }
+
+    fn compare_snapshot(&mut self, id: Uuid, at: u64, state: &Contact, snapshot: Option<&Snapshot>) {
+        let Some(snapshot) = snapshot.filter(|snapshot| snapshot.sequence == at) else { return };
+        self.checked.snapshots += 1;
+        match worth(state, &snapshot.state) {
+            Worth::Same => {}
+            Worth::Foreign => {
+                self.checked.snapshots -= 1;
+                self.checked.foreign_snapshots += 1;
+            }
+            Worth::Damaged => self.found(Some(id), format!("its snapshot of move {at} is damaged; it is not used")),
+            Worth::Wrong => self.found(Some(id), format!("its snapshot of move {at} is not the state after that move")),
+        }
+    }
+}
+
+/// The contact before its first move.
+fn start(session: Session) -> Result<Contact, String> {
+    let mut faults = Faults::default();
+    let setup = session.definition.check(At::Root, &mut faults);
+    let setup = faults.done(setup).map_err(|error| error.to_string())?;
+    Live::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
+}
+
+/// How many numbers a state has.
+const QUANTITIES: usize = 8;
+
+fn quantities(state: &State) -> [(&'static str, f64); QUANTITIES] {
+    [
+        ("displacement", state.displacement),
+        ("force", state.force),
+        ("indentation", state.indentation),
+        ("normal force", state.normal_force),
+        ("contact radius", state.contact_radius),
+        ("stick radius", state.stick_radius),
+        ("dissipated energy", state.dissipated_energy),
+        ("elastic energy", state.elastic_energy),
+    ]
+}
+
+/// In what a recorded state differs from the one that the move leads to.
+fn difference(record: &Record, replayed: &State, scale: &mut [f64; QUANTITIES], tolerance: f64) -> Option<String> {
+    let mut differing = Vec::new();
+    let pairs = quantities(&record.state).into_iter().zip(quantities(replayed));
+    for (((name, recorded), (_, replayed)), scale) in pairs.zip(scale) {
+        *scale = scale.max(replayed.abs());
+        let near = tolerance > 0.0 && (recorded - replayed).abs() <= tolerance * *scale;
+        if recorded.to_bits() != replayed.to_bits() && !near {
+            differing.push(format!("{name} {recorded:e} instead of {replayed:e}"));
+        }
+    }
+    if record.state.regime != replayed.regime {
+        differing.push(format!("regime {:?} instead of {:?}", record.state.regime, replayed.regime));
+    }
+    if record.state.memory_depth != replayed.memory_depth {
+        let (recorded, replayed) = (record.state.memory_depth, replayed.memory_depth);
+        differing.push(format!("memory depth {recorded} instead of {replayed}"));
+    }
+    let what = || format!("move {} is recorded with {}", record.sequence, differing.join(", "));
+    (!differing.is_empty()).then(what)
+}

@@ -1,0 +1,58 @@
+//! What the sessions count.
+
+use crate::metrics::{Counter, Histogram, SECONDS};
+use crate::store::Commits;
+
+use super::Sessions;
+
+/// What happens as it happens.
+pub(super) struct Meters {
+    /// Moves that are stored.
+    pub(super) moves: Counter,
+    /// How long it took to bring a session that was not at hand from the store, s.
+    pub(super) open: Histogram,
+}
+
+impl Default for Meters {
+    fn default() -> Meters {
+        Meters { moves: Counter::default(), open: Histogram::new(SECONDS) }
+    }
+}
+
+/// How the sessions are doing.
+pub struct Readings<'a> {
+    /// Moves that have been made and stored.
+    pub moves: u64,
+    /// How often a session that was asked for was at hand.
+    pub hits: u64,
+    /// How long it took to bring those that were not, s.
+    pub open: &'a Histogram,
+    /// Sessions at hand that nobody works on.
+    pub at_hand: usize,
+    /// Bytes of their states.
+    pub bytes: usize,
+    /// How many bytes there may be.
+    pub capacity: usize,
+    /// Clients that listen to events.
+    pub streams: usize,
+    /// What the store has committed, if it commits.
+    pub commits: Option<&'a Commits>,
+}
+
+impl Sessions {
+    /// How the sessions are doing.
+    #[must_use]
+    pub fn readings(&self) -> Readings<'_> {
+        let (bytes, at_hand) = self.cache.held();
+        Readings {
+            moves: self.meters.moves.get(),
+            hits: self.cache.hits(),
+            open: &self.meters.open,
+            at_hand,
+            bytes,
+            capacity: self.cache.capacity(),
+            streams: self.streams.open(),
+            commits: self.store.commits(),
+        }
+    }
+}

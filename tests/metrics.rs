@@ -1,0 +1,275 @@
+//! `/metrics`: what a real Prometheus reads there is what a client counted.
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::time::Duration;
+
+use common::{Server, ball};
+use reqwest::{Method, StatusCode};
+use serde_json::{Value, json};
+use stickslip::sessions::CAPACITY;
+use stickslip::store::{MemoryStore, SqliteStore};
+
+const MISSING: &str = "this test needs Prometheus: `./check` installs it, or on Debian `apt-get install prometheus`";
+/// How long a test waits for what should take a second.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A real Prometheus that reads one server five times a second.
+struct Prometheus {
+    child: Child,
+    base: String,
+    http: reqwest::Client,
+    /// The moment that queries are about: that of a reading that succeeded.
+    at: String,
+    _folder: tempfile::TempDir,
+}
+
+impl Prometheus {
+    fn start(target: &str) -> Prometheus {
+        let folder = tempfile::tempdir().unwrap();
+        let config = json!({"scrape_configs": [{"job_name": "stickslip", "scrape_interval": "200ms",
+            "scrape_timeout": "200ms", "static_configs": [{"targets": [target]}]}]});
+        let file = folder.path().join("prometheus.json");
+        // JSON is YAML.
+        std::fs::write(&file, config.to_string()).unwrap();
+        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let child = Command::new("prometheus")
+            .arg(format!("--config.file={}", file.display()))
+            .arg(format!("--storage.tsdb.path={}", folder.path().join("data").display()))
+            .arg(format!("--web.listen-address=127.0.0.1:{port}"))
+            .args(["--log.level=error"])
+            .spawn()
+            .expect(MISSING);
+        Prometheus {
+            child,
+            base: format!("http://127.0.0.1:{port}"),
+            http: reqwest::Client::new(),
+            at: String::new(),
+            _folder: folder,
+        }
+    }
+
+    async fn ask(&self, path: &str, questions: &[(&str, &str)]) -> Option<Value> {
+        let call = self.http.get(format!("{}/api/v1/{path}", self.base)).query(questions);
+        let reply: Value = call.send().await.ok()?.json().await.ok()?;
+        (reply["status"] == "success").then(|| reply["data"].clone())
+    }
+
+    /// The samples that a query finds: their labels and values.
+    async fn query(&self, query: &str) -> Vec<(Value, f64)> {
+        let data = self.ask("query", &[("query", query), ("time", &self.at)]).await.unwrap_or_default();
+        let found = data["result"].as_array().cloned().unwrap_or_default();
+        let value = |sample: &Value| sample["value"][1].as_str().unwrap().parse().unwrap();
+        found.iter().map(|sample| (sample["metric"].clone(), value(sample))).collect()
+    }
+
+    /// The value of the one sample that a query finds.
+    async fn value(&self, query: &str) -> f64 {
+        let found = self.query(query).await;
+        assert_eq!(found.len(), 1, "{query}: {found:?}");
+        found[0].1
+    }
+
+    /// The same where it counts something.
+    async fn count(&self, query: &str) -> u64 {
+        whole(self.value(query).await)
+    }
+
+    /// The samples of a query by some of their labels, without the noughts.
+    async fn table<const N: usize>(&self, query: &str, labels: [&str; N]) -> BTreeMap<[String; N], u64> {
+        let key = |labels_of: &Value| labels.map(|label| labels_of[label].as_str().unwrap().to_owned());
+        let found = self.query(query).await;
+        found.iter().filter(|(_, value)| *value > 0.0).map(|(of, value)| (key(of), whole(*value))).collect()
+    }
+
+    /// Waits until it has read the server after this moment. Queries are about that reading from then on.
+    async fn catch_up(&mut self) {
+        let now = jiff::Timestamp::now().as_millisecond() as f64 / 1e3;
+        let newer = format!("timestamp(up == 1) > {now}");
+        let read = async {
+            loop {
+                let data = self.ask("query", &[("query", &newer)]).await.unwrap_or_default();
+                if let Some(at) = data["result"][0]["value"][1].as_str() {
+                    break at.to_owned();
+                }
+                tokio::time::sleep(Duration::from_millis(50)).await;
+            }
+        };
+        self.at = tokio::time::timeout(PATIENCE, read).await.expect("Prometheus cannot read the server");
+    }
+}
+
+impl Drop for Prometheus {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A number that counts something.
+fn whole(value: f64) -> u64 {
+    assert!(value >= 0.0 && value.fract().to_bits() == 0, "{value}");
+    value as u64
+}
+
+/// Sends requests and counts them as it goes.
+struct Counting<'a> {
+    server: &'a Server,
+    sent: BTreeMap<[String; 3], u64>,
+}
+
+impl Counting<'_> {
+    async fn send(&mut self, times: u64, method: &str, route: &str, path: &str, body: Option<Value>, expected: u16) {
+        let body = body.map(|body| body.to_string());
+        for _ in 0..times {
+            let method = Method::from_bytes(method.as_bytes()).unwrap();
+            let response = self.server.send(method, path, body.as_deref(), &[]).await;
+            assert_eq!(response.status().as_u16(), expected, "{path}");
+            response.bytes().await.unwrap();
+        }
+        // A method that is none of HTTP's goes by one name, so that clients cannot make up labels.
+        let method = if method == "BREW" { "other" } else { method };
+        *self.sent.entry([route, method, &expected.to_string()].map(str::to_owned)).or_default() += times;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn prometheus_reads_what_a_client_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SqliteStore::open(&folder.path().join("contacts.db")).unwrap();
+    let server = Server::with(Arc::new(store), CAPACITY).await;
+    let mut prometheus = Prometheus::start(server.base.trim_start_matches("http://"));
+    let mut client = Counting { server: &server, sent: BTreeMap::new() };
+
+    client.send(7, "GET", "/healthz", "/healthz", None, 200).await;
+    client.send(2, "POST", "/contacts", "/contacts", Some(ball()), 201).await;
+    client.send(3, "POST", "/contacts", "/contacts", Some(json!({"friction": 0})), 422).await;
+    let id = server.contact().await;
+    *client.sent.get_mut(&["/contacts", "POST", "201"].map(str::to_owned)).unwrap() += 1;
+    let (contact, moved) = (format!("/contacts/{id}"), format!("/contacts/{id}/move"));
+    let increment = json!({"displacement": 1e-9, "relative": true});
+    client.send(11, "POST", "/contacts/{id}/move", &moved, Some(increment), 200).await;
+    client.send(2, "POST", "/contacts/{id}/move", &moved, Some(json!({"force": 99})), 422).await;
+    let path = json!({"path": {"displacement": [1e-9, 2e-9, 3e-9, 4e-9, 5e-9]}});
+    client.send(4, "POST", "/contacts/{id}/path", &format!("{contact}/path"), Some(path), 200).await;
+    client.send(3, "GET", "/contacts/{id}", &contact, None, 200).await;
+    client.send(5, "GET", "/contacts/{id}", "/contacts/nowhere", None, 404).await;
+    client.send(1, "GET", "none", "/nowhere/at/all", None, 404).await;
+    client.send(6, "GET", "none", "/made/up?by=me", None, 404).await;
+    client.send(2, "PATCH", "/healthz", "/healthz", None, 405).await;
+    client.send(3, "BREW", "/healthz", "/healthz", None, 405).await;
+    client.send(1, "BREW", "none", "/nowhere", None, 404).await;
+    client.send(1, "DELETE", "/contacts/{id}", &contact, None, 204).await;
+    prometheus.catch_up().await;
+
+    let requests = "stickslip_http_requests_total{route!=\"/metrics\"}";
+    assert_eq!(prometheus.table(requests, ["route", "method", "status"]).await, client.sent);
+    let mut by_endpoint = BTreeMap::new();
+    for ([route, method, _], count) in &client.sent {
+        *by_endpoint.entry([route.clone(), method.clone()]).or_default() += count;
+    }
+    for part in ["count{", "bucket{le=\"+Inf\","] {
+        let query = format!("stickslip_http_request_duration_seconds_{part}route!=\"/metrics\"}}");
+        assert_eq!(prometheus.table(&query, ["route", "method"]).await, by_endpoint);
+    }
+    let metadata =
+        prometheus.ask("metadata", &[("metric", "stickslip_http_request_duration_seconds")]).await.unwrap_or_default();
+    assert_eq!(metadata["stickslip_http_request_duration_seconds"][0]["type"], "histogram");
+
+    for (query, expected) in [
+        ("stickslip_moves_total", 11 + 4 * 5),
+        // Moves, refused ones too, paths, looks, and the deletion.
+        ("stickslip_cache_hits_total", 11 + 2 + 4 + 3 + 1),
+        ("stickslip_cache_misses_total", 0),
+        ("stickslip_cache_contacts", 2),
+        ("stickslip_commit_failures_total{store=\"sqlite\"}", 0),
+        ("stickslip_store_pending_changes{store=\"sqlite\"}", 0),
+        ("sum(stickslip_http_requests_in_flight{route!=\"/metrics\"})", 0),
+        ("stickslip_http_requests_in_flight{route=\"/metrics\"}", 1),
+        ("stickslip_solver_waiting + stickslip_solver_running", 0),
+        ("stickslip_solver_seconds_count", 11 + 2 + 4),
+        ("stickslip_build_info", 1),
+    ] {
+        assert_eq!(prometheus.count(query).await, expected, "{query}");
+    }
+    // A client that waits for each answer has each change in a transaction of its own. On a machine so slow that a replay of
+    // the moves would take long, there are snapshots besides.
+    let (made, committed) = ("stickslip_commit_changes_sum{store=\"sqlite\"}", "stickslip_commit_seconds_count");
+    let (made, committed) = (prometheus.count(made).await, prometheus.count(committed).await);
+    let changes = 3 + 11 + 4 + 1;
+    assert!(changes <= committed && committed <= made && made <= changes + 3, "{committed} {made}");
+    assert!(prometheus.value("stickslip_commit_seconds_sum").await > 0.0);
+}
+
+#[tokio::test]
+async fn promtool_has_nothing_against_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SqliteStore::open(&folder.path().join("contacts.db")).unwrap();
+    let server = Server::with(Arc::new(store), CAPACITY).await;
+    let id = server.contact().await;
+    server.post(&format!("/contacts/{id}/move"), &json!({"displacement": 1e-9})).await;
+    let response = server.get("/metrics").await;
+    assert_eq!(response.status(), StatusCode::OK);
+    assert_eq!(response.headers()["content-type"], "text/plain; version=0.0.4; charset=utf-8");
+    let page = response.text().await.unwrap();
+
+    let promtool =
+        Command::new("promtool").args(["check", "metrics"]).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut promtool = promtool.expect(MISSING);
+    promtool.stdin.take().unwrap().write_all(page.as_bytes()).unwrap();
+    let verdict = promtool.wait_with_output().unwrap();
+    assert!(verdict.status.success(), "{}\n{page}", String::from_utf8_lossy(&verdict.stderr));
+}
+
+/// The value of a sample without labels.
+async fn sample(server: &Server, name: &str) -> u64 {
+    let page = server.get("/metrics").await.text().await.unwrap();
+    let line = page.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')).unwrap();
+    whole(line.parse().unwrap())
+}
+
+#[tokio::test]
+async fn what_is_not_in_memory_counts_as_a_miss() {
+    let server = Server::with(Arc::new(MemoryStore::new()), 1).await;
+    let id = server.contact().await;
+    for _ in 0..3 {
+        server.get(&format!("/contacts/{id}")).await;
+    }
+    server.get("/contacts/00000000-0000-7000-8000-000000000000").await;
+    let names = ["hits_total", "misses_total", "contacts", "bytes", "capacity_bytes"];
+    for (name, expected) in names.into_iter().zip([0, 3, 0, 0, 1]) {
+        assert_eq!(sample(&server, &format!("stickslip_cache_{name}")).await, expected, "{name}");
+    }
+}
+
+#[tokio::test]
+async fn clients_that_listen_and_clients_that_leave_are_counted() {
+    let server = Server::start().await;
+    let id = server.contact().await;
+    let path = format!("/contacts/{id}/events");
+    let (first, second) = (server.get(&path).await, server.get(&path).await);
+    assert_eq!(sample(&server, "stickslip_event_streams").await, 2);
+    drop((first, second));
+
+    let long = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}}, "steps": "last",
+        "solver": {"springs": {"count": 1_000_000}}});
+    let call = tokio::time::timeout(Duration::from_millis(300), server.post("/simulate", &long)).await;
+    assert!(call.is_err(), "too quick to leave");
+    let left = "stickslip_http_requests_total{route=\"/simulate\",method=\"POST\",status=\"499\"}";
+    let streams = "stickslip_event_streams";
+    let noticed = async {
+        loop {
+            let page = server.get("/metrics").await.text().await.unwrap();
+            if page.contains(&format!("{left} 1\n")) && page.contains(&format!("\n{streams} 0\n")) {
+                break;
+            }
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    tokio::time::timeout(PATIENCE, noticed).await.expect("nobody noticed");
+}
