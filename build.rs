@@ -9,5 +9,5 @@ fn main() {
     let version = said.ok().and_then(|output| String::from_utf8(output.stdout).ok());
     // "rustc 1.95.0 (…)": the number alone.
     let number = version.as_deref().and_then(|line| line.split_whitespace().nth(1)).unwrap_or("unknown");
-    println!("cargo::rustc-env=STICKSLIP_COMPILER={number}");
+    println!("cargo::rustc-env=BUILD_COMPILER={number}");
 }

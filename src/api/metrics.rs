@@ -112,9 +112,9 @@ fn commits(page: &mut Page, commits: &Commits) {
 fn process(page: &mut Page, traffic: &Traffic) {
     let name = "stickslip_build_info";
     page.family(name, "gauge", "1, with what this program was built from.");
-    let commit = option_env!("STICKSLIP_COMMIT").unwrap_or("unknown");
+    let commit = option_env!("BUILD_COMMIT").unwrap_or("unknown");
     let (version, engine) = (env!("CARGO_PKG_VERSION"), ENGINE.to_string());
-    let labels = [("version", version), ("engine", &engine), ("rustc", env!("STICKSLIP_COMPILER")), ("commit", commit)];
+    let labels = [("version", version), ("engine", &engine), ("rustc", env!("BUILD_COMPILER")), ("commit", commit)];
     page.sample(name, &labels, 1);
 
     let since = traffic.since.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64();

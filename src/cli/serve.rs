@@ -93,17 +93,17 @@ pub fn serve(options: Serve) -> Result<(), String> {
     };
     tracing_subscriber::registry().with(spans).with(lines.with_filter(filter)).init();
     log_panics();
+    let access = access(&options)?;
+    let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
     let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
     tracing::info!(
         version = env!("CARGO_PKG_VERSION"),
-        commit = option_env!("STICKSLIP_COMMIT"),
+        commit = option_env!("BUILD_COMMIT"),
         pid = std::process::id(),
         cache_bytes = options.cache_bytes.as_u64(),
         expire_after_s,
         "starting"
     );
-    let access = access(&options)?;
-    let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
     let served = runtime.block_on(listen(&options, access, Arc::clone(&store)));
     if let Some(exporter) = exporter {
         runtime.block_on(exporter.finish());
@@ -178,12 +178,11 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     };
     let pool = Pool::new(options.overload.capacity());
     let door = Door::new(options.overload.connections());
-    let bytes = bound::memory(door.limits(), pool.capacity(), options.cache_bytes.as_u64());
-    tracing::info!(bytes, "memory stays below this bound");
+    let memory_bound = bound::memory(door.limits(), pool.capacity(), options.cache_bytes.as_u64());
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let sessions = Sessions::new(store, pool.clone(), capacity);
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
-    tracing::info!(%address, threads = pool.meters().threads, "listening");
+    tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     let app = App { sessions, pool, access };
     api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))
