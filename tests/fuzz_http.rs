@@ -26,11 +26,11 @@ use stickslip::client::Options;
 use stickslip::wire::ProblemDocument;
 
 /// How long each kind of input is tried, s.
-const SECONDS: u64 = 50;
+const SECONDS: u64 = 60;
 /// Requests and connections at a time.
 const AT_ONCE: u64 = 8;
 /// Cases of each kind.
-const CASES: (u64, u64) = (75_000, 120_000);
+const CASES: (u64, u64) = (110_000, 170_000);
 
 fn asked(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
