@@ -46,7 +46,7 @@ impl Sessions {
         }
         // Whoever hangs up in the queue has left it.
         let mut guard = self.lock(id).await?;
-        let (stop, _raised_at_the_end) = self.pool.deadline();
+        let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
         // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
         let mut certain = guard.live.is_none();
@@ -77,9 +77,9 @@ impl Sessions {
             // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
             let receipt = idempotency::receipt(key.clone(), &reply);
             let moves = records.len() as u64;
-            match self.store.append(guard.id(), sequence, records, receipt).await {
+            match self.common.store.append(guard.id(), sequence, records, receipt).await {
                 Ok(()) => {
-                    self.meters.moves.add(moves);
+                    self.common.meters.moves.add(moves);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);
@@ -113,14 +113,14 @@ impl Sessions {
             && guard.live.as_ref().is_some_and(|live| !live.shared);
         // A copy can be large, and as many requests are under way as may be.
         let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
-        let _held = self.pool.reserve(copied).await?;
+        let _held = self.common.pool.reserve(copied).await?;
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let cost = cost::estimated_cost(advance.plan.length(), advance.plan.curved(), depth, radii, false);
         let cost = cost::on(live.contact.profile(), cost, false);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
-        let (live, result) = self.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
+        let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
         match result {
             Ok(done) => Ok((live, done)),
             Err(error) => {

@@ -75,10 +75,10 @@ impl Sessions {
         id: Uuid,
         after: Option<u64>,
     ) -> Result<impl Stream<Item = Happening> + Send + use<>, SessionError> {
-        let place = self.streams.places.clone().try_acquire_owned().map_err(|_| SessionError::TooManyStreams)?;
+        let place = self.common.streams.places.clone().try_acquire_owned().map_err(|_| SessionError::TooManyStreams)?;
         // From here on every change wakes the listener, so that none can fall between the first look and the first wait.
-        let woken = self.store.changes().subscribe(id);
-        let ending = self.streams.ending.subscribe();
+        let woken = self.common.store.changes().subscribe(id);
+        let ending = self.common.streams.ending.subscribe();
         let session = self.get(id).await?;
         let found = session.sequence;
         let mut ready = VecDeque::new();
@@ -100,7 +100,7 @@ impl Sessions {
 
     /// Ends all events, present and future: the process is about to stop.
     pub fn end_events(&self) {
-        self.streams.ending.send_replace(true);
+        self.common.streams.ending.send_replace(true);
     }
 }
 

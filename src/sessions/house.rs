@@ -20,7 +20,7 @@ impl Sessions {
     pub async fn sweep(&self, expire_after: Option<Duration>) -> Result<u64, SessionError> {
         let now = Timestamp::now();
         let idle_since = expire_after.map(|idle| now.checked_sub(idle).unwrap_or(Timestamp::MIN));
-        self.store.sweep(idle_since).await.map_err(SessionError::Store)
+        self.common.store.sweep(idle_since).await.map_err(SessionError::Store)
     }
 
     /// Sweeps again and again, and never ends.

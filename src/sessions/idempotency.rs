@@ -12,7 +12,7 @@ impl Sessions {
         let Some(request) = request else {
             return Ok(None);
         };
-        match self.store.receipt(&request.key).await.map_err(SessionError::Store)? {
+        match self.common.store.receipt(&request.key).await.map_err(SessionError::Store)? {
             None => Ok(None),
             Some(receipt) if receipt.request.fingerprint == request.fingerprint => Ok(Some(receipt.reply)),
             Some(_) => Err(SessionError::KeyReused),

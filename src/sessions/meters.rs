@@ -43,16 +43,16 @@ impl Sessions {
     /// How the sessions are doing.
     #[must_use]
     pub fn readings(&self) -> Readings<'_> {
-        let (bytes, at_hand) = self.cache.held();
+        let (bytes, at_hand) = self.common.cache.held();
         Readings {
-            moves: self.meters.moves.get(),
-            hits: self.cache.hits(),
-            open: &self.meters.open,
+            moves: self.common.meters.moves.get(),
+            hits: self.common.cache.hits(),
+            open: &self.common.meters.open,
             at_hand,
             bytes,
-            capacity: self.cache.capacity(),
-            streams: self.streams.open(),
-            commits: self.store.commits(),
+            capacity: self.common.cache.capacity(),
+            streams: self.common.streams.open(),
+            commits: self.common.store.commits(),
         }
     }
 }

@@ -50,13 +50,18 @@ const ATTEMPTS: usize = 100;
 #[derive(Clone)]
 pub struct Sessions {
     tenant: Tenant,
+    common: Arc<Common>,
+}
+
+/// What the handles share.
+struct Common {
     store: Arc<dyn Store>,
     pool: Pool,
     cache: Arc<Cache>,
     // A permit for each snapshot that is being kept.
     snapshots: Arc<Semaphore>,
     streams: events::Streams,
-    meters: Arc<meters::Meters>,
+    meters: meters::Meters,
 }
 
 impl Sessions {
@@ -64,21 +69,21 @@ impl Sessions {
     /// replayed when needed.
     #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
-        Sessions {
-            tenant: Tenant::default(),
+        let common = Common {
             store,
             pool,
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             streams: events::Streams::new(),
-            meters: Arc::default(),
-        }
+            meters: meters::Meters::default(),
+        };
+        Sessions { tenant: Tenant::default(), common: Arc::new(common) }
     }
 
     /// The sessions of another tenant.
     #[must_use]
     pub fn of(&self, tenant: Tenant) -> Sessions {
-        Sessions { tenant, ..self.clone() }
+        Sessions { tenant, common: Arc::clone(&self.common) }
     }
 
     /// Whether the store can serve.
@@ -86,18 +91,18 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::Store`] if it cannot.
     pub async fn ready(&self) -> Result<(), SessionError> {
-        self.store.ready().await.map_err(SessionError::Store)
+        self.common.store.ready().await.map_err(SessionError::Store)
     }
 
     /// Bytes of the states that are kept at hand, and how many sessions they are.
     #[must_use]
     pub fn held(&self) -> (usize, usize) {
-        self.cache.held()
+        self.common.cache.held()
     }
 
     /// A session to work on: waits for those who came before, as long as the pool lets it.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
-        Ok(self.pool.wait(self.cache.lock(&self.tenant, id)).await?)
+        Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
     }
 
     /// Makes a session.
@@ -122,8 +127,8 @@ impl Sessions {
         let live = Live::start(session, creation.setup)?;
         let reply = live.introduce()?;
         // Whoever finds the new session in the store waits until it is at hand.
-        let mut guard = self.cache.lock(&self.tenant, live.session.id).await;
-        let stored = self.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
+        let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
+        let stored = self.common.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
         match stored {
             Ok(()) => guard.live = Some(Box::new(live)),
             Err(error) => return self.lost(error, key).await,
@@ -153,9 +158,9 @@ impl Sessions {
                 ..copy.session
             };
             let reply = copy.introduce()?;
-            let mut new = self.cache.lock(&self.tenant, copy.session.id).await;
+            let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
             let receipt = idempotency::receipt(key.clone(), &reply);
-            match self.store.fork(id, copy.session.clone(), receipt).await {
+            match self.common.store.fork(id, copy.session.clone(), receipt).await {
                 Ok(()) => {
                     new.live = Some(Box::new(copy));
                     return Ok(reply);
@@ -182,7 +187,7 @@ impl Sessions {
         };
         let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {
-            match (self.store.delete(id, at).await, expected) {
+            match (self.common.store.delete(id, at).await, expected) {
                 (Ok(()), _) => {
                     guard.live = None;
                     return Ok(());

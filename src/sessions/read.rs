@@ -36,13 +36,13 @@ impl Sessions {
         sampling: Sampling,
         residual: bool,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
-        let (stop, _guard) = self.pool.deadline();
+        let (stop, _guard) = self.common.pool.deadline();
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence, held) = {
             let mut guard = self.lock(id).await?;
             let live = self.present(&mut guard).await?;
             let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
-            let held = self.pool.reserve(bytes).await?;
+            let held = self.common.pool.reserve(bytes).await?;
             (live.contact.clone(), live.session.sequence, held)
         };
         let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
@@ -58,7 +58,7 @@ impl Sessions {
                 residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
             })
         };
-        Ok((sequence, self.pool.run(cost, work).await??, held))
+        Ok((sequence, self.common.pool.run(cost, work).await??, held))
     }
 
     /// A page of sessions, oldest first.
@@ -68,7 +68,7 @@ impl Sessions {
     pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
         // One more than asked for tells whether there is a next page.
         let mut found =
-            self.store.list(Some(self.tenant.clone()), after, limit + 1).await.map_err(SessionError::Store)?;
+            self.common.store.list(Some(self.tenant.clone()), after, limit + 1).await.map_err(SessionError::Store)?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);
@@ -80,7 +80,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        if !self.cache.holds(&self.tenant, id) {
+        if !self.common.cache.holds(&self.tenant, id) {
             self.own(id).await?;
         }
         self.past(id, after, limit).await
@@ -88,7 +88,8 @@ impl Sessions {
 
     /// The same of a session that is known to be one's own.
     pub(super) async fn past(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let mut found = self.store.history(id, after, limit + 1).await.map_err(|error| self.refused(id, error))?;
+        let mut found =
+            self.common.store.history(id, after, limit + 1).await.map_err(|error| self.refused(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

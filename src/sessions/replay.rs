@@ -33,7 +33,7 @@ impl Sessions {
     /// The session as it is stored: with what other processes have done to it up to now.
     pub(super) async fn present<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut Live, SessionError> {
         if let Some(at_hand) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let stored = self.store.sequence(guard.id()).await.map_err(|error| self.failed(guard, error))?;
+            let stored = self.common.store.sequence(guard.id()).await.map_err(|error| self.failed(guard, error))?;
             if stored > at_hand {
                 self.catch_up(guard).await?;
             } else if stored < at_hand {
@@ -49,7 +49,7 @@ impl Sessions {
         let id = guard.id();
         let mut moved = false;
         while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let page = match self.store.history(id, sequence, PAGE).await {
+            let page = match self.common.store.history(id, sequence, PAGE).await {
                 Ok(page) => page,
                 Err(error) => return Err(self.failed(guard, error)),
             };
@@ -80,11 +80,11 @@ impl Sessions {
     async fn open(&self, guard: &mut Guard) -> Result<(), SessionError> {
         let (id, begin) = (guard.id(), Instant::now());
         // The snapshot first: taken later, it might be of a move that the session found has not made yet.
-        let snapshot = self.store.snapshot(id).await;
+        let snapshot = self.common.store.snapshot(id).await;
         let session = self.own(id).await?;
         let (sequence, updated_at) = (session.sequence, session.updated_at);
         let pieces = usize::try_from(sequence).unwrap_or(usize::MAX).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
-        guard.held = self.pool.reserve(pieces * PIECE_BYTES).await?;
+        guard.held = self.common.pool.reserve(pieces * PIECE_BYTES).await?;
         let mut faults = Faults::default();
         let setup = session.definition.check(At::Root, &mut faults);
         let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;
@@ -103,7 +103,7 @@ impl Sessions {
             }
             live.shared = false;
         }
-        self.meters.open.observe_time(begin.elapsed());
+        self.common.meters.open.observe_time(begin.elapsed());
         Ok(())
     }
 
@@ -111,7 +111,7 @@ impl Sessions {
     async fn follow(&self, mut live: Box<Live>, page: Vec<Record>) -> Result<Box<Live>, SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
         let cost = cost::on(live.contact.profile(), cost::estimated_cost(page.len(), curved, 0, 0, false), false);
-        let replayed = self.pool.run(cost, move || {
+        let replayed = self.common.pool.run(cost, move || {
             let begin = Instant::now();
             for record in &page {
                 live.contact.apply_within(&record.step.step(), record.tolerance)?;
@@ -128,7 +128,7 @@ impl Sessions {
 
     /// The session as it is stored, if it is one's own.
     pub(super) async fn own(&self, id: Uuid) -> Result<Session, SessionError> {
-        match self.store.find(id).await {
+        match self.common.store.find(id).await {
             Ok(session) if session.tenant == self.tenant => Ok(session),
             Ok(_) => Err(SessionError::NotFound(id)),
             Err(error) => Err(self.refused(id, error)),

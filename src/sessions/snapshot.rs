@@ -50,9 +50,9 @@ impl Sessions {
         if !live.beyond.is_long(live.contact.packed_length()) {
             return;
         }
-        let Ok(permit) = self.snapshots.clone().try_acquire_owned() else { return };
+        let Ok(permit) = self.common.snapshots.clone().try_acquire_owned() else { return };
         live.beyond = Beyond::default();
-        let (store, contact) = (self.store.clone(), live.contact.clone());
+        let (store, contact) = (self.common.store.clone(), live.contact.clone());
         let (id, sequence) = (live.session.id, live.session.sequence);
         tokio::spawn(async move {
             let _permit = permit;
@@ -81,7 +81,7 @@ impl Sessions {
         };
         // Reading a byte is below a nanosecond.
         let cost = snapshot.state.len() as u64;
-        let read = self.pool.run(cost, move || match unsealed(&virgin, &snapshot.state) {
+        let read = self.common.pool.run(cost, move || match unsealed(&virgin, &snapshot.state) {
             Some(contact) => (contact, snapshot.sequence),
             None => (virgin, 0),
         });
