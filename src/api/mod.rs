@@ -1,4 +1,4 @@
-//! HTTP. [`router`] is the table of contents; each resource has a file; [`problem`] says which error to use when.
+//! HTTP. `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 pub mod access;
 pub mod bound;
