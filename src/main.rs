@@ -4,7 +4,7 @@ mod cli;
 
 use std::process::ExitCode;
 
-/// The system's allocator takes a tenth of the time of a move; that of musl has one lock for all threads besides.
+#[cfg(target_env = "musl")]
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

@@ -263,17 +263,10 @@ impl Pool {
             return Ok(self.0.meters.timed(work));
         }
         let meters = Arc::clone(&self.0.meters);
-        let (waiting, begin) = (meters.waiting.enter(), Instant::now());
-        let permit = match self.permits(&self.0.threads, 1).await {
-            Ok(permit) => permit,
-            Err(error) => {
-                meters.refused.add(1);
-                return Err(error);
-            }
-        };
+        let (waiting, begin) = (self.0.meters.waiting.enter(), Instant::now());
+        let permit = self.permits(&self.0.threads, 1).await.inspect_err(|_| meters.refused.add(1))?;
         meters.wait.observe_time(begin.elapsed());
         drop(waiting);
-        let meters = Arc::clone(&self.0.meters);
         let task = spawn_blocking(move || {
             // The permit stays with the work: a caller that gives up does not free a thread that is still busy.
             let _permit = permit;
