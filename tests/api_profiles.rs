@@ -131,9 +131,17 @@ async fn what_a_shape_cannot_do_is_refused_by_name() {
     let sphere = json!({"type": "exact_sphere", "radius": 0.01});
     let punch = json!({"type": "flat_punch", "radius": 1e-3});
     let table = json!({"type": "tabulated", "r": [0.0, 1e-5, 2e-5], "z": [0.0, 1e-9, 4e-9]});
+    let falling = json!({"type": "tabulated", "r": [0.0, 2e-6, 4e-6, 7e-6, 1e-5], "z": [0.0, 1e-9, 2e-9, 1e-9, 0.0]});
     for (profile, preload, code, pointer) in [
-        (&sphere, json!({"contact_radius": 0.02}), "beyond_profile", "/contact"),
-        (&table, json!({"normal_force": 1e6}), "beyond_profile", "/contact"),
+        (&sphere, json!({"contact_radius": 0.02}), "beyond_profile", "/contact/preload/contact_radius"),
+        (&table, json!({"normal_force": 1e6}), "beyond_profile", "/contact/preload/normal_force"),
+        (&falling, json!({"contact_radius": 9e-6}), "profile_not_convex_enough", "/contact/profile"),
+        (
+            &json!({"type": "sum", "parts": [{"type": "sphere", "radius": 1e9}, &falling]}),
+            json!({"contact_radius": 9e-6}),
+            "profile_not_convex_enough",
+            "/contact/profile",
+        ),
         (&punch, json!({"contact_radius": 1e-3}), "invalid_input", "/contact/preload/contact_radius"),
         (
             &json!({"type": "cone", "radius": 1.0}),

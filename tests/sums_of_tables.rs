@@ -1,10 +1,11 @@
-//! A sum with tables in it says how far they may put it off: against the sum of the bodies that they were taken from.
+//! A sum with tables in it says how far they may put it off: against the sum of the bodies that they were taken from. The g of
+//! a table may fall in a sum, as long as that of the sum does not.
 
 mod physics;
 
 use physics::{Random, displace};
 use stickslip::mechanics::profile::{Cone, ExactSphere, PowerLaw, Sum, Tabulated};
-use stickslip::mechanics::{Contact, Elasticity, Preload, Profile, Setup, Sphere};
+use stickslip::mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup, Sphere};
 
 /// A body of about unit size, and the table of its heights at random radii up to one.
 fn measured(random: &mut Random) -> (Profile, Profile) {
@@ -88,4 +89,89 @@ fn estimates_of_sums_with_tables_are_honest() {
     println!("{compared} sums: worst error over estimate {worst:.2?}");
     assert!(compared >= 150, "only {compared} sums were followed");
     assert!(liars.is_empty(), "{} of {compared}:\n{}", liars.len(), liars.join("\n"));
+}
+
+/// A part by its heights at even radii up to one.
+fn part(count: u32, height: impl Fn(f64) -> f64) -> Profile {
+    let radii: Vec<f64> = (0..=count).map(|index| f64::from(index) / f64::from(count)).collect();
+    let heights: Vec<f64> = radii.iter().copied().map(height).collect();
+    Profile::Tabulated(Tabulated::part(&radii, &heights).unwrap())
+}
+
+fn ball(radius: f64) -> Profile {
+    Profile::Sphere(Sphere::new(radius).unwrap())
+}
+
+fn made_of(parts: Vec<Profile>, preload: Preload) -> Result<Contact, Error> {
+    let elasticity = Elasticity::effective(1e6, 8e5).unwrap();
+    Contact::new(Setup { profile: Profile::Sum(Sum::new(parts)?), elasticity, friction: 0.3, preload })
+}
+
+#[test]
+fn a_ball_less_a_paraboloid_is_a_blunter_ball() {
+    for (taken, preload) in [
+        (0.4, Preload::ContactRadius(0.3)),
+        (0.9, Preload::NormalForce(1e3)),
+        (0.99, Preload::Indentation(1e-9)),
+        (0.999_9, Preload::Indentation(1e-6)),
+    ] {
+        let mut found = made_of(vec![ball(1.0), part(30, |r| -0.5 * taken * r * r)], preload).unwrap();
+        let mut exact = made_of(vec![ball(1.0 / (1.0 - taken))], preload).unwrap();
+        let (estimate, figures) = (found.accuracy(), exact.figures());
+        for share in [0.7, -0.5, 0.2] {
+            let step = displace(share * figures.gross_slip_displacement);
+            found.apply(&step).unwrap();
+            exact.apply(&step).unwrap();
+            let error = (found.force() - exact.force()).abs() / figures.gross_slip_force;
+            assert!(error < 1e-9 && error <= 3.0 * estimate.force_error, "{taken}: {error:e} {estimate:?}");
+        }
+        let edge = figures.contact_radius;
+        assert!((found.contact_radius() / edge - 1.0).abs() < 1e-10 / (1.0 - taken), "{taken}");
+        for share in [0.0, 0.31, 0.9] {
+            let unit = 0.3 * figures.max_pressure.unwrap();
+            let error = (found.shear(share * edge) - exact.shear(share * edge)).abs() / unit;
+            assert!(error < 1e-8 && error <= 3.0 * found.accuracy().stress_error, "{taken} at {share}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn a_sum_ends_where_its_own_slope_falls() {
+    // g = x^2 - (8/3) x^4 / c^2 with f = r^2/2 - r^4/c^2, so that g' = 0 at x = c sqrt(3/16).
+    for crest in [0.5, 1.0, 2.0] {
+        let parts = || vec![ball(1.0), part(400, |r| -r.powi(4) / (crest * crest))];
+        let turn = crest * (3.0_f64 / 16.0).sqrt();
+        let below = made_of(parts(), Preload::ContactRadius(0.99 * turn)).unwrap();
+        let level = |x: f64| x * x - 8.0 / 3.0 * x.powi(4) / (crest * crest);
+        assert!((below.indentation() / level(0.99 * turn) - 1.0).abs() < 1e-4);
+        assert!(below.pressure(0.9 * turn) > 0.0);
+        match made_of(parts(), Preload::ContactRadius(1.01 * turn)) {
+            Err(Error::NotConvexEnough { radius }) => assert!((radius / turn - 1.0).abs() < 1e-3, "{radius} {turn}"),
+            other => panic!("{:?}", other.map(|contact| contact.contact_radius())),
+        }
+        let pressed = made_of(parts(), Preload::Indentation(1.01 * level(turn)));
+        assert!(
+            matches!(pressed, Err(Error::NotConvexEnough { .. })),
+            "{:?}",
+            pressed.map(|contact| contact.figures())
+        );
+    }
+    let hollow = Sum::new(vec![ball(1.0), part(50, |r| -r * r)]);
+    assert!(matches!(hollow, Err(Error::NotConvexEnough { radius }) if radius < 1e-2), "{hollow:?}");
+    let alone = Profile::Sum(Sum::new(vec![part(50, |r| r * r - r.powi(4))]).unwrap());
+    assert!(alone.limit_radius().is_some_and(|limit| (limit - (3.0_f64 / 8.0).sqrt()).abs() < 1e-2));
+}
+
+#[test]
+fn two_tables_may_make_up_for_each_other() {
+    let wave = |r: f64| 0.02 * (1.0 - (9.0 * r).cos());
+    let parts = vec![ball(1.0), part(600, wave), part(600, |r| -wave(r))];
+    let mut found = made_of(parts, Preload::ContactRadius(0.7)).unwrap();
+    let mut exact = made_of(vec![ball(1.0)], Preload::ContactRadius(0.7)).unwrap();
+    let full = exact.figures().gross_slip_displacement;
+    for share in [0.6, -0.1] {
+        found.apply(&displace(share * full)).unwrap();
+        exact.apply(&displace(share * full)).unwrap();
+        assert!((found.force() - exact.force()).abs() < 1e-10 * exact.figures().gross_slip_force);
+    }
 }

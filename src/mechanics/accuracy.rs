@@ -38,10 +38,11 @@ impl Contact {
         let bend = if bend.is_finite() { bend } else { 0.0 };
         let open = 2.0 * self.elasticity.e_star() * doubt.load / self.normal_force();
         let open = if open.is_finite() { open } else { 0.0 };
+        let unit = f64::EPSILON * self.profile.cancellation(radius);
         Estimate {
             path_error: self.path_error,
-            force_error: f64::EPSILON * (2.0 + 6.0 * terms + steepness) + self.path_error + open,
-            stress_error: f64::EPSILON * (4.0 + 12.0 * terms + 2.0 * steepness) + self.path_error + open + bend,
+            force_error: unit * (2.0 + 6.0 * terms + steepness) + self.path_error + open,
+            stress_error: unit * (4.0 + 12.0 * terms + 2.0 * steepness) + self.path_error + open + bend,
         }
     }
 }

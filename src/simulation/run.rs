@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::mechanics::{Contact, Estimate, Preload, Setup, Springs, springs};
+use crate::mechanics::{self, Contact, Estimate, Preload, Setup, Springs, springs};
 use crate::wire::reply::{Accuracy, State, finite};
 use crate::wire::simulate::Simulation;
 use crate::wire::{
@@ -118,9 +118,14 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
     Contact::new(setup).map_err(refused)
 }
 
-fn refused_at(base: &str, preload: Preload) -> impl Fn(crate::mechanics::Error) -> Failure {
+fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
     move |error| {
-        let place = quantity(&error).map_or("", |quantity| ContactDefinition::place_of(quantity, &preload));
+        let quantity = match error {
+            mechanics::Error::NotConvexEnough { .. } => Some("profile"),
+            mechanics::Error::BeyondProfile { .. } => Some("contact_radius"),
+            _ => quantity(&error),
+        };
+        let place = quantity.map_or("", |quantity| ContactDefinition::place_of(quantity, &preload));
         Failure::Refused { pointer: format!("{base}{place}"), error }
     }
 }

@@ -180,14 +180,17 @@ impl Profile {
                 number("tip_radius", *tip_radius, &range::TIP_RADIUS);
                 RoundedCone::new(*slope, *tip_radius).map(Shape::RoundedCone)
             }
-            Profile::Tabulated(TabulatedProfile { r, z }) => return check_table(r, z, at, faults),
+            Profile::Tabulated(TabulatedProfile { r, z }) => return check_table(r, z, Tabulated::new, at, faults),
             Profile::Sum(SumProfile { parts }) => return check_sum(parts, at, faults),
         };
         noted(shape, at, faults)
     }
 }
 
-fn check_table(r: &[f64], z: &[f64], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+/// How a table is made of radii and heights: on its own, or as part of a sum.
+type Through = fn(&[f64], &[f64]) -> Result<Tabulated, Error>;
+
+fn check_table(r: &[f64], z: &[f64], through: Through, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
     for (name, numbers, range) in [("r", r, &range::TABLE_RADIUS), ("z", z, &range::TABLE_HEIGHT)] {
         let place = at.member(name);
         if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
@@ -197,7 +200,7 @@ fn check_table(r: &[f64], z: &[f64], at: At<'_>, faults: &mut Faults) -> Option<
     if !faults.is_empty() {
         return None;
     }
-    noted(Tabulated::new(r, z).map(Shape::Tabulated), at, faults)
+    noted(through(r, z).map(Shape::Tabulated), at, faults)
 }
 
 fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
@@ -205,7 +208,11 @@ fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape
     if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
         return None;
     }
-    let shapes: Vec<_> = parts.iter().enumerate().map(|(index, part)| part.check(place.index(index), faults)).collect();
+    let mut check = |(index, part): (usize, &Profile)| match part {
+        Profile::Tabulated(TabulatedProfile { r, z }) => check_table(r, z, Tabulated::part, place.index(index), faults),
+        part => part.check(place.index(index), faults),
+    };
+    let shapes: Vec<_> = parts.iter().enumerate().map(&mut check).collect();
     let shapes: Option<Vec<Shape>> = shapes.into_iter().collect();
     noted(Sum::new(shapes?).map(Shape::Sum), at, faults)
 }

@@ -280,16 +280,51 @@ impl Profile {
         }
     }
 
-    /// The limit, and whether it is there because g falls. A sum has the least of its parts, though another part might make up
-    /// for a g that falls.
+    /// The limit, and whether it is there because g falls.
     fn limit(&self) -> Option<(f64, bool)> {
         match self {
-            Profile::ExactSphere(sphere) => Some((sphere.limit(), false)),
             Profile::Tabulated(table) => Some(table.limit()),
-            Profile::Sum(sum) => {
-                sum.parts().iter().filter_map(Profile::limit).reduce(|a, b| if b.0 < a.0 { b } else { a })
-            }
+            Profile::Sum(sum) => sum.limit(),
+            _ => self.reach(),
+        }
+    }
+
+    /// How far, m, g is known, though it may fall before, and whether it ends because it falls.
+    fn reach(&self) -> Option<(f64, bool)> {
+        match self {
+            Profile::ExactSphere(sphere) => Some((sphere.limit(), false)),
+            Profile::Tabulated(table) => Some(table.reach()),
+            Profile::Sum(sum) => sum.limit(),
             _ => None,
+        }
+    }
+
+    /// Whether g falls somewhere within its reach.
+    fn falls_within(&self) -> bool {
+        matches!(self, Profile::Tabulated(table) if table.falls_within())
+    }
+
+    /// The radius, m, of a flat core.
+    fn foot(&self) -> f64 {
+        match self {
+            Profile::Tabulated(table) => table.foot(),
+            _ => self.radius(0.0),
+        }
+    }
+
+    /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: what their rounding grows by.
+    #[must_use]
+    pub fn cancellation(&self, x: f64) -> f64 {
+        match self {
+            Profile::Sum(sum) if sum.parts().iter().any(Profile::falls_within) => {
+                let grown = |f: &dyn Fn(&Profile) -> f64| {
+                    let (sum, sizes) =
+                        sum.parts().iter().map(f).fold((0.0, 0.0), |(a, b), part| (a + part, b + part.abs()));
+                    if sum > 0.0 { sizes / sum } else { 1.0 }
+                };
+                grown(&|part| part.level(x)).max(grown(&|part| part.slope(x)))
+            }
+            _ => 1.0,
         }
     }
 }

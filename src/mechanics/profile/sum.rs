@@ -1,14 +1,15 @@
 //! A profile made of several: g, its slope, its loads and its kernels add up, since g is linear in f.
 //!
 //! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there by a
-//! bracketed method. A flat punch among the parts ends the sum in its vertical edge.
+//! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
+//! the others make up for it: X(y) then lies between the foot of the sum and where it ends or falls.
 
 use super::super::double::Double;
 use super::super::error::Error;
 use super::super::range;
 use super::roots::increasing;
 use super::shape::Shape;
-use super::{At, Point, Profile, Ring, Span};
+use super::{At, Point, Profile, Ring, Span, Tabulated};
 
 /// How far beyond a kink, relative to its radius, a radius still lacks digits that a level has.
 const NEAR: f64 = 1e-2;
@@ -24,6 +25,10 @@ pub struct Sum {
     /// Radii at which one of the parts is not smooth, rising.
     kinks: Vec<f64>,
     rim: Option<(f64, f64)>,
+    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
+    limit: Option<(f64, bool)>,
+    /// Where X(y) is sought if a part's own inverse is of no help: from the foot of the sum to its rim, m.
+    bracket: Option<(f64, f64)>,
     ceiling: f64,
     power: f64,
     analytic_tip: bool,
@@ -33,7 +38,7 @@ impl Sum {
     /// The sum of `parts`; sums among them are taken apart.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::PARTS`].
+    /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen.
     pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
@@ -54,8 +59,11 @@ impl Sum {
         }
         kinks.sort_by(f64::total_cmp);
         kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        let limit = flat.iter().filter_map(Profile::reach).reduce(|a, b| if b.0 < a.0 { b } else { a });
         let mut sum = Sum {
             rim: None,
+            limit,
+            bracket: None,
             ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
             power: flat.iter().map(Shape::power).fold(1.0, f64::max),
             analytic_tip: flat.iter().all(Shape::analytic_tip),
@@ -63,10 +71,47 @@ impl Sum {
             kinks,
         };
         let rim = sum.parts.iter().filter_map(Shape::rim).map(|(radius, _)| radius).fold(f64::INFINITY, f64::min);
+        let falls = sum.first_fall(rim);
+        if let Some(radius) = falls {
+            sum.limit = Some((radius, true));
+        }
+        let rim = falls.unwrap_or(rim);
         if rim < sum.ceiling {
             sum.rim = Some((rim, sum.level(rim)));
         }
+        if sum.parts.iter().any(Profile::falls_within) {
+            let foot = sum.parts.iter().map(Profile::foot).fold(rim, f64::min);
+            if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
+                return Err(Error::NotConvexEnough { radius: foot });
+            }
+            sum.bracket = Some((foot, rim));
+        }
         Ok(sum)
+    }
+
+    /// The first radius below `rim` at which the sum falls, where a part of it does, m.
+    fn first_fall(&self, rim: f64) -> Option<f64> {
+        let tables = self.parts.iter().filter(|part| part.falls_within()).filter_map(|part| match part {
+            Profile::Tabulated(table) => Some(table),
+            _ => None,
+        });
+        let mut looks: Vec<f64> = tables.flat_map(Tabulated::looks).filter(|&radius| radius < rim).collect();
+        looks.sort_by(f64::total_cmp);
+        let sizes = |x: f64| self.total(|part| part.slope(x).abs());
+        // Parts that cancel leave their rounding.
+        let falls = |x: f64| Shape::slope(self, x) < -1e-12 * sizes(x);
+        let index = looks.iter().position(|&x| falls(x))?;
+        let (mut low, mut high) = (index.checked_sub(1).map_or(0.0, |before| looks[before]), looks[index]);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if falls(middle) { high = middle } else { low = middle }
+        }
+        Some(low)
+    }
+
+    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
+    pub(super) fn limit(&self) -> Option<(f64, bool)> {
+        self.limit
     }
 
     /// The parts, none of them a sum.
@@ -102,12 +147,16 @@ impl Sum {
         slope: impl Fn(f64) -> f64,
     ) -> f64 {
         let least = |target: f64| self.parts.iter().map(|part| radius(part, target)).fold(f64::INFINITY, f64::min);
-        let high = least(target);
+        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
+        let (low, high) = match self.bracket {
+            Some((foot, _)) if target <= 0.0 => (foot, foot),
+            Some(bracket) => bracket,
+            None if target <= 0.0 => (0.0, least(target)),
+            None => (least(target / self.parts.len() as f64), least(target)),
+        };
         if target <= 0.0 {
             return high;
         }
-        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
-        let low = least(target / self.parts.len() as f64);
         let reach = high - low;
         if reach <= 1e-15 * high {
             return high;

@@ -36,8 +36,9 @@ pub(super) struct Built {
     pub(super) falls_at: Option<f64>,
 }
 
-/// The panels from the first knot at which the surface leaves the plane, up to the last or to where g falls.
-pub(super) fn panels(knots: &[Knot]) -> Built {
+/// The panels from the first knot at which the surface leaves the plane, up to the last or, unless it is the `whole` curve that
+/// is wanted, to where g falls.
+pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
     let segments: Vec<Segment> = knots
         .windows(2)
         .map(|pair| {
@@ -67,7 +68,11 @@ pub(super) fn panels(knots: &[Knot]) -> Built {
                 built.panels.push(panel);
                 continue;
             };
-            built.falls_at = Some(stretch.radius(t));
+            built.falls_at = built.falls_at.or(Some(stretch.radius(t)));
+            if whole {
+                built.panels.push(panel);
+                continue;
+            }
             if t > stretch.low {
                 built.panels.push(make(stretch.low, t));
             }

@@ -4,7 +4,8 @@
 //!
 //! f'(0) = 0: a sharp tip would be the noise of the first two points, and a log-infinite pressure; who wants one adds a cone.
 //! With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up to r = 1.5: 3e-5 of g at
-//! n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the first at which g falls, exist.
+//! n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the first at which g falls, exist:
+//! but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
 mod doubt;
@@ -42,7 +43,8 @@ pub struct Tabulated {
     knots: Vec<f64>,
     /// Radius, level and load at the end.
     end: (f64, f64, f64),
-    falls: bool,
+    /// The first radius at which g falls, if it does.
+    falls: Option<f64>,
 }
 
 impl Tabulated {
@@ -52,6 +54,19 @@ impl Tabulated {
     /// [`Error::OutOfRange`] by [`range::TABLE_POINTS`], [`range::TABLE_RADIUS`] and [`range::TABLE_HEIGHT`], [`Error::Table`] for a
     /// table that is none, [`Error::NotConvexEnough`] if g falls from the centre on.
     pub fn new(radii: &[f64], heights: &[f64]) -> Result<Tabulated, Error> {
+        Tabulated::through(radii, heights, false)
+    }
+
+    /// The part of a sum through the points (r, z), m, whose g may fall: what a body departs from a ball by, say. On its own, g
+    /// has no inverse from there on, and contacts end there.
+    ///
+    /// # Errors
+    /// As [`Tabulated::new`], but for a g that falls.
+    pub fn part(radii: &[f64], heights: &[f64]) -> Result<Tabulated, Error> {
+        Tabulated::through(radii, heights, true)
+    }
+
+    fn through(radii: &[f64], heights: &[f64], whole: bool) -> Result<Tabulated, Error> {
         #[expect(clippy::cast_precision_loss, reason = "a length is far below 2^52")]
         range::TABLE_POINTS.check(radii.len() as f64)?;
         if radii.len() != heights.len() {
@@ -69,16 +84,16 @@ impl Tabulated {
         }
         range::RADIUS.check(radii[1])?;
         let knots = spline::knots(radii, heights);
-        let mut table = Tabulated::from_knots(&knots)?;
+        let mut table = Tabulated::from_knots(&knots, whole)?;
         table.doubts = doubt::doubts(radii, heights, &knots);
         table.radii = radii.to_vec();
         table.noise = noise(radii, heights);
         Ok(table)
     }
 
-    /// The profile whose slope is linear between knots.
-    fn from_knots(knots: &[Knot]) -> Result<Tabulated, Error> {
-        let build::Built { mut panels, falls_at } = build::panels(knots);
+    /// The profile whose slope is linear between knots, as far as g rises or `whole`.
+    fn from_knots(knots: &[Knot], whole: bool) -> Result<Tabulated, Error> {
+        let build::Built { mut panels, falls_at } = build::panels(knots, whole);
         let (level, load) = build::accumulate(&mut panels);
         let Some(last) = panels.last() else {
             return Err(match falls_at {
@@ -115,13 +130,39 @@ impl Tabulated {
             sources,
             knots,
             end,
-            falls: falls_at.is_some(),
+            // Where the curve was cut at the fall, that is its end, however it is rounded.
+            falls: falls_at.map(|radius| if whole { radius.min(end.0) } else { end.0 }),
         })
     }
 
     /// The radius, m, that every contact must stay below, and whether it is there because g falls.
     pub(super) fn limit(&self) -> (f64, bool) {
-        (self.end.0, self.falls)
+        (self.falls.unwrap_or(self.end.0), self.falls.is_some())
+    }
+
+    /// The radius, m, up to which g is known, and whether it ends because g falls.
+    pub(super) fn reach(&self) -> (f64, bool) {
+        (self.end.0, self.falls.is_some_and(|radius| radius >= self.end.0))
+    }
+
+    /// Whether g falls somewhere within its reach.
+    pub(super) fn falls_within(&self) -> bool {
+        self.falls.is_some_and(|radius| radius < self.end.0)
+    }
+
+    /// The radius, m, at which the surface leaves the plane.
+    pub(super) fn foot(&self) -> f64 {
+        self.panels.first().map_or(0.0, |panel| panel.radius)
+    }
+
+    /// Radii, m, rising, between which g' cannot hide a fall.
+    pub(super) fn looks(&self) -> impl Iterator<Item = f64> {
+        self.panels.iter().flat_map(|panel| {
+            let mut places = panel::places(panel.low, panel.high).to_vec();
+            places.extend([panel.low, panel.high]);
+            places.sort_by(f64::total_cmp);
+            places.into_iter().map(|t| (panel.base * panel.base + t * t).sqrt())
+        })
     }
 
     /// An estimate of the noise of the heights, m, from what a local cubic leaves over. A coarse table of a smooth surface has some too.

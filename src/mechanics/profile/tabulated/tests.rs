@@ -26,7 +26,7 @@ fn table(idle: u32) -> Profile {
     radii.sort_by(f64::total_cmp);
     let slope = |r: f64| BENDS.iter().map(|bend| bend.1 * (r - bend.0).max(0.0)).sum();
     let knots: Vec<Knot> = radii.iter().map(|&radius| Knot { radius, slope: slope(radius) }).collect();
-    Profile::Tabulated(Tabulated::from_knots(&knots).unwrap())
+    Profile::Tabulated(Tabulated::from_knots(&knots, false).unwrap())
 }
 
 fn worst(pairs: &[(f64, f64)]) -> f64 {
