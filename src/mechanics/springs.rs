@@ -218,7 +218,9 @@ impl Springs {
     fn displacement_for(&self, target: f64) -> Result<f64, Error> {
         let limit = self.friction * self.normal_force();
         if target.abs() >= limit {
-            let part = (limit - target.signum() * self.force()) / (target - self.force()).abs();
+            let way = (target - self.force()).abs();
+            // Without friction even to stay is too much, and there is no way to be a part of.
+            let part = if way > 0.0 { (limit - target.signum() * self.force()) / way } else { 0.0 };
             return Err(Error::ForceExceedsFriction { target, limit, part: part.clamp(0.0, 1.0) });
         }
         let scale = self.scale();

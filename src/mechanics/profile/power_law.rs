@@ -185,10 +185,12 @@ impl Shape for PowerLaw {
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
         let plain = (ring.outer.square - ring.inner.square).value();
         if plain > 0.5 * ring.outer.square.value() {
-            // A low inner level is lost in the depth.
             return plain;
         }
-        let decades = -(-(depth / ring.outer.level.value()).min(1.0)).ln_1p() / self.exponent;
+        let (inner, outer) = (ring.inner.level.value(), ring.outer.level.value());
+        // A low inner level is lost in the depth, and what the inner radius lacks is lost in a high one.
+        let decades =
+            if inner < 0.5 * outer { (outer / inner).ln() } else { -(-depth / outer).ln_1p() } / self.exponent;
         let width = -ring.outer.radius * (-decades).exp_m1();
         width * (2.0 * ring.outer.radius - width)
     }
