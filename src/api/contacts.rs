@@ -1,6 +1,6 @@
 //! `/contacts`: sessions are made, listed, looked at, forked and deleted.
 
-use axum::http::StatusCode;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::Response;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -9,8 +9,9 @@ use crate::wire::{CreateRequest, ForkRequest, HistoryPage, NewSession, SessionPa
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected, OptionalCommand};
+use super::format::{self, Format};
 use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
-use super::problem::Problem;
+use super::problem::{Kind, Problem};
 use super::query::Params;
 use super::{limits, reply};
 
@@ -59,9 +60,18 @@ pub async fn list(Own(app): Own, params: Params) -> Result<Response, Problem> {
     responses((status = 200, description = "The contact and its state", body = SessionReply,
         headers(("ETag" = String, description = "Its sequence in quotes"))))
 )]
-pub async fn get(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
+pub async fn get(
+    Own(app): Own,
+    ContactId(id): ContactId,
+    headers: HeaderMap,
+    params: Params,
+) -> Result<Response, Problem> {
     params.none()?;
     let session = app.sessions.get(id).await?;
+    let tag = Format::Columns.tag(&session.sequence.to_string());
+    if reply::is_known(&headers, &tag) {
+        return Ok(reply::not_modified(&tag));
+    }
     Ok(reply::at_sequence(session.sequence, reply::written(&session)?))
 }
 
@@ -116,6 +126,9 @@ pub struct StressQuery {
     /// Whether the extrema of the shear stress are wanted too.
     #[param(nullable = false, default = false)]
     residual: Option<bool>,
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv` or `ndjson`; left out, what `Accept` prefers.
+    #[param(nullable = false, default = "columns")]
+    format: Option<String>,
 }
 
 /// Read the stresses of a contact
@@ -124,10 +137,29 @@ pub struct StressQuery {
     responses((status = 200, description = "The stresses in its present state", body = StressReply,
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
-pub async fn stress(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
-    let (sampling, residual) = params.stress()?;
-    let (sequence, body, held) = app.sessions.stress(id, sampling, residual).await?;
-    Ok(reply::holding(reply::at_sequence(sequence, body), held))
+pub async fn stress(
+    Own(app): Own,
+    ContactId(id): ContactId,
+    headers: HeaderMap,
+    params: Params,
+) -> Result<Response, Problem> {
+    let (sampling, residual, named) = params.stress()?;
+    let format = Format::chosen(named, &headers)?;
+    if residual && format != Format::Columns {
+        let detail = "the extrema are no column: ask for them with the format `columns`";
+        return Err(Problem::at(Kind::InvalidInput, "/residual", detail));
+    }
+    if headers.contains_key(header::IF_NONE_MATCH) {
+        // Before anything is computed.
+        let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
+        if reply::is_known(&headers, &tag) {
+            return Ok(reply::not_modified(&tag));
+        }
+    }
+    let more = if format == Format::Columns { 0 } else { format::STRESS_ROW };
+    let write = move |found: &StressReply| (format != Format::Columns).then(|| format::stress(format, found));
+    let (sequence, body, held) = app.sessions.stress(id, sampling, residual, more, write).await?;
+    Ok(reply::holding(format.reply(body, &format.tag(&sequence.to_string())), held))
 }
 
 /// Which moves to list.
@@ -141,6 +173,9 @@ pub struct HistoryQuery {
     /// How many at most.
     #[param(nullable = false)]
     limit: Option<usize>,
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv` or `ndjson`; left out, what `Accept` prefers.
+    #[param(nullable = false, default = "columns")]
+    format: Option<String>,
 }
 
 /// Read the past of a contact
@@ -148,11 +183,37 @@ pub struct HistoryQuery {
 /// A page of its moves with the states after them, oldest first.
 #[utoipa::path(
     get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, HistoryQuery),
-    responses((status = 200, description = "A page of moves", body = HistoryPage))
+    responses((status = 200, description = "A page of moves", body = HistoryPage,
+        headers(("ETag" = String, description = "The version of this page, in quotes"))))
 )]
-pub async fn history(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
-    let (after, limit) = params.page("the number of a move")?;
+pub async fn history(
+    Own(app): Own,
+    ContactId(id): ContactId,
+    headers: HeaderMap,
+    params: Params,
+) -> Result<Response, Problem> {
+    let (after, limit, named) = params.history()?;
+    let format = Format::chosen(named, &headers)?;
     let held = app.pool.reserve(limit * limits::HISTORY_ITEM).await?;
     let page = app.sessions.history(id, after.unwrap_or(0), limit).await?;
-    Ok(reply::holding(reply::json(reply::written(&page)?), held))
+    // Moves never change: a page is told by its last move, and by whether there are more.
+    let last = page.items.last().map_or(after.unwrap_or(0), |item| item.sequence);
+    let more = if page.next.is_some() { "-more" } else { "" };
+    let tag = format.tag(&format!("{last}{more}"));
+    if reply::is_known(&headers, &tag) {
+        return Ok(reply::not_modified(&tag));
+    }
+    let body = match format {
+        Format::Columns => reply::written(&page)?,
+        flat => format::history(flat, &page),
+    };
+    let mut response = format.reply(body, &tag);
+    if let Some(next) = page.next {
+        let place =
+            format!("</contacts/{id}/history?after={next}&limit={limit}&format={}>; rel=\"next\"", format.name());
+        if let Ok(place) = HeaderValue::from_str(&place) {
+            response.headers_mut().insert(header::LINK, place);
+        }
+    }
+    Ok(reply::holding(response, held))
 }

@@ -7,6 +7,7 @@ pub mod descriptors;
 pub mod door;
 mod events;
 mod extract;
+mod format;
 pub mod headers;
 pub mod limits;
 mod meta;

@@ -12,6 +12,7 @@ use crate::mechanics::range::{self, Range};
 use crate::wire::{EndEvent, ProblemDocument, limits, profile};
 
 use super::access::{Need, need};
+use super::format::{self, Format};
 use super::limits as server;
 use super::problem::MEDIA_TYPE;
 
@@ -97,6 +98,7 @@ pub fn document() -> &'static str {
         write_parameters(&mut document);
         write_refusals(&mut document);
         write_keys(&mut document);
+        write_formats(&mut document);
         format!("{document:#}\n")
     })
 }
@@ -292,6 +294,36 @@ fn write_keys(document: &mut Value) {
             for (status, description) in refusals {
                 operation["responses"][status] = refusal(&description);
             }
+        }
+    }
+}
+
+/// The flat formats of tables, and the answer to those who have the present version already.
+fn write_formats(document: &mut Value) {
+    let Some(Value::Object(paths)) = document.get_mut("paths") else {
+        return;
+    };
+    for (path, operations) in paths {
+        let table = path.ends_with("/stress") || path.ends_with("/history");
+        if !table && path != "/contacts/{id}" {
+            continue;
+        }
+        let operation = &mut operations["get"];
+        operation["responses"]["304"] =
+            json!({"description": "The client has this version already, as its If-None-Match says"});
+        if table {
+            let names = Format::ALL.map(Format::name);
+            for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
+                if parameter["name"] == "format" {
+                    parameter["schema"]["enum"] = json!(names);
+                }
+            }
+            let content = &mut operation["responses"]["200"]["content"];
+            content[format::ROWS] = json!({"schema": {"type": "array", "items": {"type": "object"}}});
+            for media_type in [format::CSV, format::NDJSON] {
+                content[media_type] = json!({"schema": {"type": "string"}});
+            }
+            operation["responses"]["406"] = refusal("Accept admits none of the formats");
         }
     }
 }

@@ -8,6 +8,7 @@
 //! - No key, or one that is not known: [`Kind::Unauthorized`]. A key that does not allow it: [`Kind::Forbidden`]. What belongs
 //!   to another tenant does not exist.
 //! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
+//! - No format that `Accept` admits: [`Kind::NotAcceptable`].
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
 //! - A head that a proxy might read in another way than this server: [`Kind::AmbiguousRequest`].
@@ -52,6 +53,8 @@ pub enum Kind {
     ContactExpired,
     /// The path has no such method.
     MethodNotAllowed,
+    /// There is no format that the client takes.
+    NotAcceptable,
     /// The state of the session forbids it.
     Conflict,
     /// The session is not at the sequence given in `If-Match`.
@@ -88,7 +91,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 24] = [
+    pub const ALL: [Kind; 25] = [
         Kind::AmbiguousRequest,
         Kind::NotJson,
         Kind::Unauthorized,
@@ -97,6 +100,7 @@ impl Kind {
         Kind::ContactNotFound,
         Kind::ContactExpired,
         Kind::MethodNotAllowed,
+        Kind::NotAcceptable,
         Kind::Conflict,
         Kind::StaleSequence,
         Kind::RequestTimeout,
@@ -131,6 +135,7 @@ impl Kind {
             Kind::MethodNotAllowed => {
                 (StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", "This path has no such method")
             }
+            Kind::NotAcceptable => (StatusCode::NOT_ACCEPTABLE, "not_acceptable", "There is no such format"),
             Kind::Conflict => (StatusCode::CONFLICT, "conflict", "The state of the contact forbids this"),
             Kind::StaleSequence => (StatusCode::PRECONDITION_FAILED, "stale_sequence", "The contact has moved on"),
             Kind::RequestTimeout => {

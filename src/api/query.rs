@@ -8,6 +8,7 @@ use axum::http::request::Parts;
 use crate::wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
 
 use super::App;
+use super::format::Format;
 use super::limits;
 use super::problem::Problem;
 
@@ -77,17 +78,37 @@ impl Params {
     /// # Errors
     /// A [`Problem`] with every fault of the parameters.
     pub fn page<T: FromStr>(mut self, expected: &str) -> Result<(Option<T>, usize), Problem> {
-        let after = self.number("after", expected);
-        let limit = self.number("limit", "a whole number, not negative").unwrap_or(limits::DEFAULT_PAGE);
-        self.faults.count(At::Root.member("limit"), limit, &limits::PAGE);
-        self.finish(Some((after, limit)))
+        let page = self.bounds(expected);
+        self.finish(Some(page))
     }
 
-    /// Which stresses are asked for, and whether their extrema are.
+    /// The same, and the format if it is named.
     ///
     /// # Errors
     /// A [`Problem`] with every fault of the parameters.
-    pub fn stress(mut self) -> Result<(Sampling, bool), Problem> {
+    pub fn history(mut self) -> Result<(Option<u64>, usize, Option<Format>), Problem> {
+        let (after, limit) = self.bounds("the number of a move");
+        let format = self.format();
+        self.finish(Some((after, limit, format)))
+    }
+
+    fn format(&mut self) -> Option<Format> {
+        let named = |text: &str| Format::ALL.into_iter().find(|format| format.name() == text);
+        self.take("format", "one of `columns`, `rows`, `csv`, `ndjson`", named)
+    }
+
+    fn bounds<T: FromStr>(&mut self, expected: &str) -> (Option<T>, usize) {
+        let after = self.number("after", expected);
+        let limit = self.number("limit", "a whole number, not negative").unwrap_or(limits::DEFAULT_PAGE);
+        self.faults.count(At::Root.member("limit"), limit, &limits::PAGE);
+        (after, limit)
+    }
+
+    /// Which stresses are asked for, whether their extrema are, and the format if it is named.
+    ///
+    /// # Errors
+    /// A [`Problem`] with every fault of the parameters.
+    pub fn stress(mut self) -> Result<(Sampling, bool, Option<Format>), Problem> {
         let field = |name: &str| Field::ALL.into_iter().find(|field| field.name() == name);
         let points = self.number("points", "a whole number, not negative");
         let radii = self.take("radii", "numbers with commas between them", |text| {
@@ -99,10 +120,11 @@ impl Params {
             |text| text.split(',').map(|name| field(name.trim())).collect(),
         );
         let residual = self.number("residual", "true or false").unwrap_or(false);
+        let format = self.format();
         if !self.faults.is_empty() {
             return self.finish(None);
         }
         let sampling = StressRequest { points, radii, fields }.check(At::Root, &mut self.faults);
-        self.finish(sampling.map(|sampling| (sampling, residual)))
+        self.finish(sampling.map(|sampling| (sampling, residual, format)))
     }
 }

@@ -26,7 +26,8 @@ impl Sessions {
         })
     }
 
-    /// The stresses of a session, as JSON, with the sequence that they belong to, and the memory that they take.
+    /// The stresses of a session as `write` puts them down, in so many bytes a radius beyond JSON's columns at the most, with
+    /// the sequence that they belong to, and the memory that they take.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
@@ -35,6 +36,8 @@ impl Sessions {
         id: Uuid,
         sampling: Sampling,
         residual: bool,
+        more: usize,
+        write: impl FnOnce(&StressReply) -> Option<Vec<u8>> + Send + 'static,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
         // The lock is held for a copy alone, so that the session can move on meanwhile.
@@ -42,6 +45,7 @@ impl Sessions {
             let mut guard = self.lock(id).await?;
             let live = self.present(&mut guard).await?;
             let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
+            let bytes = bytes + more * sampling.length();
             let held = self.common.pool.reserve(bytes).await?;
             (live.contact.clone(), live.session.sequence, held)
         };
@@ -49,14 +53,15 @@ impl Sessions {
         let cost = cost::on(contact.profile(), cost, residual);
         let work = move || {
             let stress = stresses(&contact, &sampling, &stop)?;
-            written(&StressReply {
+            let reply = StressReply {
                 radius: stress.radius,
                 pressure: stress.pressure,
                 shear: stress.shear,
                 slip: stress.slip,
                 displacement: stress.displacement,
                 residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
-            })
+            };
+            write(&reply).map_or_else(|| written(&reply), Ok)
         };
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
     }
