@@ -5,11 +5,14 @@
 //! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
 //! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
 
+mod minimax;
 mod spread;
 
+use minimax::Problem;
 use spread::Spread;
 
 use super::contact::Contact;
+use super::double::Double;
 use super::error::Error;
 use super::range::short;
 
@@ -77,4 +80,44 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     };
     let displacements = (0..=reversals).map(|index| alternating(index, size(index))).collect();
     Ok(EqualPeaks { displacements, cutoff_radius: cutoff })
+}
+
+/// A path with equal alternating extrema.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Minimax {
+    /// The displacements, m: that of gross slip, and one a reversal; the last is not nought.
+    pub displacements: Vec<f64>,
+    /// The radius, m, from which on the stress is minimised; nought if it is over the whole contact.
+    pub cutoff_radius: f64,
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: nought where all are
+    /// equal.
+    pub gap: f64,
+}
+
+/// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end left free.
+///
+/// Where the stress is infinite whatever is done (the tip of a cone, the rim of a truncated profile) it is minimised from
+/// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `go_on` is asked before each kink that is sought.
+///
+/// `None` if `go_on` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
+/// vertical edge, where the stress stays infinite.
+pub fn minimax(contact: &Contact, reversals: usize, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
+    let edge = *contact.memory.edge();
+    let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
+    if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
+        return None;
+    }
+    let singular = contact.profile.singular_radii().into_iter().filter(|&radius| radius < edge.radius).reduce(f64::max);
+    let cutoff = singular.map_or(0.0, |least| least + DEFAULT_CUTOFF * (edge.radius - least));
+    let equal = Problem { profile: &contact.profile, edge, cutoff, reversals }.solve(go_on)?;
+    let full = contact.gross_slip_displacement();
+    let mut displacements = vec![full];
+    let mut here = Double::from(full);
+    for (index, level) in equal.levels.iter().rev().enumerate() {
+        // A stroke slips from the level on where it is twice the bound there.
+        let stroke = Double::from(2.0 * contact.scale()) * (edge.level - Double::from(*level)).value();
+        here = if index.is_multiple_of(2) { here - stroke } else { here + stroke };
+        displacements.push(here.value());
+    }
+    Some(Minimax { displacements, cutoff_radius: cutoff, gap: 1.0 - equal.ratio })
 }
