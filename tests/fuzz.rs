@@ -110,15 +110,15 @@ fn bodies_that_once_broke_a_law() {
 
 #[test]
 fn raw_bytes() {
-    fuzz(500_000, damage::raw(), Clone::clone);
+    fuzz(1_200_000, damage::raw(), Clone::clone);
 }
 
 #[test]
 fn damaged_requests() {
-    fuzz(15_000, damage::damaged(), Clone::clone);
+    fuzz(35_000, damage::damaged(), Clone::clone);
 }
 
 #[test]
 fn sound_requests() {
-    fuzz(4_000, requests::scene(), |scene| scene.write().to_string().into_bytes());
+    fuzz(10_000, requests::scene(), |scene| scene.write().to_string().into_bytes());
 }
