@@ -157,7 +157,14 @@ async fn bare() {
     .expect("a reply");
     let handler = move |Path(id): Path<Uuid>, Json(request): Json<MoveRequest>| async move {
         std::hint::black_box(request);
-        Json(MoveReply { id, sequence: 1, state: reply.steps[0], stress: None, accuracy: reply.accuracy })
+        Json(MoveReply {
+            id,
+            sequence: 1,
+            state: reply.steps[0],
+            stress: None,
+            accuracy: reply.accuracy,
+            warnings: Vec::new(),
+        })
     };
     let router = Router::new().route("/contacts/{id}/move", post(handler));
     let listener = TcpListener::bind("127.0.0.1:0").await.expect("a free port");

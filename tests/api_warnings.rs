@@ -130,3 +130,47 @@ async fn each_warning_has_its_cause_and_its_page() {
         }
     }
 }
+
+/// The codes of the warnings of a reply, and whether it has the member at all.
+fn told(reply: &Value) -> Option<Vec<&str>> {
+    let warnings = reply.get("warnings")?.as_array().unwrap();
+    Some(warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect())
+}
+
+#[tokio::test]
+async fn a_session_warns_when_a_move_gives_it_cause() {
+    let server = common::Server::start().await;
+    let client = reqwest::Client::new();
+    let send = async |place: &str, body: Value| -> Value {
+        let reply = client.post(format!("{}{place}", server.base)).json(&body).send().await.unwrap();
+        assert!(reply.status().is_success(), "{body}");
+        reply.json().await.unwrap()
+    };
+    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
+    let contact = with(&json!({"material": {"bodies": [steel, steel]}}))["contact"].clone();
+    let made = send("/contacts", contact).await;
+    assert_eq!(told(&made), Some(vec!["slip_direction"]));
+    let place = |last: &str| format!("/contacts/{}/{last}", made["id"].as_str().unwrap());
+    for (last, body, expected) in [
+        ("move", json!({"displacement": 1e-7}), None),
+        // a^2 = R d, and what was known from the start is no news.
+        ("move", json!({"indentation": 8.9e-4}), None),
+        ("move", json!({"indentation": 9.1e-4}), Some(vec!["large_contact"])),
+        ("move", json!({"indentation": 9.2e-4}), None),
+        ("move", json!({"indentation": 1e-6}), None),
+        (
+            "path",
+            json!({"path": {"moves": [{"indentation": 1e-3}, {"indentation": 1e-6}]}}),
+            Some(vec!["large_contact"]),
+        ),
+        ("path", json!({"path": {"displacement": [1e-7, 0.0]}}), None),
+        ("move", json!({"force": 1.0, "normal_force": 20.0, "tolerance": 1e-10}), None),
+        (
+            "move",
+            json!({"displacement": 5e-7, "normal_force": 30.0, "tolerance": 1e-14}),
+            Some(vec!["tolerance_not_met"]),
+        ),
+    ] {
+        assert_eq!(told(&send(&place(last), body.clone()).await), expected, "{body}");
+    }
+}

@@ -264,6 +264,18 @@ impl Contact {
         &self.profile
     }
 
+    /// The elastic constants.
+    #[must_use]
+    pub fn elasticity(&self) -> Elasticity {
+        self.elasticity
+    }
+
+    /// The error that curved moves have left in the tangential force, relative to mu F_N: an estimate from above.
+    #[must_use]
+    pub fn path_error(&self) -> f64 {
+        self.path_error
+    }
+
     /// Contact radius a, m.
     #[must_use]
     pub fn contact_radius(&self) -> f64 {

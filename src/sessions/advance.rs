@@ -6,7 +6,7 @@ use std::time::Instant;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::simulation::{Stop, Timer, accuracy, cost, follow, protocol, stresses};
+use crate::simulation::{Stop, Timer, accuracy, cost, follow, missed, news, protocol, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
 use crate::wire::{MoveReply, PathReply, Plan, Steps, limits};
@@ -146,9 +146,13 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
     let protocol = protocol(&advance.plan, &live.contact)?;
+    let (before, error_before) = (live.contact.contact_radius(), live.contact.path_error());
+    let (mut largest, mut error) = (before, 0.0f64);
     let begin = Instant::now();
     follow(&mut live.contact, &advance.plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         sequence += 1;
+        largest = largest.max(contact.contact_radius());
+        error = error.max(contact.path_error() - error_before);
         records.push(Record { sequence, step, tolerance, state: contact.state().into(), at: now });
     })?;
     live.beyond.add(records.len(), begin.elapsed());
@@ -156,20 +160,22 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     live.session.updated_at = now;
     let stress = advance.stress.as_ref().map(|sampling| stresses(&live.contact, sampling, stop)).transpose()?;
     let accuracy = accuracy(&live.contact, timer, REASON);
+    let missed = missed(error, tolerance, advance.plan.curved());
+    let warnings = news(&live.session.definition.profile, &live.contact, before, largest, missed);
     let id = live.session.id;
     let states = records.iter().map(|record| record.state);
     let body = match (&advance.plan, advance.steps) {
         (Plan::Single(_), _) => {
             let state = live.contact.state().into();
-            written(&MoveReply { id, sequence, state, stress, accuracy })?
+            written(&MoveReply { id, sequence, state, stress, accuracy, warnings })?
         }
         (_, Steps::All) => {
             let steps = states.collect();
-            written(&PathReply { id, sequence, steps, stress, protocol, accuracy })?
+            written(&PathReply { id, sequence, steps, stress, protocol, accuracy, warnings })?
         }
         (_, Steps::Last) => {
             let steps = vec![live.contact.state().into()];
-            written(&PathReply { id, sequence, steps, stress, protocol, accuracy })?
+            written(&PathReply { id, sequence, steps, stress, protocol, accuracy, warnings })?
         }
     };
     Ok(Done { records, reply: Reply { created: None, sequence, body } })

@@ -19,7 +19,7 @@ pub use pool::{
 pub use run::{Timer, accuracy, contact, follow, protocol, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
-pub use warnings::{Seen, warnings};
+pub use warnings::{Seen, missed, news, warnings};
 
 use std::time::Duration;
 

@@ -11,7 +11,7 @@ use crate::wire::{
 
 use super::{
     Failure, LONGEST_WORK, Solver, Stop, cost, quantity,
-    warnings::{Seen, warnings},
+    warnings::{Seen, missed, warnings},
 };
 
 /// Measures the time spent computing.
@@ -72,7 +72,7 @@ fn run<S: Solver>(
     follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
         largest = largest.max(solver.contact_radius());
         if curved > 0 && all {
-            path_error = path_error.max(solver.accuracy().path_error);
+            path_error = path_error.max(solver.path_error());
         }
         if all {
             steps.push(solver.state().into());
@@ -87,16 +87,13 @@ fn run<S: Solver>(
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
     let accuracy = stated::<S>(&estimate, timer, reason);
-    // The tolerance is for a move, and the errors of curved ones add up.
-    let allowed = simulation.tolerance * curved.max(1) as f64 + 1e-13;
-    let missed = (path_error > allowed).then_some(path_error);
     let seen = Seen {
         contact_radius: largest,
         e_star: figures.e_star,
         // The noise is a table's, and a table has no vertical edge.
         indentation: figures.indentation.max(simulation.setup.profile.level(largest)),
         noise: simulation.setup.profile.noise(largest),
-        missed,
+        missed: missed(path_error, simulation.tolerance, curved),
     };
     Ok(SimulateReply {
         contact: figures.into(),

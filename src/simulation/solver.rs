@@ -37,6 +37,8 @@ pub trait Solver {
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
     fn accuracy(&self) -> Estimate;
+    /// What curved moves have left of error in the force, relative to μ F_N.
+    fn path_error(&self) -> f64;
 }
 
 impl Solver for Contact {
@@ -93,6 +95,10 @@ impl Solver for Contact {
     fn accuracy(&self) -> Estimate {
         self.accuracy()
     }
+
+    fn path_error(&self) -> f64 {
+        self.path_error()
+    }
 }
 
 impl Solver for Springs {
@@ -148,5 +154,10 @@ impl Solver for Springs {
 
     fn accuracy(&self) -> Estimate {
         self.accuracy()
+    }
+
+    fn path_error(&self) -> f64 {
+        // No move of theirs is curved.
+        0.0
     }
 }

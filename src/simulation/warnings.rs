@@ -1,6 +1,6 @@
 //! What to know about a result that is nevertheless given. Each code has its paragraph in `docs/warnings.md`.
 
-use crate::mechanics::Elasticity;
+use crate::mechanics::{Contact, Elasticity};
 use crate::wire::{Profile, Warning};
 
 /// Dundurs' β beyond which the bodies are no longer called alike; round-off of like bodies stays below it.
@@ -28,6 +28,36 @@ pub struct Seen {
     pub noise: Option<(f64, f64)>,
     /// The estimated error of the force, if it is beyond the tolerance.
     pub missed: Option<f64>,
+}
+
+/// What a request to a contact that lives has shown for the first time: nothing that held for it already at the contact radius
+/// `before`, m. `largest` is the largest contact radius since, m, and `missed` the error of the force if it is beyond the tolerance.
+#[must_use]
+pub fn news(profile: &Profile, contact: &Contact, before: f64, largest: f64, missed: Option<f64>) -> Vec<Warning> {
+    if largest <= before && missed.is_none() {
+        return Vec::new();
+    }
+    let elasticity = contact.elasticity();
+    let at = |contact_radius: f64, missed: Option<f64>| {
+        let shape = contact.profile();
+        let (indentation, noise) = (shape.level(contact_radius), shape.noise(contact_radius));
+        warnings(
+            profile,
+            &elasticity,
+            &Seen { contact_radius, e_star: elasticity.e_star(), indentation, noise, missed },
+        )
+    };
+    let known = at(before, None);
+    let mut found = at(largest, missed);
+    found.retain(|warning| known.iter().all(|old| old.code != warning.code));
+    found
+}
+
+/// The error of the force along `curved` moves, if it is more than their tolerance allows.
+#[must_use]
+pub fn missed(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
+    // The tolerance is for a move, and the errors of several add up.
+    (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
 }
 
 /// The warnings for a pair of bodies, and what is known of the run.

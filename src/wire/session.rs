@@ -182,6 +182,10 @@ pub struct MoveReply {
     pub stress: Option<Stress>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
+    /// What to know about the results since this move, if it is new.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub warnings: Vec<Warning>,
 }
 
 /// What came of a path.
@@ -203,6 +207,10 @@ pub struct PathReply {
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
+    /// What to know about the results since this path, if it is new.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub warnings: Vec<Warning>,
 }
 
 /// The stresses of a session, and perhaps their extrema.
