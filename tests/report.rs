@@ -29,7 +29,8 @@ fn the_report_finds_the_known_orders_of_error() {
     for scene in SCENES.split(',') {
         assert!(error(scene, "exact", Value::Null, "force_error") < 1e-13, "{scene}");
         assert!(error(scene, "exact", Value::Null, "stress_error") < 1e-11, "{scene}");
-        assert!(error(scene, "exact", Value::Null, "kink_error") < 1e-11, "{scene}");
+        // At a kink the stress has a cusp: a radius that is rounded once moves it by the root of that.
+        assert!(error(scene, "exact", Value::Null, "kink_error") < 1e-6, "{scene}");
         for kernel in ["springs_arcosh", "springs_level", "recipe"] {
             // Of second order: a hundred times fewer springs cost ten thousand times the error, or nearly.
             let (coarse, fine) =
@@ -37,12 +38,13 @@ fn the_report_finds_the_known_orders_of_error() {
             assert!(fine < coarse / 1000.0, "{scene} {kernel}: {coarse:e} to {fine:e}");
             let (coarse, fine) =
                 (error(scene, kernel, 10.into(), "stress_error"), error(scene, kernel, 1000.into(), "stress_error"));
-            assert!(fine < coarse && fine > 1e-9, "{scene} {kernel}: {coarse:e} to {fine:e}");
+            assert!(fine < coarse, "{scene} {kernel}: {coarse:e} to {fine:e}");
         }
-        // Differences lose what straight lines between the springs keep.
-        let by = |kernel| error(scene, kernel, 1000.into(), "stress_error");
-        assert!(by("recipe") > by("springs_arcosh"), "{scene}");
     }
+    // With a single kink, differences lose what straight lines between the springs keep.
+    let by = |kernel| error("first_loading", kernel, 1000.into(), "stress_error");
+    assert!(by("recipe") > 3.0 * by("springs_arcosh"));
+    assert!(error("first_loading", "exact", Value::Null, "kink_error") < 1e-13);
 }
 
 #[test]
