@@ -1,6 +1,6 @@
 //! Speed against error: what each solver costs on a few scenes, and how wrong it is.
 //!
-//! Errors are against a reference of its own ([`truth`]); times are medians of repeated runs, and read best as ratios to the
+//! Errors are against a reference of its own (`truth`); times are medians of repeated runs, and read best as ratios to the
 //! exact solver of the same scene in the same run.
 
 mod scenes;
