@@ -5,6 +5,8 @@
 //!
 //! [`figures`] draws the figures of the paper that all this follows, by way of the same engine.
 //!
+//! [`report`] measures speed against error, with a reference of its own.
+//!
 //! [`wire`] has the JSON types, and their checked conversion into those of the mechanics: parse once, then trust.
 //!
 //! [`simulation`] runs a checked request against the mechanics, at once or on a thread of its own.
@@ -30,6 +32,7 @@ pub mod figures;
 pub mod mechanics;
 pub mod metrics;
 pub mod otlp;
+pub mod report;
 pub mod sessions;
 pub mod simulation;
 pub mod store;

@@ -3,6 +3,7 @@
 mod healthcheck;
 mod key;
 mod overload;
+mod report;
 mod serve;
 mod settings;
 mod simulate;
@@ -18,6 +19,7 @@ use stickslip::{api, figures};
 
 use healthcheck::Healthcheck;
 use key::Key;
+use report::Report;
 use serve::Serve;
 use settings::{Refusal, Settings};
 use upkeep::{Backup, Check};
@@ -54,6 +56,8 @@ enum Command {
     Backup(Backup),
     /// Look whether a store is sound: make every contact again from its moves, and compare. Nothing is written.
     Check(Check),
+    /// Measure what each solver costs and how wrong it is, on this machine.
+    Report(Report),
     /// Draw the figures of the paper, as SVG and CSV.
     Figures {
         /// The folder to write them to.
@@ -95,6 +99,7 @@ impl Command {
             Command::Key(key) => key::key(key),
             Command::Backup(backup) => backup.run(),
             Command::Check(check) => check.run(),
+            Command::Report(report) => report.run(),
             Command::Figures { out } => {
                 figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
             }

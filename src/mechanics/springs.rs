@@ -5,6 +5,9 @@
 //! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
 mod estimate;
+mod kernel;
+
+pub use kernel::Kernel;
 
 use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
