@@ -44,8 +44,8 @@ pub(super) trait Shape {
         increasing(start, |gap| {
             let span = Span::under(outer.square, outer.radius, gap.min(square));
             let (rise, steepness) = (self.rise(&span), steepness(span.inner_radius.max(f64::MIN_POSITIVE)));
-            // Where f' jumps the slope is infinite, and a step of Newton's would go nowhere.
-            (rise - depth, if steepness.is_finite() { steepness } else { rise / gap })
+            // Where f' jumps the slope is infinite, and beyond the centre it is none: a step of Newton's would go nowhere.
+            (rise - depth, if steepness.is_finite() && gap < square { steepness } else { rise / gap })
         })
         .min(square)
     }
