@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use crate::wire::{Field, HistoryPage, StressReply};
 
 use super::problem::{Kind, Problem};
+use super::reply::tagged;
 
 /// The media type of rows: a JSON array of flat objects.
 pub const ROWS: &str = "application/vnd.stickslip.rows+json";
@@ -102,10 +103,7 @@ impl Format {
     pub fn reply(self, body: Vec<u8>, tag: &str) -> Response {
         let mut response = ([(header::CONTENT_TYPE, self.media_type())], body).into_response();
         response.headers_mut().insert(header::VARY, HeaderValue::from_static("accept"));
-        if let Ok(tag) = HeaderValue::from_str(tag) {
-            response.headers_mut().insert(header::ETAG, tag);
-        }
-        response
+        tagged(response, tag)
     }
 }
 
@@ -198,11 +196,11 @@ pub fn history(format: Format, page: &HistoryPage) -> Vec<u8> {
 
 /// Rows under names. No name and no text in a table has a comma or a quote in it.
 fn table(format: Format, names: &[&str], rows: impl Iterator<Item = Vec<Value>>) -> Vec<u8> {
-    let mut text = String::new();
-    if format == Format::Csv {
-        text.push_str(&names.join(","));
-        text.push('\n');
-    }
+    let mut text = match format {
+        Format::Csv => names.join(",") + "\n",
+        Format::Rows => "[".to_owned(),
+        Format::Columns | Format::Ndjson => String::new(),
+    };
     let separator = if format == Format::Rows { "," } else { "\n" };
     for (index, row) in rows.enumerate() {
         if index > 0 {
@@ -224,7 +222,7 @@ fn table(format: Format, names: &[&str], rows: impl Iterator<Item = Vec<Value>>)
         }
     }
     if format == Format::Rows {
-        text = format!("[{text}]");
+        text.push(']');
     } else if !text.is_empty() && !text.ends_with('\n') {
         text.push('\n');
     }

@@ -17,8 +17,12 @@ pub fn json(body: Vec<u8>) -> Response {
 
 /// 200 with a JSON body that belongs to a sequence of its session.
 pub fn at_sequence(sequence: u64, body: Vec<u8>) -> Response {
-    let mut response = json(body);
-    if let Ok(tag) = HeaderValue::from_str(&format!("\"{sequence}\"")) {
+    tagged(json(body), &format!("\"{sequence}\""))
+}
+
+/// A reply with the version that it is of, as `ETag`.
+pub fn tagged(mut response: Response, tag: &str) -> Response {
+    if let Ok(tag) = HeaderValue::from_str(tag) {
         response.headers_mut().insert(header::ETAG, tag);
     }
     response
@@ -37,10 +41,7 @@ pub fn is_known(headers: &HeaderMap, tag: &str) -> bool {
 pub fn not_modified(tag: &str) -> Response {
     let mut response = StatusCode::NOT_MODIFIED.into_response();
     response.headers_mut().insert(header::VARY, HeaderValue::from_static("accept"));
-    if let Ok(tag) = HeaderValue::from_str(tag) {
-        response.headers_mut().insert(header::ETAG, tag);
-    }
-    response
+    tagged(response, tag)
 }
 
 /// The reply to a change: 201 with the place of what it made, or 200.

@@ -147,16 +147,11 @@ impl Sum {
         slope: impl Fn(f64) -> f64,
     ) -> f64 {
         let least = |target: f64| self.parts.iter().map(|part| radius(part, target)).fold(f64::INFINITY, f64::min);
-        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
-        let (low, high) = match self.bracket {
-            Some((foot, _)) if target <= 0.0 => (foot, foot),
-            Some(bracket) => bracket,
-            None if target <= 0.0 => (0.0, least(target)),
-            None => (least(target / self.parts.len() as f64), least(target)),
-        };
         if target <= 0.0 {
-            return high;
+            return self.bracket.map_or_else(|| least(target), |(foot, _)| foot);
         }
+        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
+        let (low, high) = self.bracket.unwrap_or_else(|| (least(target / self.parts.len() as f64), least(target)));
         let reach = high - low;
         if reach <= 1e-15 * high {
             return high;
