@@ -27,6 +27,7 @@
 
 pub mod access;
 pub mod api;
+mod chart;
 pub mod client;
 pub mod figures;
 pub mod mechanics;

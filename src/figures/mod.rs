@@ -3,15 +3,12 @@
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
 
-mod chart;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
 use std::path::Path;
 
-use chart::{Chart, Series};
-
+use crate::chart::{Chart, Series};
 use crate::mechanics::protocol::falling_amplitude;
 use crate::mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, State, Tangential};
 
@@ -121,9 +118,9 @@ fn positions(history: &Normalised) -> Chart {
     let swing = swing.chain(turns.last().copied()).collect();
     let marked = vec![turns[5], (6.5, 0.0)];
     Chart {
-        title: "Figure 1: position of the indenter, 20 reversals",
-        x: "reversal point k",
-        y: "u / u_max",
+        title: "Figure 1: position of the indenter, 20 reversals".into(),
+        x: "reversal point k".into(),
+        y: "u / u_max".into(),
         series: vec![
             Series::dots("A and B of figure 3", marked),
             Series::dots("reversal points", turns),
@@ -135,9 +132,9 @@ fn positions(history: &Normalised) -> Chart {
 fn forces(history: &Normalised) -> Chart {
     let sizes: Vec<f64> = history.forces().iter().map(|force| force.abs()).collect();
     Chart {
-        title: "Figure 2: tangential force at the reversal points",
-        x: "reversal point k",
-        y: "|F| / (mu F_N)",
+        title: "Figure 2: tangential force at the reversal points".into(),
+        x: "reversal point k".into(),
+        y: "|F| / (mu F_N)".into(),
         series: vec![Series::dots("|F| / (mu F_N)", numbered(&sizes))],
     }
 }
@@ -157,9 +154,9 @@ fn partway() -> Result<Chart, Error> {
     let back = history.shear();
     let curves = [Series::line("A: reversal 6", at_reversal), Series::line("B: back at u = 0", back)];
     Ok(Chart {
-        title: "Figure 3: shear stress after 6 and 6.5 of 20 reversals",
-        x: "r / a",
-        y: "tau / (mu p_max)",
+        title: "Figure 3: shear stress after 6 and 6.5 of 20 reversals".into(),
+        x: "r / a".into(),
+        y: "tau / (mu p_max)".into(),
         series: with_bound(&history, curves),
     })
 }
@@ -167,9 +164,9 @@ fn partway() -> Result<Chart, Error> {
 fn final_stress() -> Result<Chart, Error> {
     let history = Normalised::falling(REVERSALS, REVERSALS + 1)?;
     Ok(Chart {
-        title: "Figure 4: shear stress that remains after 20 reversals",
-        x: "r / a",
-        y: "tau / (mu p_max)",
+        title: "Figure 4: shear stress that remains after 20 reversals".into(),
+        x: "r / a".into(),
+        y: "tau / (mu p_max)".into(),
         series: vec![Series::line("tau / (mu p_max)", history.shear())],
     })
 }
@@ -188,9 +185,9 @@ fn reduction() -> Result<Chart, Error> {
         mean.extend(residual.mean.map(|value| (x, value / unit)));
     }
     Ok(Chart {
-        title: "Figure 5: peaks of the remaining shear stress",
-        x: "number of reversals",
-        y: "|tau| / (mu p_max)",
+        title: "Figure 5: peaks of the remaining shear stress".into(),
+        x: "number of reversals".into(),
+        y: "|tau| / (mu p_max)".into(),
         series: vec![Series::dots("maximum", largest), Series::dots("mean", mean), Series::dots("minimum", smallest)],
     })
 }

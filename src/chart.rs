@@ -3,17 +3,17 @@
 use plotters::prelude::*;
 
 /// Curves or dots over one pair of axes.
-pub(super) struct Chart {
-    pub(super) title: &'static str,
-    pub(super) x: &'static str,
-    pub(super) y: &'static str,
-    pub(super) series: Vec<Series>,
+pub(crate) struct Chart {
+    pub(crate) title: String,
+    pub(crate) x: String,
+    pub(crate) y: String,
+    pub(crate) series: Vec<Series>,
 }
 
 /// One named set of points.
-pub(super) struct Series {
-    pub(super) name: &'static str,
-    pub(super) points: Vec<(f64, f64)>,
+pub(crate) struct Series {
+    pub(crate) name: String,
+    pub(crate) points: Vec<(f64, f64)>,
     joined: bool,
 }
 
@@ -26,18 +26,18 @@ const SIZE: (u32, u32) = (1520, 920);
 const HEADROOM: f64 = 0.22;
 
 impl Series {
-    pub(super) fn line(name: &'static str, points: Vec<(f64, f64)>) -> Series {
-        Series { name, points, joined: true }
+    pub(crate) fn line(name: impl Into<String>, points: Vec<(f64, f64)>) -> Series {
+        Series { name: name.into(), points, joined: true }
     }
 
-    pub(super) fn dots(name: &'static str, points: Vec<(f64, f64)>) -> Series {
-        Series { name, points, joined: false }
+    pub(crate) fn dots(name: impl Into<String>, points: Vec<(f64, f64)>) -> Series {
+        Series { name: name.into(), points, joined: false }
     }
 }
 
 impl Chart {
     /// The chart as an SVG document.
-    pub(super) fn svg(&self) -> Result<String, String> {
+    pub(crate) fn svg(&self) -> Result<String, String> {
         let mut text = String::new();
         self.draw(&mut text).map_err(|fault| fault.to_string())?;
         Ok(text)
@@ -50,14 +50,14 @@ impl Chart {
         let (low, high) = self.extent(|point| point.1);
         let margin = 0.05 * (high - low);
         let mut axes = ChartBuilder::on(&area)
-            .caption(self.title, ("sans-serif", 36))
+            .caption(&self.title, ("sans-serif", 36))
             .margin(28)
             .x_label_area_size(88)
             .y_label_area_size(128)
             .build_cartesian_2d(left..right, (low - margin)..(high + HEADROOM * (high - low)))?;
         axes.configure_mesh()
-            .x_desc(self.x)
-            .y_desc(self.y)
+            .x_desc(&self.x)
+            .y_desc(&self.y)
             .x_label_formatter(&tick)
             .y_label_formatter(&tick)
             .label_style(("sans-serif", 26))
@@ -74,7 +74,7 @@ impl Chart {
                 axes.draw_series(series.points.iter().map(dot))?
             };
             drawn
-                .label(series.name)
+                .label(&series.name)
                 .legend(move |(x, y)| Rectangle::new([(x, y - 6), (x + 28, y + 6)], colour.filled()));
         }
         axes.configure_series_labels()
