@@ -146,8 +146,8 @@ impl Contact {
         Ok(match step.normal {
             None => Approach::Indentation { from: here, to: here },
             Some(Normal::Indentation(depth)) => {
-                let base = if step.relative { here } else { Double::ZERO };
-                let to = base + Double::from(depth);
+                let depth = Double::from(depth);
+                let to = if step.relative { here + depth } else { depth };
                 self.check_indentation(to.value())?;
                 Approach::Indentation { from: here, to }
             }
@@ -174,8 +174,8 @@ impl Contact {
         Ok(match step.tangential {
             None => Tangent::Displacement { from: here, to: here },
             Some(Tangential::Displacement(target)) => {
-                let base = if step.relative { here } else { Double::ZERO };
-                let to = base + Double::from(target);
+                let target = Double::from(target);
+                let to = if step.relative { here + target } else { target };
                 range::DISPLACEMENT.check(to.value())?;
                 Tangent::Displacement { from: here, to }
             }

@@ -90,6 +90,12 @@ impl Double {
         if sign < 0.0 { -self } else { self }
     }
 
+    /// Half of it, exact but for what underflows.
+    #[must_use]
+    pub fn halved(self) -> Double {
+        Double { hi: 0.5 * self.hi, lo: 0.5 * self.lo }
+    }
+
     /// The quotient; `divisor` must not be nought.
     #[must_use]
     pub fn over(self, divisor: Double) -> Double {

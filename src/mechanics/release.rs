@@ -31,15 +31,17 @@ impl Slipping {
         if inner_excess.value() >= 0.0 {
             return None;
         }
-        let closing = Double::from(1.0) + piece.line.slope.signed(self.sign);
-        if closing.value() <= 0.0 {
-            return Some(outer.level);
-        }
-        // After constant load, slopes are 0 or 1 and the division is a halving at most.
-        let stuck = match closing.parts() {
-            (whole, rest) if rest.abs() <= 0.0 && (whole - 2.0).abs() <= 0.0 => -inner_excess * 0.5,
-            (whole, rest) if rest.abs() <= 0.0 && (whole - 1.0).abs() <= 0.0 => -inner_excess,
-            _ => -inner_excess.over(closing),
+        // After constant load, slopes are -1, 0 or 1 and the division is a halving at most.
+        let stuck = match piece.line.slope.signed(self.sign).parts() {
+            (slope, rest) if rest.abs() <= 0.0 && slope.abs() <= 0.0 => -inner_excess,
+            (slope, rest) if rest.abs() <= 0.0 && slope >= 1.0 => (-inner_excess).halved(),
+            _ => {
+                let closing = Double::from(1.0) + piece.line.slope.signed(self.sign);
+                if closing.value() <= 0.0 {
+                    return Some(outer.level);
+                }
+                -inner_excess.over(closing)
+            }
         };
         let core = piece.inner.level.value() <= 0.0;
         let same = if core { SAME } else { MET_AGAIN };
@@ -51,7 +53,7 @@ impl Slipping {
     }
 
     /// Work on a ring of one old piece, all of which slipped, from the excess at its outer end.
-    pub(super) fn work(&self, profile: &Profile, line: &Line, slip: f64, ring: &Ring) -> f64 {
+    pub(super) fn work(&self, moments: &Moments, line: &Line, slip: f64, ring: &Ring) -> f64 {
         if ring.depth <= 0.0 {
             return 0.0;
         }
@@ -59,7 +61,7 @@ impl Slipping {
         let bound = (self.indentation - ring.outer.level).value();
         let mean = bound - self.lag * slip;
         let mean_growth = 1.0 + self.lag * growth;
-        let Moments { width, first, second } = profile.moments(ring);
+        let Moments { width, first, second } = *moments;
         let work = slip * mean * width + (slip * mean_growth - growth * mean) * first - growth * mean_growth * second;
         work.max(0.0)
     }

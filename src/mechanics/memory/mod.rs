@@ -14,7 +14,7 @@
 mod packed;
 
 use super::double::Double;
-use super::profile::{Point, Profile, Ring};
+use super::profile::{Moments, Point, Profile, Ring};
 use super::release::{self, Slipping};
 
 /// A stuck core thinner than this, relative to the indentation, is gross slip: the displacement of gross slip is itself rounded.
@@ -36,17 +36,19 @@ pub(super) struct Line {
 
 impl Line {
     pub(super) fn at(&self, level: Double) -> Double {
-        // At constant load every slope is -1, 0 or 1, and the product is spared.
-        let (slope, rest) = self.slope.parts();
-        if rest.abs() > 0.0 {
-            self.offset + self.slope * level
-        } else if slope.abs() <= 0.0 {
-            self.offset
-        } else if slope.abs() >= 1.0 {
-            self.offset + level.signed(slope)
-        } else {
-            self.offset + level * slope
-        }
+        if self.slope == Double::ZERO { self.offset } else { self.offset + rise(self.slope, level) }
+    }
+}
+
+/// `slope * level`. At constant load every slope is -1, 0 or 1, and the product is spared.
+fn rise(slope: Double, level: Double) -> Double {
+    let (whole, rest) = slope.parts();
+    if rest.abs() > 0.0 {
+        slope * level
+    } else if whole.abs() >= 1.0 {
+        level.signed(whole)
+    } else {
+        level * whole
     }
 }
 
@@ -187,7 +189,7 @@ impl Memory {
             return Passage { work };
         }
         let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
-        if dd >= dw.abs() { self.grow(profile, d1, w1) } else { self.slip(profile, d1, w1) }
+        if dd >= dw.abs() { self.grow(profile, d1, w1) } else { self.slip(profile, (d1, w1), (dd, dw)) }
     }
 
     /// Out of contact, or just touching: a position and nothing else.
@@ -202,7 +204,7 @@ impl Memory {
     /// The whole contact as one piece that carries nothing.
     fn lay_core(&mut self, profile: &Profile) {
         let line = Line { offset: Double::ZERO, slope: Double::ZERO };
-        self.push(profile, profile.point(Double::ZERO), line);
+        self.pieces.push(Piece { inner: profile.point(Double::ZERO), line, below: self.total });
     }
 
     /// The load rises at least as fast as the indenter moves: nothing slips, and what is touched on the way keeps the
@@ -225,16 +227,14 @@ impl Memory {
         if straight_on {
             self.close(profile);
         } else {
-            let below = self.total;
-            self.push_through(profile, inner, slope, below);
+            let ring = Ring::between(inner, self.edge);
+            self.push_through(&profile.moments(&ring), &ring, (slope, self.shift()), self.total);
         }
         Passage { work: 0.0 }
     }
 
-    /// An outer ring slips.
-    fn slip(&mut self, profile: &Profile, d1: Double, w1: Double) -> Passage {
-        let (d0, w0) = (self.edge.level, self.position);
-        let (dd, dw) = (d1 - d0, w1 - w0);
+    /// An outer ring slips on the way to (d1, w1), which is (dd, dw) from here.
+    fn slip(&mut self, profile: &Profile, (d1, w1): (Double, Double), (dd, dw): (Double, Double)) -> Passage {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
@@ -255,26 +255,36 @@ impl Memory {
         } else {
             self.position = w1;
             sign = dw.value().signum();
-            excess = (dw.signed(sign) - dd).value();
+            excess = if dd == Double::ZERO { dw.value().abs() } else { (dw.signed(sign) - dd).value() };
         }
-        let rate = (dw.signed(sign) - dd).value();
-        let lag = if rate > 0.0 { dd.value() / (2.0 * rate) } else { 0.0 };
-        let slipping = Slipping { sign, shift: self.shift(), indentation: d1, lag };
+        let (mut rate, mut lag) = (0.0, 0.0);
+        if dd != Double::ZERO {
+            rate = (dw.signed(sign) - dd).value();
+            lag = if rate > 0.0 { dd.value() / (2.0 * rate) } else { 0.0 };
+        }
+        let shift = self.shift();
+        let slipping = Slipping { sign, shift, indentation: d1, lag };
         if dd.value() > 0.0 {
             let touched = Ring::between(self.edge, edge_at(profile, d1));
             let core = if self.pieces.is_empty() { touched.inner.radius * touched.depth * touched.depth } else { 0.0 };
             work += (profile.moments(&touched).second + core) * rate / (2.0 * dd.value());
         }
         let mut outer = self.edge;
+        let mut slipped = None;
         let start = loop {
             let Some(top) = self.pieces.last().copied() else { break profile.point(Double::ZERO) };
             let inner_excess = slipping.excess(&top.line, top.inner.level);
             if let Some(level) = slipping.crossing(&top, inner_excess, &outer) {
                 let cut = profile.point(level);
-                work += slipping.work(profile, &top.line, excess, &Ring::between(cut, outer));
+                let ring = Ring::between(cut, outer);
+                let moments = profile.moments(&ring);
+                work += slipping.work(&moments, &top.line, excess, &ring);
+                // At constant load, a slip that stays within one piece is itself the piece to be laid.
+                slipped = (outer.level == d1).then_some(moments);
                 break cut;
             }
-            work += slipping.work(profile, &top.line, excess, &Ring::between(top.inner, outer));
+            let ring = Ring::between(top.inner, outer);
+            work += slipping.work(&profile.moments(&ring), &top.line, excess, &ring);
             excess = inner_excess.value();
             outer = top.inner;
             self.pieces.pop();
@@ -282,18 +292,21 @@ impl Memory {
                 work += slipping.core_work(excess, outer.radius);
             }
         };
-        if d1 != d0 {
+        if dd.value() > 0.0 {
             self.edge = edge_at(profile, d1);
         }
         let below = if let Some(top) = self.pieces.last() {
-            sums(profile, &top.line, top.below, &Ring::between(top.inner, start))
+            top.sums(profile, start)
         } else {
             self.reference = w1;
             Sums::default()
         };
         self.slip_from = Some(start);
         if start.level < d1 {
-            self.push_through(profile, start, Double::from(-sign), below);
+            let ring = Ring::between(start, self.edge);
+            let moments = slipped.unwrap_or_else(|| profile.moments(&ring));
+            let shift = if self.pieces.is_empty() { Double::ZERO } else { shift };
+            self.push_through(&moments, &ring, (Double::from(-sign), shift), below);
         } else {
             self.slip_from = None;
             self.total = below;
@@ -301,41 +314,42 @@ impl Memory {
         Passage { work }
     }
 
-    /// Adds a piece of the given slope that ends at the edge, where nothing is carried: w = 0.
-    fn push_through(&mut self, profile: &Profile, inner: Point, slope: Double, below: Sums) {
-        let offset = -(self.shift() + slope * self.edge.level);
-        self.total = below;
-        self.push(profile, inner, Line { offset, slope });
-    }
-
-    fn push(&mut self, profile: &Profile, inner: Point, line: Line) {
-        self.pieces.push(Piece { inner, line, below: self.total });
-        self.close(profile);
+    /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift` undoes.
+    fn push_through(&mut self, moments: &Moments, ring: &Ring, (slope, shift): (Double, Double), below: Sums) {
+        let line = Line { offset: -(shift + rise(slope, self.edge.level)), slope };
+        self.pieces.push(Piece { inner: ring.inner, line, below });
+        self.total = below.and(moments, ring, slope.value(), -shift.value());
     }
 
     /// Sums up to the edge, from the sums below the top piece.
     fn close(&mut self, profile: &Profile) {
-        self.total = self.pieces.last().map_or_else(Sums::default, |top| {
-            sums(profile, &top.line, top.below, &Ring::between(top.inner, self.edge))
-        });
+        self.total = self.pieces.last().map_or_else(Sums::default, |top| top.sums(profile, self.edge));
     }
 }
 
-/// `below` and the ring's own share.
-fn sums(profile: &Profile, line: &Line, below: Sums, ring: &Ring) -> Sums {
-    let slope = line.slope.value();
-    if slope.abs() <= 0.0 {
-        return below;
+impl Piece {
+    /// The sums up to `outer`, where the piece ends.
+    fn sums(&self, profile: &Profile, outer: Point) -> Sums {
+        let slope = self.line.slope.value();
+        if slope.abs() <= 0.0 {
+            return self.below;
+        }
+        let ring = Ring::between(self.inner, outer);
+        self.below.and(&profile.moments(&ring), &ring, slope, self.line.at(outer.level).value())
     }
-    // By parts: int X dy = x_inner depth + int h dx, int (y_outer - y) X dy = (x_inner depth^2 + int h^2 dx)/2.
-    let moments = profile.moments(ring);
-    let load = ring.inner.radius * ring.depth + moments.first;
-    let lever = 0.5 * (ring.inner.radius * ring.depth * ring.depth + moments.second);
-    let carried = line.at(ring.outer.level).value();
-    Sums {
-        force: below.force + Double::from(slope * load),
-        energy: below.energy + Double::from(slope * (carried * load - slope * lever)),
-        size: below.size + slope.abs() * load,
+}
+
+impl Sums {
+    /// With the share of a ring of these moments, over which w - W has this slope up to its value at the outer end.
+    fn and(&self, moments: &Moments, ring: &Ring, slope: f64, carried: f64) -> Sums {
+        // By parts: int X dy = x_inner depth + int h dx, int (y_outer - y) X dy = (x_inner depth^2 + int h^2 dx)/2.
+        let load = ring.inner.radius * ring.depth + moments.first;
+        let lever = 0.5 * (ring.inner.radius * ring.depth * ring.depth + moments.second);
+        Sums {
+            force: self.force + Double::from(slope * load),
+            energy: self.energy + Double::from(slope * (carried * load - slope * lever)),
+            size: self.size + slope.abs() * load,
+        }
     }
 }
 

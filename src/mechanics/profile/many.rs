@@ -1,12 +1,15 @@
 //! The kernels of many adjoining rings, weighted and summed, at many radii.
 //!
 //! For the sphere K(r, x_outer) - K(r, x_inner) = (2/R) (x_outer^2 - x_inner^2)/(s_outer + s_inner), s = sqrt(x^2 - r^2): neighbours
-//! share a root, the differences of the squares are known, and what is left runs over plain arrays, several rings at a time.
+//! share a root, the differences of the squares are known, and what is left runs over plain arrays, several radii at a time.
 
+use super::super::double::Double;
+#[cfg(test)]
+use super::count;
 use super::{At, Profile, Ring, Sphere};
 
-/// Additions that go on side by side: floating-point sums are not reordered by the compiler.
-const LANES: usize = 4;
+/// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
+const LANES: usize = 8;
 
 impl Profile {
     /// The sum of [`Profile::kernel`] times a weight over rings that adjoin each other from the centre outward, at each of
@@ -14,8 +17,7 @@ impl Profile {
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
         if let Profile::Sphere(sphere) = self {
-            let mut roots = Roots::new(sphere, rings);
-            return radii.iter().map(|&radius| roots.sum(&At::radius(radius))).collect();
+            return Roots::new(sphere, rings).sums(radii);
         }
         radii.iter().map(|&radius| self.kernel_sum(rings, &At::radius(radius))).collect()
     }
@@ -26,67 +28,92 @@ impl Profile {
     }
 }
 
-/// Rings of a sphere as arrays.
+/// Rings of a sphere as arrays, from the edge inward.
 struct Roots {
-    /// x^2 where the rings meet, both parts, from the inner end of the first to the outer end of the last.
-    squares: Vec<f64>,
-    rests: Vec<f64>,
-    /// (2/R) (x_outer^2 - x_inner^2) times the weight of each.
-    shares: Vec<f64>,
-    /// (2/R) times the weight of each.
-    weights: Vec<f64>,
-    roots: Vec<f64>,
+    /// The outer edge.
+    edge: Double,
+    rings: Vec<Inward>,
+}
+
+/// What is left of a ring once its outer end is known.
+struct Inward {
+    /// x_inner^2, m^2, both parts.
+    square: f64,
+    rest: f64,
+    /// (2/R) (x_outer^2 - x_inner^2) times the weight.
+    share: f64,
+    /// (2/R) times the weight.
+    weight: f64,
 }
 
 impl Roots {
     fn new(sphere: &Sphere, rings: &[(Ring, f64)]) -> Roots {
-        let first = rings.first().map(|(ring, _)| ring.inner.square);
-        let squares = || first.into_iter().chain(rings.iter().map(|(ring, _)| ring.outer.square));
         let factor = 2.0 / sphere.curvature_radius();
-        Roots {
-            squares: squares().map(|square| square.parts().0).collect(),
-            rests: squares().map(|square| square.parts().1).collect(),
+        let inward = |(ring, weight): &(Ring, f64)| {
+            let (square, rest) = ring.inner.square.parts();
             // x_outer^2 - x_inner^2 = R (y_outer - y_inner).
-            shares: rings.iter().map(|(ring, weight)| 2.0 * weight * ring.depth).collect(),
-            weights: rings.iter().map(|(_, weight)| weight * factor).collect(),
-            roots: vec![0.0; rings.len() + 1],
+            Inward { square, rest, share: 2.0 * weight * ring.depth, weight: weight * factor }
+        };
+        Roots {
+            edge: rings.last().map_or(Double::ZERO, |(ring, _)| ring.outer.square),
+            rings: rings.iter().rev().map(inward).collect(),
         }
     }
 
-    fn sum(&mut self, at: &At) -> f64 {
-        let (square, rest) = at.square.parts();
+    fn sums(&self, radii: &[f64]) -> Vec<f64> {
+        let mut sums = Vec::with_capacity(radii.len());
+        for radii in radii.chunks(LANES) {
+            // Lanes left over repeat the first.
+            let mut squares = [Double::square_of(radii[0]); LANES];
+            for (square, &radius) in squares.iter_mut().zip(radii) {
+                *square = Double::square_of(radius);
+            }
+            sums.extend_from_slice(&self.lanes(&squares)[..radii.len()]);
+        }
+        sums
+    }
+
+    /// The sums at as many radii as there are lanes, whose squares are given.
+    fn lanes(&self, squares: &[Double; LANES]) -> [f64; LANES] {
+        let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
+        let least = square.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = square.iter().copied().fold(0.0, f64::max);
         // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
-        let excess = |place: usize, squares: &[f64], rests: &[f64]| (squares[place] - square) + (rests[place] - rest);
-        // The rings rise outward, so that the first to reach beyond r is found by halving.
-        let (mut low, mut high) = (0, self.shares.len());
-        while low < high {
-            let middle = low.midpoint(high);
-            if excess(middle + 1, &self.squares, &self.rests) > 0.0 { high = middle } else { low = middle + 1 }
-        }
-        let cut = low;
-        if cut == self.shares.len() {
-            return 0.0;
-        }
-        #[cfg(test)]
-        (cut..self.shares.len()).for_each(|_| super::count::add(|calls| &mut calls.kernel));
-        let places = self.squares[cut + 1..].iter().zip(&self.rests[cut + 1..]);
-        for (root, (one, other)) in self.roots[cut + 1..].iter_mut().zip(places) {
-            *root = ((one - square) + (other - rest)).sqrt();
-        }
-        let inner = excess(cut, &self.squares, &self.rests);
-        let reached = self.roots[cut + 1];
-        let partial =
-            if inner > 0.0 { self.shares[cut] / (reached + inner.sqrt()) } else { self.weights[cut] * reached };
-        let (inner, outer, shares) = (&self.roots[cut + 1..], &self.roots[cut + 2..], &self.shares[cut + 1..]);
-        let mut lanes = [0.0; LANES];
-        let chunks = inner.chunks_exact(LANES).zip(outer.chunks_exact(LANES)).zip(shares.chunks_exact(LANES));
-        for ((inner, outer), shares) in chunks {
+        let excess = |lane: usize, one: f64, other: f64| (one - square[lane]) + (other - rest[lane]);
+        let (one, other) = self.edge.parts();
+        let mut reached: [f64; LANES] = std::array::from_fn(|lane| root_of(excess(lane, one, other)));
+        let mut sums = [0.0; LANES];
+        // Most rings lie clearly beyond all the radii at hand, and need no choice.
+        let clear = greatest * (1.0 + 4.0 * f64::EPSILON);
+        let (beyond, others) = self.rings.split_at(self.rings.partition_point(|ring| ring.square > clear));
+        for ring in beyond {
+            #[cfg(test)]
+            count::add(|calls| &mut calls.kernel);
+            let root: [f64; LANES] = std::array::from_fn(|lane| excess(lane, ring.square, ring.rest).sqrt());
             for lane in 0..LANES {
-                lanes[lane] += shares[lane] / (inner[lane] + outer[lane]);
+                sums[lane] += ring.share / (reached[lane] + root[lane]);
+            }
+            reached = root;
+        }
+        for ring in others {
+            #[cfg(test)]
+            count::add(|calls| &mut calls.kernel);
+            let root: [f64; LANES] = std::array::from_fn(|lane| root_of(excess(lane, ring.square, ring.rest)));
+            for lane in 0..LANES {
+                let whole = ring.share / (reached[lane] + root[lane]);
+                let cut = ring.weight * reached[lane];
+                sums[lane] += if root[lane] > 0.0 { whole } else { cut };
+            }
+            reached = root;
+            if ring.square < least {
+                break;
             }
         }
-        let whole = shares.len() - shares.len() % LANES;
-        let left = inner[whole..].iter().zip(&outer[whole..]).zip(&shares[whole..]);
-        partial + lanes.iter().sum::<f64>() + left.map(|((inner, outer), share)| share / (inner + outer)).sum::<f64>()
+        sums
     }
+}
+
+/// The root of what is positive, and nought of all else.
+fn root_of(square: f64) -> f64 {
+    (if square > 0.0 { square } else { 0.0 }).sqrt()
 }
