@@ -30,7 +30,7 @@ const COMMON: [(HeaderName, HeaderValue); 4] = [
 
 /// Writes the headers of a reply; `page` if it is of the page to try the service, which is no secret and may be kept.
 pub fn protect(headers: &mut HeaderMap, page: bool) {
-    headers.reserve(COMMON.len() + 2);
+    headers.reserve(COMMON.len() + 3);
     headers.extend(COMMON);
     headers.insert(header::CONTENT_SECURITY_POLICY, if page { PAGE_POLICY } else { POLICY });
     if !page {

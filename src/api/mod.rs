@@ -25,7 +25,6 @@ mod traffic;
 use std::sync::Arc;
 
 use axum::{Router, middleware};
-use tower_http::catch_panic::CatchPanicLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
@@ -70,8 +69,7 @@ fn refusals(traffic: Arc<traffic::Traffic>) -> Router {
 }
 
 /// What is common to all replies.
-fn dressed(router: Router, Access { keys, origins }: Access, traffic: Arc<traffic::Traffic>) -> Router {
-    let mut routes = router.layer(CatchPanicLayer::custom(meta::panicked));
+fn dressed(mut routes: Router, Access { keys, origins }: Access, traffic: Arc<traffic::Traffic>) -> Router {
     if let Some(keys) = keys {
         routes = routes.layer(middleware::from_fn_with_state(keys, access::admit));
     }

@@ -1,5 +1,6 @@
 //! Around every request: an identifier, one line in the log, one count, and the document of a problem.
 
+use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -8,11 +9,12 @@ use axum::extract::{MatchedPath, Request, State};
 use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::Response;
+use futures::FutureExt as _;
 use uuid::Uuid;
 
 use super::problem::{Kind, MEDIA_TYPE, Problem};
 use super::traffic::{ABANDONED, Endpoint, Traffic};
-use super::{headers, limits, metrics};
+use super::{headers, limits, meta, metrics};
 
 /// The header that carries a request's identifier, both ways.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
@@ -46,7 +48,8 @@ pub async fn observe(State(traffic): State<Arc<Traffic>>, mut request: Request, 
     let _in_flight = endpoint.in_flight.enter();
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
     let mut under_way = UnderWay { start, id: &id, traceparent, method: &method, route, endpoint, answered: false };
-    let mut response = next.run(request).await;
+    let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
+    let mut response = answer.unwrap_or_else(meta::panicked);
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
     let code = problem.as_ref().map(Problem::code);

@@ -203,6 +203,12 @@ impl Sessions {
     }
 }
 
+/// Bytes that most replies fit in, so that a buffer need not grow step by step.
+const REPLY: usize = 768;
+
 fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {
-    serde_json::to_vec(reply).map_err(|error| SessionError::Broken(format!("a reply cannot be written: {error}")))
+    let mut bytes = Vec::with_capacity(REPLY);
+    serde_json::to_writer(&mut bytes, reply)
+        .map_err(|error| SessionError::Broken(format!("a reply cannot be written: {error}")))?;
+    Ok(bytes)
 }

@@ -3,6 +3,8 @@
 //! The HTTP library takes some that the standard lets it take: lines that end in a line feed alone, a length beside a
 //! transfer coding, the same length twice. This looks at the head as it comes, and has such requests refused.
 
+use memchr::memchr;
+
 /// Bytes of a line that are enough to know the header by.
 const NAME: usize = 20;
 
@@ -25,10 +27,10 @@ pub struct Head {
 impl Head {
     /// Takes more bytes; what follows the head does not matter. Says what is wrong, if something is.
     pub fn take(&mut self, bytes: &[u8]) -> Option<&'static str> {
-        for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
-            if self.over {
-                return None;
-            }
+        let mut rest = bytes;
+        while !rest.is_empty() && !self.over {
+            let (piece, after) = rest.split_at(memchr(b'\n', rest).map_or(rest.len(), |place| place + 1));
+            rest = after;
             if self.length < NAME {
                 let (room, end) = (NAME - self.length, piece.len());
                 let part = &piece[..room.min(end)];

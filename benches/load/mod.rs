@@ -1,0 +1,107 @@
+//! What both benchmarks of the service need: a process that serves, and a client that costs little.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, Stdio};
+
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+
+/// Parts of a second that Linux counts processor time in.
+const TICKS: f64 = 100.0;
+
+/// A process that serves, ended when dropped.
+pub struct Process {
+    process: Child,
+    /// Where it listens.
+    pub address: String,
+}
+
+impl Process {
+    /// Starts it and reads where it listens from its first line.
+    pub fn start(mut command: Command) -> Process {
+        let mut process =
+            command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the service should start");
+        let output = process.stdout.take().expect("its output is piped");
+        let mut line = String::new();
+        BufReader::new(output).read_line(&mut line).expect("it should say where it listens");
+        let address = line.split("http://").nth(1).expect("it names an address").split([',', '\n']).next();
+        Process { process, address: address.expect("an address").to_owned() }
+    }
+
+    /// Processor time that the process has used, in seconds.
+    pub fn used(&self) -> f64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).expect("a process that runs");
+        // The name of the program stands in brackets, and may hold blanks.
+        let fields = stat.rsplit_once(')').expect("a name in brackets").1.split_ascii_whitespace();
+        let ticks: f64 = fields.skip(11).take(2).map(|ticks| ticks.parse::<f64>().expect("a number")).sum();
+        ticks / TICKS
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The service with a store, as little in the log as it can.
+pub fn served(store: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+    command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
+    command
+}
+
+/// This benchmark again, as the bare server to compare with.
+pub fn itself() -> Command {
+    let mut command = Command::new(std::env::current_exe().expect("the path of this program"));
+    command.arg("bare");
+    command
+}
+
+/// What lies in the middle.
+pub fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// As little of HTTP as a load generator needs.
+pub struct Connection {
+    stream: TcpStream,
+    buffer: Vec<u8>,
+}
+
+impl Connection {
+    /// A new one.
+    pub async fn open(address: &str) -> Connection {
+        let stream = TcpStream::connect(address).await.expect("the service should accept");
+        stream.set_nodelay(true).expect("TCP_NODELAY");
+        Connection { stream, buffer: Vec::new() }
+    }
+
+    /// The body of the reply.
+    pub async fn post(&mut self, path: &str, body: &[u8]) -> &[u8] {
+        self.buffer.clear();
+        let head = format!(
+            "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\r\n",
+            body.len()
+        );
+        self.buffer.extend_from_slice(head.as_bytes());
+        self.buffer.extend_from_slice(body);
+        self.stream.write_all(&self.buffer).await.expect("a request sent");
+        self.buffer.clear();
+        loop {
+            assert!(self.stream.read_buf(&mut self.buffer).await.expect("a reply") > 0, "the service hung up");
+            let Some(end) = self.buffer.windows(4).position(|four| four == b"\r\n\r\n") else { continue };
+            let head = std::str::from_utf8(&self.buffer[..end]).expect("a head in ASCII");
+            assert!(head.starts_with("HTTP/1.1 2"), "{head}");
+            let length = head.lines().find_map(|line| line.strip_prefix("content-length: ")).expect("a length");
+            let length: usize = length.parse().expect("a number");
+            if self.buffer.len() >= end + 4 + length {
+                return &self.buffer[end + 4..end + 4 + length];
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What a whole request costs, and where it goes: `cargo bench --bench request`.
+//!
+//! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, beside two handlers in a process of their own:
+//! one parses the same body and writes the same reply, computed once; one returns the finished bytes. All take turns in every
+//! round. Then, without HTTP, what parsing, solving and writing take of it, and what a number costs to write.
+
+mod load;
+
+use std::hint::black_box;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::routing::post;
+use load::{Connection, Process, itself, median, served};
+use stickslip::simulation::{Stop, simulate};
+use stickslip::wire::{SimulateReply, SimulateRequest, read};
+use tokio::net::TcpListener;
+
+const BODY: &str = r#"{"contact":{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}},"path":{"falling_amplitude":{"reversals":20}},"stress":{"points":200}}"#;
+const CONNECTIONS: usize = 8;
+const ROUNDS: usize = 7;
+const ROUND: Duration = Duration::from_secs(2);
+/// How often each part is done for one of its times, and how many times are taken.
+const OFTEN: usize = 200;
+const TIMES: usize = 31;
+
+fn reply() -> SimulateReply {
+    let request = read::<SimulateRequest>(BODY.as_bytes()).expect("a sound request");
+    simulate(&request, &Stop::default()).expect("a reply")
+}
+
+/// Parses and writes, and writes alone.
+async fn bare() {
+    let reply = Arc::new(reply());
+    let finished = Bytes::from(serde_json::to_vec(&*reply).expect("a reply as JSON"));
+    let json = [("content-type", "application/json")];
+    let both = move |body: Bytes| async move {
+        black_box(serde_json::from_slice::<SimulateRequest>(&body).expect("a sound request"));
+        (json, serde_json::to_vec(&*reply).expect("a reply as JSON"))
+    };
+    let finished = move |_: Bytes| async move { (json, finished) };
+    let router = Router::new().route("/both", post(both)).route("/finished", post(finished));
+    let listener = TcpListener::bind("127.0.0.1:0").await.expect("a free port");
+    println!("bare on http://{}", listener.local_addr().expect("an address"));
+    axum::serve(listener, router).await.expect("a server");
+}
+
+/// Requests a second.
+async fn round(address: &str, path: &'static str) -> f64 {
+    let start = Instant::now();
+    let workers = (0..CONNECTIONS).map(|_| {
+        let address = address.to_owned();
+        tokio::spawn(async move {
+            let mut connection = Connection::open(&address).await;
+            let mut count = 0_u32;
+            while start.elapsed() < ROUND {
+                connection.post(path, BODY.as_bytes()).await;
+                count += 1;
+            }
+            count
+        })
+    });
+    let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
+    let count: u32 = counts.into_iter().map(|count| count.expect("a worker that ends well")).sum();
+    f64::from(count) / start.elapsed().as_secs_f64()
+}
+
+async fn whole() {
+    let (bare, service) = (Process::start(itself()), Process::start(served("memory:")));
+    let targets = [
+        ("parses and writes", &bare, "/both"),
+        ("finished bytes", &bare, "/finished"),
+        ("stickslip", &service, "/simulate"),
+    ];
+    let mut rates = [const { Vec::new() }; 3];
+    for _ in 0..ROUNDS {
+        for ((_, process, path), rates) in targets.iter().zip(&mut rates) {
+            rates.push(round(&process.address, path).await);
+        }
+    }
+    println!("| handler | requests a second | ratio to parsing and writing |");
+    println!("|---|---|---|");
+    for ((name, ..), own) in targets.iter().zip(&rates) {
+        let ratios: Vec<f64> = own.iter().zip(&rates[0]).map(|(own, both)| own / both).collect();
+        println!("| {name} | {:.0} | {:.2} |", median(own), median(&ratios));
+    }
+}
+
+/// Microseconds that something takes, in the middle of its times.
+fn time<T>(mut work: impl FnMut() -> T) -> f64 {
+    let times: Vec<f64> = (0..TIMES)
+        .map(|_| {
+            let start = Instant::now();
+            for _ in 0..OFTEN {
+                black_box(work());
+            }
+            start.elapsed().as_secs_f64() * 1e6 / OFTEN as f64
+        })
+        .collect();
+    median(&times)
+}
+
+fn parts() {
+    let request = read::<SimulateRequest>(BODY.as_bytes()).expect("a sound request");
+    let reply = reply();
+    let bytes = serde_json::to_vec(&reply).expect("a reply as JSON").len();
+    println!("\n| part | time |\n|---|---|");
+    println!("| parsing {} bytes | {:.1} us |", BODY.len(), time(|| read::<SimulateRequest>(BODY.as_bytes())));
+    println!("| solving | {:.1} us |", time(|| simulate(&request, &Stop::default())));
+    println!("| writing {bytes} bytes | {:.1} us |", time(|| serde_json::to_vec(&reply)));
+    let numbers: Vec<f64> = (1..=1_000).map(|number| 1.0 / f64::from(number)).collect();
+    println!("\n| writing a number that reads back the same | time |\n|---|---|");
+    let count = numbers.len() as f64;
+    println!("| serde_json | {:.0} ns |", 1e3 / count * time(|| serde_json::to_vec(&numbers)));
+    let display = || numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    println!("| the standard library | {:.0} ns |", 1e3 / count * time(display));
+}
+
+#[tokio::main]
+async fn main() {
+    if std::env::args().any(|argument| argument == "bare") {
+        bare().await;
+    } else {
+        whole().await;
+        parts();
+    }
+}
