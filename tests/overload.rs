@@ -233,7 +233,7 @@ async fn work_ends_at_the_deadline_and_changes_nothing() {
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     for (place, body, pointer) in [
         ("/simulate".to_owned(), long_simulation(), None),
-        ("/accuracy".to_owned(), long_comparison(), Some("/path/falling_amplitude")),
+        ("/accuracy".to_owned(), long_comparison(), None),
         (format!("/contacts/{contact}/path"), long_path(), Some("/path/moves/")),
     ] {
         let answer = service.ask(FLOOD, &post(&place, &body)).await.unwrap();
