@@ -5,6 +5,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use stickslip::mechanics::profile::{ExactSphere, Tabulated};
 use stickslip::mechanics::protocol::falling_amplitude;
 use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Springs, Tangential};
 
@@ -59,7 +60,7 @@ fn positions(count: usize, unit: f64) -> Vec<f64> {
 
 fn moves(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("move at constant load");
-    for history in [1_000, 1_000_000] {
+    for history in [1_000, 10_000_000] {
         let mut contact = virgin();
         let path = positions(history, contact.figures().gross_slip_displacement);
         for &target in &path {
@@ -68,6 +69,29 @@ fn moves(criterion: &mut Criterion) {
         let mut targets = path.iter().cycle();
         group.bench_function(format!("after {history} moves"), |bencher| {
             bencher.iter(|| contact.apply(&to(*targets.next().expect("the cycle is endless"))));
+        });
+    }
+    group.finish();
+}
+
+/// The same moves, with the force after each, on a sphere, on its closed form and on a table of its points.
+fn profiles(criterion: &mut Criterion) {
+    const POINTS: usize = 1_000;
+    const BALL: f64 = 0.01;
+    let radii: Vec<f64> = (0..POINTS).map(|index| 2e-4 * index as f64 / (POINTS - 1) as f64).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / (BALL + ((BALL - r) * (BALL + r)).sqrt())).collect();
+    let mut group = criterion.benchmark_group("move and force by profile");
+    for (name, profile) in [
+        ("sphere", setup().profile),
+        ("exact sphere", Profile::ExactSphere(ExactSphere::new(BALL).expect("a valid radius"))),
+        ("table of 1000 points", Profile::Tabulated(Tabulated::new(&radii, &heights).expect("a convex table"))),
+    ] {
+        let mut contact = Contact::new(Setup { profile, ..setup() }).expect("a valid contact");
+        let path = positions(1_000, contact.figures().gross_slip_displacement);
+        let mut targets = path.iter().cycle();
+        group.bench_function(name, |bencher| {
+            bencher
+                .iter(|| contact.apply(&to(*targets.next().expect("the cycle is endless"))).map(|()| contact.force()));
         });
     }
     group.finish();
@@ -122,5 +146,5 @@ fn hand_over(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, moves, scenes, stresses, hand_over);
+criterion_group!(benches, moves, profiles, scenes, stresses, hand_over);
 criterion_main!(benches);

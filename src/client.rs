@@ -24,9 +24,9 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::wire::{
-    CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply,
-    PathRequest, ProblemDocument, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
-    StressRequest,
+    AccuracyReply, AccuracyRequest, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply,
+    MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, SessionPage, SessionReply, SimulateReply,
+    SimulateRequest, StateEvent, StressReply, StressRequest,
 };
 
 /// A handle on a service; clones share its connections.
@@ -111,6 +111,14 @@ impl Client {
     /// [`Error`], as for every call.
     pub async fn simulate(&self, request: &SimulateRequest) -> Result<SimulateReply, Error> {
         json(self.call(Method::POST, "/simulate").json(request)).await
+    }
+
+    /// `POST /accuracy`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn accuracy(&self, request: &AccuracyRequest) -> Result<AccuracyReply, Error> {
+        json(self.call(Method::POST, "/accuracy").json(request)).await
     }
 
     /// `POST /contacts`.

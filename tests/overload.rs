@@ -48,6 +48,12 @@ fn long_simulation() -> String {
     .to_string()
 }
 
+fn long_comparison() -> String {
+    let springs = json!({"springs": {"count": 9_000}});
+    json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 99_999}}, "solvers": [springs, springs]})
+        .to_string()
+}
+
 /// A path that takes minutes: each of its moves is followed in many small steps.
 fn long_path() -> String {
     let step = |index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.0 + 0.1 * f64::from(index % 9)});
@@ -227,6 +233,7 @@ async fn work_ends_at_the_deadline_and_changes_nothing() {
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     for (place, body, pointer) in [
         ("/simulate".to_owned(), long_simulation(), None),
+        ("/accuracy".to_owned(), long_comparison(), None),
         (format!("/contacts/{contact}/path"), long_path(), Some("/path/moves/")),
     ] {
         let answer = service.ask(FLOOD, &post(&place, &body)).await.unwrap();

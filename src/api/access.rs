@@ -35,7 +35,8 @@ pub enum Need {
 use Need::{Key, Nothing};
 
 /// What each route needs. A route that is not here needs the highest role there is.
-const NEEDS: [(&str, &str, Need); 18] = [
+const NEEDS: [(&str, &str, Need); 19] = [
+    ("POST", "/accuracy", Key(Role::Read)),
     ("POST", "/simulate", Key(Role::Read)),
     ("GET", "/contacts", Key(Role::Read)),
     ("POST", "/contacts", Key(Role::Write)),

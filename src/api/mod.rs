@@ -1,6 +1,7 @@
 //! HTTP. `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 pub mod access;
+mod accuracy;
 pub mod bound;
 mod contacts;
 pub mod descriptors;
@@ -84,6 +85,7 @@ fn dressed(mut routes: Router, Access { keys, origins }: Access, traffic: Arc<tr
 fn described() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(openapi::base())
         .routes(routes!(simulate::simulate))
+        .routes(routes!(accuracy::accuracy))
         .routes(routes!(contacts::create, contacts::list))
         .routes(routes!(contacts::get, contacts::delete))
         .routes(routes!(contacts::fork))

@@ -159,7 +159,8 @@ fn limited() -> Vec<(&'static str, &'static str, Limit)> {
         ("StressRequest", "radii", Numbers(*radii.start(), *radii.end(), range::CONTACT_RADIUS)),
         ("Springs", "count", Count(range::SPRING_COUNT.min as usize, range::SPRING_COUNT.max as usize)),
     ];
-    for schema in ["SimulateRequest", "MoveRequest", "PathRequest"] {
+    all.push(("AccuracyRequest", "solvers", Items(*limits::SOLVERS.start(), *limits::SOLVERS.end())));
+    for schema in ["SimulateRequest", "AccuracyRequest", "MoveRequest", "PathRequest"] {
         all.push((schema, "tolerance", Tolerance));
     }
     for schema in ["Move", "MoveRequest"] {
@@ -342,7 +343,7 @@ fn write_refusals(document: &mut Value) {
         let Value::Object(operations) = operations else { continue };
         for (method, operation) in operations {
             let changes_contact = path.ends_with("/move") || path.ends_with("/path") || method == "delete";
-            let about_contacts = path.starts_with("/contacts") || path == "/simulate";
+            let about_contacts = path.starts_with("/contacts") || ["/simulate", "/accuracy"].contains(&path.as_str());
             let refusals = [
                 (method == "post", "400", "The body is not JSON"),
                 (path.contains('{'), "404", "There is no such thing"),

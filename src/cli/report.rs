@@ -9,10 +9,10 @@ use stickslip::report::{self, NAMES, Options};
 /// Where to write, and how much to measure.
 #[derive(Args)]
 pub struct Report {
-    /// The folder to write report.md, report.csv and report.json to.
+    /// The folder to write report.md, report.csv, report.json and the charts to.
     #[arg(long)]
     out: PathBuf,
-    /// Springs up to a million, and more repetitions: takes hours.
+    /// Springs up to a million, more repetitions, and no bound on the time: for the night.
     #[arg(long)]
     full: bool,
     /// Scenes by name, commas between; all if left out.
@@ -21,7 +21,16 @@ pub struct Report {
     /// The largest number of springs, instead of 10 000, or of a million with --full.
     #[arg(long)]
     largest: Option<usize>,
+    /// How many seconds all of it may take, or nearly, instead of 110, or of as many as it takes with --full.
+    #[arg(long, value_name = "SECONDS")]
+    budget: Option<u32>,
+    /// Run the scripts of benches/peers beside our solvers, with this Python; see docs/speed-and-accuracy.md.
+    #[arg(long, value_name = "PYTHON")]
+    peers: Option<PathBuf>,
 }
+
+/// How long the short run may take, s: two minutes with what is on its way when they end.
+const BUDGET: u32 = 110;
 
 impl Report {
     /// Measures and writes.
@@ -30,9 +39,11 @@ impl Report {
         let options = Options {
             scenes: if self.scenes.is_empty() { all() } else { self.scenes },
             largest: self.largest.unwrap_or(if self.full { 1_000_000 } else { 10_000 }),
-            patience: Duration::from_millis(if self.full { 10_000 } else { 200 }),
+            patience: Duration::from_millis(if self.full { 5_000 } else { 200 }),
+            budget: self.budget.or((!self.full).then_some(BUDGET)).map(|seconds| Duration::from_secs(seconds.into())),
+            peers: self.peers,
         };
-        let written = report::measure(&options).and_then(|rows| report::write(&self.out, &rows));
+        let written = report::measure(&options).and_then(|measured| report::write(&self.out, &measured));
         written.map_err(|error| format!("cannot report to {}: {error}", self.out.display()))
     }
 }

@@ -9,6 +9,10 @@ pub(super) const E_STAR: f64 = 1.15e11;
 pub(super) const G_STAR: f64 = 8.5e10;
 pub(super) const FRICTION: f64 = 0.3;
 const BALL: f64 = 0.01;
+/// dz/dr of the cone.
+const SLOPE: f64 = 0.05;
+/// Of the fourth power, m^-3.
+const QUARTIC: f64 = 4e7;
 /// Indentation, m: of a ball of that radius, a/R = 0.1.
 const DEPTH: f64 = 1e-4;
 const TABLE: usize = 1000;
@@ -32,6 +36,8 @@ pub(super) struct Scene {
     pub(super) setup: Setup,
     pub(super) shape: Shape,
     pub(super) path: Vec<(f64, f64)>,
+    /// The profile in the words of the peers.
+    form: &'static str,
 }
 
 /// Numbers even over [0, 1), the same in every run.
@@ -64,8 +70,8 @@ impl Scene {
             _ => fall(20),
         };
         let (profile, shape) = match name {
-            "cone" => (Profile::Cone(Cone::new(0.05)?), Shape::cone(0.05)),
-            "power_4" => (Profile::PowerLaw(PowerLaw::new(4.0, 4e7)?), Shape::fourth_power(4e7)),
+            "cone" => (Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
+            "power_4" => (Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
             "exact_sphere" => (Profile::ExactSphere(ExactSphere::new(BALL)?), Shape::ball(BALL)),
             "table_1000" => {
                 let r: Vec<f64> = (0..TABLE).map(|index| 1.2e-3 * index as f64 / (TABLE - 1) as f64).collect();
@@ -74,13 +80,29 @@ impl Scene {
             }
             _ => (Profile::Sphere(Sphere::new(BALL)?), Shape::parabola(BALL)),
         };
+        let form = match name {
+            "cone" => "cone",
+            "power_4" => "power_4",
+            "exact_sphere" => "exact_sphere",
+            "table_1000" => "table",
+            _ => "parabola",
+        };
         let setup = Setup {
             profile,
             elasticity: Elasticity::effective(E_STAR, G_STAR)?,
             friction: FRICTION,
             preload: Preload::Indentation(DEPTH),
         };
-        Ok(Scene { setup, shape, path })
+        Ok(Scene { setup, shape, path, form })
+    }
+
+    /// The scene as it is told to a peer: numbers in SI units, moves as pairs of indentation and displacement.
+    pub(super) fn told(&self, radii: &[f64]) -> serde_json::Value {
+        serde_json::json!({
+            "profile": self.form, "radius": BALL, "slope": SLOPE, "coefficient": QUARTIC,
+            "e_star": E_STAR, "g_star": G_STAR, "friction": FRICTION,
+            "indentation": DEPTH, "moves": self.path, "radii": radii,
+        })
     }
 
     pub(super) fn depth() -> f64 {

@@ -7,7 +7,7 @@
 use crate::mechanics::Profile;
 use crate::wire::session::Advance;
 use crate::wire::simulate::Simulation;
-use crate::wire::{self, Plan, Solver, Steps, limits};
+use crate::wire::{self, Comparison, Plan, Solver, Steps, limits};
 
 /// Estimated nanoseconds of work.
 pub type Nanoseconds = u64;
@@ -129,10 +129,34 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
         None | Some(Solver::Exact) => exact,
         Some(Solver::Springs(springs)) => {
             let search = if simulation.residual { limits::SPRING_SEARCH } else { 0 };
-            let passes = (moves + radii + search) as u64;
-            exact.saturating_add((springs.count as u64).saturating_mul(passes * SPRING))
+            exact.saturating_add(sprung(springs.count, moves + radii + search))
         }
     }
+}
+
+/// What so many springs cost that are looked at so many times.
+fn sprung(springs: usize, passes: usize) -> Nanoseconds {
+    (springs as u64).saturating_mul(passes as u64 * SPRING)
+}
+
+/// What a comparison of solvers costs: each of them once, and the reference.
+#[must_use]
+pub fn of_comparison(comparison: &Comparison) -> Nanoseconds {
+    let (plan, radii) = (&comparison.plan, comparison.sampling.length());
+    let exact = estimated_cost(plan.length(), plan.curved(), 0, radii, false);
+    let each = on(&comparison.setup.profile, exact, false).saturating_mul(comparison.solvers.len() as u64 + 1);
+    let springs = comparison.springs().map(|springs| sprung(springs, comparison.passes()));
+    springs.fold(each, Nanoseconds::saturating_add)
+}
+
+/// Bytes that a comparison takes: one solver at a time, and a force a move of the reference and of that.
+#[must_use]
+pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
+    bytes_of_moves(&comparison.plan, Steps::Last)
+        + 2 * size_of::<f64>() * comparison.plan.length()
+        + 2 * bytes_of_stress(comparison.sampling.length())
+        + bytes_of_shape(&comparison.definition.profile)
+        + comparison.springs().max().unwrap_or(0) * SPRING_BYTES
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! Long loops look at a [`Stop`] between moves and between radii. [`cost`] says what work is worth a thread of its own,
 //! and [`Pool`] gives it one.
 
+mod compare;
 pub mod cost;
 mod pool;
 mod run;
@@ -13,6 +14,7 @@ mod stop;
 mod tests;
 mod warnings;
 
+pub use compare::compare;
 pub use pool::{
     BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, PoolMeters, QUEUE, REQUESTS, Reservation, Taken,
 };

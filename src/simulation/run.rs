@@ -44,12 +44,7 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
             run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, "as asked for", stop)
         }
         Some(wire::Solver::Springs(wire::Springs { count })) => {
-            let setup = &simulation.setup;
-            let start = contact(setup.clone(), "/contact")?;
-            // Only what has a normal target reaches further, and the law of equal peaks has none.
-            let moves = simulation.plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
-            let springs = springs::reach(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
-            let springs = springs.map_err(refused_at("/contact", setup.preload))?;
+            let springs = foundation(&simulation.setup, &simulation.plan, count)?;
             run(springs, simulation, timer, "as asked for", stop)
         }
     }
@@ -113,6 +108,18 @@ fn run<S: Solver>(
 pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
     let refused = refused_at(base, setup.preload);
     Contact::new(setup).map_err(refused)
+}
+
+/// So many springs, as wide as the path needs them.
+///
+/// # Errors
+/// As [`contact()`], for a definition at `/contact`.
+pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
+    let start = contact(setup.clone(), "/contact")?;
+    // Only what has a normal target reaches further, and the law of equal peaks has none.
+    let moves = plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
+    let springs = springs::reach(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
+    springs.map_err(refused_at("/contact", setup.preload))
 }
 
 fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {

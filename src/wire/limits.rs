@@ -18,6 +18,12 @@ pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
 /// does not have.
 pub const SPRING_STEPS: usize = 2_000_000_000;
+/// Solvers that one comparison may name.
+pub const SOLVERS: RangeInclusive<usize> = 1..=16;
+/// Springs that a comparison looks at unless it names its solvers.
+pub const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
+/// Points at which a comparison looks at the stress unless it names radii.
+pub const COMPARED: usize = 200;
 /// Characters of a label.
 pub const LABEL_LENGTH: usize = 200;
 /// Pieces of memory that a contact may hold. A move adds one at the most, unless it is curved, when it adds many.

@@ -7,6 +7,7 @@
 //! Choices are objects with one key, or carry a `type`; there is no untagged union, so that an error can always say
 //! which member is meant. Numbers that are not finite leave as `null`.
 
+pub mod accuracy;
 pub mod check;
 pub mod definition;
 pub mod event;
@@ -23,6 +24,7 @@ mod slope;
 pub mod stress;
 mod strict;
 
+pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{At, Fault, Faults};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};

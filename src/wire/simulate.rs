@@ -141,9 +141,10 @@ impl Document for SimulateRequest {
         let plan = self.path.check(At::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
         let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
-        if let Some(Solver::Springs(springs)) = self.solver {
+        if let Some(solver) = &self.solver {
             let search = if self.residual { limits::SPRING_SEARCH } else { 0 };
-            springs.check(plan.length() + stress.as_ref().map_or(0, Sampling::length) + search, &mut faults);
+            let passes = plan.length() + stress.as_ref().map_or(0, Sampling::length) + search;
+            solver.check(At::Root.member("solver"), passes, &mut faults);
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
         let simulation = |setup| Simulation { definition, setup, plan, stress, residual, steps, solver, tolerance };
@@ -151,15 +152,16 @@ impl Document for SimulateRequest {
     }
 }
 
-impl Springs {
-    fn check(self, passes: usize, faults: &mut Faults) {
-        let (solver, springs) = (At::Root.member("solver"), "springs");
-        let springs = solver.member(springs);
+impl Solver {
+    /// Notes what is wrong with the solver at `at`, if each of its springs is looked at so many times.
+    pub(super) fn check(&self, at: At<'_>, passes: usize, faults: &mut Faults) {
+        let Solver::Springs(Springs { count }) = *self else { return };
+        let springs = at.member("springs");
         let at = springs.member("count");
-        faults.number(at, self.count as f64, &range::SPRING_COUNT);
+        faults.number(at, count as f64, &range::SPRING_COUNT);
         let most = limits::SPRING_STEPS / passes.max(1);
-        if self.count > most {
-            faults.add(at, format_args!("{} springs over {passes} moves and radii: allowed are {most}", self.count));
+        if count > most {
+            faults.add(at, format_args!("{count} springs over {passes} moves and radii: allowed are {most}"));
         }
     }
 }
