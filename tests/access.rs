@@ -16,8 +16,9 @@ use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
 /// Every endpoint: what it takes, how it answers who may use it, and the roles that may; none listed is everybody.
-const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 17] = [
+const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 19] = [
     ("POST", "/simulate", "simulation", 200, &["read", "write"]),
+    ("POST", "/protocols", "protocol", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
@@ -25,6 +26,7 @@ const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 17] = [
     ("POST", "/contacts/{id}/fork", "", 201, &["write"]),
     ("POST", "/contacts/{id}/move", "move", 200, &["write"]),
     ("POST", "/contacts/{id}/path", "path", 200, &["write"]),
+    ("POST", "/contacts/{id}/relax", "relax", 200, &["write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/events", "", 200, &["read", "write"]),
@@ -39,6 +41,8 @@ const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 17] = [
 fn body(name: &str) -> Option<Value> {
     match name {
         "simulation" => Some(json!({"contact": ball(), "path": {"force": [1.0]}})),
+        "protocol" => Some(json!({"contact": ball(), "reversals": 2, "kind": "linear"})),
+        "relax" => Some(json!({"reversals": 2})),
         "ball" => Some(ball()),
         "move" => Some(json!({"displacement": 1e-8})),
         "path" => Some(json!({"path": {"displacement": [1e-8, 0.0]}})),
