@@ -25,8 +25,8 @@ use uuid::Uuid;
 
 use crate::wire::{
     AccuracyReply, AccuracyRequest, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply,
-    MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, SessionPage, SessionReply, SimulateReply,
-    SimulateRequest, StateEvent, StressReply, StressRequest,
+    MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest, RelaxReply,
+    RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest,
 };
 
 /// A handle on a service; clones share its connections.
@@ -159,6 +159,22 @@ impl Client {
     /// [`Error`], as for every call.
     pub async fn path(&self, id: Uuid, request: &PathRequest, options: &Options) -> Result<PathReply, Error> {
         self.post(&format!("/contacts/{id}/path"), request, options).await
+    }
+
+    /// `POST /protocols`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn protocol(&self, request: &ProtocolRequest) -> Result<ProtocolReply, Error> {
+        json(self.call(Method::POST, "/protocols").json(request)).await
+    }
+
+    /// `POST /contacts/{id}/relax`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn relax(&self, id: Uuid, request: &RelaxRequest, options: &Options) -> Result<RelaxReply, Error> {
+        self.post(&format!("/contacts/{id}/relax"), request, options).await
     }
 
     /// `GET /contacts/{id}/stress`.

@@ -16,9 +16,10 @@ use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
 /// Every endpoint: what it takes, how it answers who may use it, and the roles that may; none listed is everybody.
-const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 18] = [
+const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/accuracy", "simulation", 200, &["read", "write"]),
     ("POST", "/simulate", "simulation", 200, &["read", "write"]),
+    ("POST", "/protocols", "protocol", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
@@ -26,6 +27,7 @@ const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 18] = [
     ("POST", "/contacts/{id}/fork", "", 201, &["write"]),
     ("POST", "/contacts/{id}/move", "move", 200, &["write"]),
     ("POST", "/contacts/{id}/path", "path", 200, &["write"]),
+    ("POST", "/contacts/{id}/relax", "relax", 200, &["write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/events", "", 200, &["read", "write"]),
@@ -40,6 +42,8 @@ const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 18] = [
 fn body(name: &str) -> Option<Value> {
     match name {
         "simulation" => Some(json!({"contact": ball(), "path": {"force": [1.0]}})),
+        "protocol" => Some(json!({"contact": ball(), "reversals": 2, "kind": "linear"})),
+        "relax" => Some(json!({"reversals": 2})),
         "ball" => Some(ball()),
         "move" => Some(json!({"displacement": 1e-8})),
         "path" => Some(json!({"path": {"displacement": [1e-8, 0.0]}})),
@@ -125,7 +129,7 @@ async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
     ];
     let server = Guarded::start("memory:", &[], &keys).await;
     let mut tried = 0;
-    for (method, route, body_name, success, allowed) in ENDPOINTS {
+    for &(method, route, body_name, success, allowed) in ENDPOINTS {
         for who in [None, Some("write"), Some("read"), Some("metrics"), Some("both")] {
             let roles: &[&str] = match who {
                 None => &[],
@@ -230,7 +234,7 @@ type Attempt = (&'static str, &'static str, Option<Value>, Vec<(&'static str, &'
 /// Requests about a session, good and bad.
 fn attempts() -> Vec<Attempt> {
     let mut all = Vec::new();
-    for (method, route, body_name, ..) in ENDPOINTS.into_iter().filter(|(_, route, ..)| route.contains("{id}")) {
+    for &(method, route, body_name, ..) in ENDPOINTS.iter().filter(|(_, route, ..)| route.contains("{id}")) {
         all.push((method, route, body(body_name), vec![]));
         all.push((method, route, body(body_name), vec![("if-match", "\"0\"")]));
         all.push((method, route, body(body_name), vec![("if-match", "\"9\"")]));

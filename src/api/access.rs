@@ -35,15 +35,17 @@ pub enum Need {
 use Need::{Key, Nothing};
 
 /// What each route needs. A route that is not here needs the highest role there is.
-const NEEDS: [(&str, &str, Need); 19] = [
+const NEEDS: &[(&str, &str, Need)] = &[
     ("POST", "/accuracy", Key(Role::Read)),
     ("POST", "/simulate", Key(Role::Read)),
+    ("POST", "/protocols", Key(Role::Read)),
     ("GET", "/contacts", Key(Role::Read)),
     ("POST", "/contacts", Key(Role::Write)),
     ("GET", "/contacts/{id}", Key(Role::Read)),
     ("DELETE", "/contacts/{id}", Key(Role::Write)),
     ("POST", "/contacts/{id}/move", Key(Role::Write)),
     ("POST", "/contacts/{id}/path", Key(Role::Write)),
+    ("POST", "/contacts/{id}/relax", Key(Role::Write)),
     ("POST", "/contacts/{id}/fork", Key(Role::Write)),
     ("GET", "/contacts/{id}/stress", Key(Role::Read)),
     ("GET", "/contacts/{id}/history", Key(Role::Read)),

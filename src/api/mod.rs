@@ -17,6 +17,7 @@ mod moves;
 mod observe;
 mod openapi;
 pub mod problem;
+mod protocols;
 mod query;
 mod reply;
 mod serve;
@@ -86,11 +87,13 @@ fn described() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(openapi::base())
         .routes(routes!(simulate::simulate))
         .routes(routes!(accuracy::accuracy))
+        .routes(routes!(protocols::protocols))
         .routes(routes!(contacts::create, contacts::list))
         .routes(routes!(contacts::get, contacts::delete))
         .routes(routes!(contacts::fork))
         .routes(routes!(moves::apply))
         .routes(routes!(moves::path))
+        .routes(routes!(moves::relax))
         .routes(routes!(contacts::stress))
         .routes(routes!(contacts::history))
         .routes(routes!(events::events))

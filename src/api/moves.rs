@@ -1,11 +1,11 @@
-//! `/contacts/{id}/move` and `/contacts/{id}/path`: sessions move on.
+//! `/contacts/{id}/move`, `/contacts/{id}/path` and `/contacts/{id}/relax`: sessions move on.
 
 use axum::response::Response;
 use uuid::Uuid;
 
 use crate::simulation::cost;
 use crate::wire::session::Advance;
-use crate::wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest};
+use crate::wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected};
@@ -60,6 +60,36 @@ pub async fn path(
     command: Command<PathRequest>,
 ) -> Result<Response, Problem> {
     advance(&app, id, expected, command).await
+}
+
+/// Relax a contact
+///
+/// Finds the path that leaves least shear stress from the present state, whatever its history, and applies all of it or
+/// nothing. A dry run shows the same and changes nothing.
+#[utoipa::path(
+    post, path = "/contacts/{id}/relax", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
+    request_body(content = RelaxRequest, examples(
+        ("show" = (summary = "What 20 reversals would leave", value = json!({"reversals": 20, "dry_run": true}))),
+        ("relax" = (summary = "As few as leave a fifth, with the states along the path",
+            value = json!({"target": 0.2, "steps": "all"})))
+    )),
+    responses((status = 200, description = "The path, and what remains", body = RelaxReply,
+        headers(("ETag" = String, description = "The sequence in quotes: the new one, but of a dry run"))))
+)]
+pub async fn relax(
+    Own(app): Own,
+    ContactId(id): ContactId,
+    Expected(expected): Expected,
+    command: Command<RelaxRequest>,
+) -> Result<Response, Problem> {
+    let Command { body, key, mut held } = command;
+    if body.dry_run {
+        let (sequence, body, memory) = app.sessions.rehearse(id, body, expected).await?;
+        return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
+    }
+    let advance = Advance::from(body);
+    held.resize(&app.pool, cost::bytes_of_advance(&advance)).await?;
+    Ok(held.on(reply::of_change(app.sessions.advance(id, advance, expected, key).await?)))
 }
 
 async fn advance<T: Document<Checked = Advance>>(

@@ -58,6 +58,7 @@ pub struct IdempotencyKey {
     )),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
+        (name = "protocols", description = "How to move so that little shear stress remains"),
         (name = "contacts", description = "Contacts that live on the server and remember"),
         (name = "service", description = "Health, and this document")
     )
@@ -160,6 +161,16 @@ fn limited() -> Vec<(&'static str, &'static str, Limit)> {
         ("Springs", "count", Count(range::SPRING_COUNT.min as usize, range::SPRING_COUNT.max as usize)),
     ];
     all.push(("AccuracyRequest", "solvers", Items(*limits::SOLVERS.start(), *limits::SOLVERS.end())));
+    let reversals = &limits::PROTOCOL_REVERSALS;
+    for schema in ["ProtocolRequest", "RelaxRequest"] {
+        all.push((schema, "reversals", Count(*reversals.start(), *reversals.end())));
+        all.push((schema, "target", Number(limits::TARGET)));
+    }
+    all.push(("ProtocolStart", "displacement", Number(range::DISPLACEMENT)));
+    all.push(("Robustness", "amplitude_error", Number(limits::AMPLITUDE_ERROR)));
+    all.push(("Robustness", "friction_error", Number(limits::FRICTION_ERROR)));
+    all.push(("Robustness", "samples", Count(*limits::SAMPLES.start(), *limits::SAMPLES.end())));
+    all.push(("Robustness", "seed", Count(0, *limits::SEED.end() as usize)));
     for schema in ["SimulateRequest", "AccuracyRequest", "MoveRequest", "PathRequest"] {
         all.push((schema, "tolerance", Tolerance));
     }
@@ -342,11 +353,13 @@ fn write_refusals(document: &mut Value) {
     for (path, operations) in paths {
         let Value::Object(operations) = operations else { continue };
         for (method, operation) in operations {
-            let changes_contact = path.ends_with("/move") || path.ends_with("/path") || method == "delete";
-            let about_contacts = path.starts_with("/contacts") || ["/simulate", "/accuracy"].contains(&path.as_str());
+            let changes_contact =
+                path.ends_with("/move") || path.ends_with("/path") || path.ends_with("/relax") || method == "delete";
+            let defines_contact = ["/simulate", "/accuracy", "/protocols"].contains(&path.as_str());
+            let about_contacts = path.starts_with("/contacts") || defines_contact;
             let refusals = [
                 (method == "post", "400", "The body is not JSON"),
-                (path.contains('{'), "404", "There is no such thing"),
+                (path.contains('{') || path == "/protocols", "404", "There is no such thing"),
                 (path.contains("/{id}"), "410", "The contact was idle for so long that it has expired"),
                 (method == "post", "408", "The body did not arrive in time"),
                 (changes_contact, "409", "The state of the contact forbids this"),

@@ -306,6 +306,7 @@ impl From<SessionError> for Problem {
         let detail = error.to_string();
         match error {
             SessionError::NotFound(_) => Problem::new(Kind::ContactNotFound, detail),
+            SessionError::OtherDefinition(_) => Problem::at(Kind::InvalidInput, "/contact", detail),
             SessionError::Stale { .. } => Problem::new(Kind::StaleSequence, detail),
             SessionError::Overtaken { .. } => Problem::new(Kind::Conflict, detail),
             SessionError::Ahead { .. } => Problem::at(Kind::InvalidInput, "/Last-Event-ID", detail),

@@ -3,6 +3,7 @@
 mod healthcheck;
 mod key;
 mod overload;
+mod protocol;
 mod report;
 mod serve;
 mod settings;
@@ -19,6 +20,7 @@ use stickslip::{api, figures};
 
 use healthcheck::Healthcheck;
 use key::Key;
+use protocol::Protocol;
 use report::Report;
 use serve::Serve;
 use settings::{Refusal, Settings};
@@ -45,6 +47,8 @@ enum Command {
         /// The file, or - for standard input.
         file: PathBuf,
     },
+    /// Find a path that leaves little shear stress, and print the reply of POST /protocols.
+    Protocol(Protocol),
     /// Print the OpenAPI document.
     Openapi,
     /// Ask a running service whether it is well; for container health checks.
@@ -94,6 +98,7 @@ impl Command {
             Command::Serve(options) => serve::serve(options),
             Command::Config(_) => print(settings),
             Command::Simulate { file } => simulate::simulate(&file),
+            Command::Protocol(protocol) => protocol.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
             Command::Key(key) => key::key(key),

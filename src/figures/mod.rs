@@ -1,7 +1,9 @@
-//! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact engine: SVG to look at, CSV to plot anew.
+//! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact engine, and 6 to 9 beyond it: SVG to look at, CSV to plot anew.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
+
+mod protocols;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -18,7 +20,7 @@ const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
 const LAST: usize = 40;
 
-/// Writes `figure1.svg` to `figure5.svg` and the CSV file of each into `dir`, which is made if need be.
+/// Writes `figure1.svg` to `figure9.svg` and the CSV file of each into `dir`, which is made if need be.
 ///
 /// # Errors
 /// Whatever the file system says; a figure that cannot be drawn comes as [`io::ErrorKind::Other`].
@@ -33,9 +35,10 @@ pub fn write(dir: &Path) -> io::Result<()> {
     Ok(())
 }
 
-fn charts() -> Result<[Chart; 5], Error> {
+fn charts() -> Result<Vec<Chart>, Error> {
     let history = Normalised::falling(REVERSALS, REVERSALS + 1)?;
-    Ok([positions(&history), forces(&history), partway()?, final_stress()?, reduction()?])
+    let paper = [positions(&history), forces(&history), partway()?, final_stress()?, reduction()?];
+    Ok(paper.into_iter().chain(protocols::charts()?).collect())
 }
 
 /// A reference sphere on its way along eq. 20, everything over its natural unit.

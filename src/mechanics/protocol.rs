@@ -5,8 +5,17 @@
 //! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
 //! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
 
+mod bound;
+mod design;
+mod ending;
 mod minimax;
+mod relief;
+mod robustness;
 mod spread;
+
+pub use bound::lower_bound;
+pub use design::{Design, End, Judged, Kind, Start, Way, design};
+pub use robustness::{Errors, trials};
 
 use minimax::Problem;
 use spread::Spread;
@@ -14,6 +23,7 @@ use spread::Spread;
 use super::contact::Contact;
 use super::double::Double;
 use super::error::Error;
+use super::profile::Profile;
 use super::range::short;
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
@@ -28,6 +38,16 @@ pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item
         let left = (reversals - index) as f64;
         alternating(index, amplitude * (left / reversals.max(1) as f64))
     })
+}
+
+/// The outermost radius inside `edge`, m, at which the stress is infinite whatever is done, if there is one.
+fn outermost_singular(profile: &Profile, edge: f64) -> Option<f64> {
+    profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max)
+}
+
+/// The radius, m, from which on the stress is judged.
+fn cutoff_of(singular: Option<f64>, edge: f64) -> f64 {
+    singular.map_or(0.0, |least| least + DEFAULT_CUTOFF * (edge - least))
 }
 
 /// `size` with the sign of the move `index`, the first of which goes forward.
@@ -54,7 +74,7 @@ pub struct EqualPeaks {
 /// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
     let (edge, indentation) = (contact.contact_radius(), contact.indentation());
-    let singular = contact.profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max);
+    let singular = outermost_singular(&contact.profile, edge);
     let least = singular.unwrap_or(0.0);
     let cutoff = match cutoff_radius {
         Some(given) if !(least..=edge).contains(&given) => {
@@ -62,8 +82,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
             return Err(Error::OutOfRange { quantity: "cutoff_radius", value: given, allowed });
         }
         Some(given) => given,
-        None if singular.is_some() => least + DEFAULT_CUTOFF * (edge - least),
-        None => 0.0,
+        None => cutoff_of(singular, edge),
     };
     // At the very radius where s diverges there is no law.
     let spread = (singular.is_none() || cutoff > least).then(|| Spread::new(&contact.profile, cutoff, edge)).flatten();
@@ -102,22 +121,32 @@ pub struct Minimax {
 /// `None` if `go_on` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
 /// vertical edge, where the stress stays infinite.
 pub fn minimax(contact: &Contact, reversals: usize, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
+    minimax_to(contact, reversals, contact.gross_slip_displacement(), End::Free, go_on)
+}
+
+/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then.
+fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
     let edge = *contact.memory.edge();
     let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return None;
     }
-    let singular = contact.profile.singular_radii().into_iter().filter(|&radius| radius < edge.radius).reduce(f64::max);
-    let cutoff = singular.map_or(0.0, |least| least + DEFAULT_CUTOFF * (edge.radius - least));
-    let equal = Problem { profile: &contact.profile, edge, cutoff, reversals }.solve(go_on)?;
-    let full = contact.gross_slip_displacement();
-    let mut displacements = vec![full];
-    let mut here = Double::from(full);
-    for (index, level) in equal.levels.iter().rev().enumerate() {
+    let cutoff = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
+    let problem = Problem { profile: &contact.profile, edge, cutoff, reversals };
+    let equal = problem.solve(go_on)?;
+    let (levels, gap) = if end == End::Free {
+        (equal.levels, 1.0 - equal.ratio)
+    } else {
+        let kinks = ending::kinks(&problem, equal.limit, first / contact.scale(), end, go_on)?;
+        (kinks.iter().map(|kink| kink.level.value()).collect(), f64::NAN)
+    };
+    let mut displacements = vec![first];
+    let mut here = Double::from(first);
+    for (index, level) in levels.iter().rev().enumerate() {
         // A stroke slips from the level on where it is twice the bound there.
         let stroke = Double::from(2.0 * contact.scale()) * (edge.level - Double::from(*level)).value();
         here = if index.is_multiple_of(2) { here - stroke } else { here + stroke };
         displacements.push(here.value());
     }
-    Some(Minimax { displacements, cutoff_radius: cutoff, gap: 1.0 - equal.ratio })
+    Some(Minimax { displacements, cutoff_radius: cutoff, gap })
 }

@@ -6,13 +6,14 @@ use std::time::Instant;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::simulation::{Stop, Timer, accuracy, cost, follow, missed, news, protocol, stresses};
+use crate::simulation::{Stop, Timer, accuracy, cost, equal_peaks, follow, missed, news, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
-use crate::wire::{MoveReply, PathReply, Plan, Steps, limits};
+use crate::wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
 
 use super::cache::Guard;
 use super::live::Live;
+use super::relax::{found, of_the_whole};
 use super::{ATTEMPTS, SessionError, Sessions, idempotency, written};
 
 /// Why the exact solver answers for a session.
@@ -118,7 +119,8 @@ impl Sessions {
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
         let cost = cost::estimated_cost(advance.plan.length(), advance.plan.curved(), depth, radii, false);
-        let cost = cost::on(live.contact.profile(), cost, false);
+        let sought = advance.relax.map_or(0, |relax| cost::of_protocol(&relax.task, depth));
+        let cost = cost::on(live.contact.profile(), cost.saturating_add(sought), advance.relax.is_some());
         let (advance, stop) = (Arc::clone(advance), stop.clone());
         let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
         match result {
@@ -145,16 +147,20 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
-    let protocol = protocol(&advance.plan, &live.contact)?;
+    let relaxed = advance.relax.map(|relax| found(live, &relax.task, stop)).transpose()?;
+    let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
+    let plan = plan.as_ref().unwrap_or(&advance.plan);
+    let protocol = equal_peaks(plan, &live.contact)?;
     let (before, error_before) = (live.contact.contact_radius(), live.contact.path_error());
     let (mut largest, mut error) = (before, 0.0f64);
     let begin = Instant::now();
-    follow(&mut live.contact, &advance.plan, protocol.as_ref(), tolerance, stop, |step, contact| {
+    let followed = follow(&mut live.contact, plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         sequence += 1;
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
         records.push(Record { sequence, step, tolerance, state: contact.state().into(), at: now });
-    })?;
+    });
+    followed.map_err(|failure| if advance.relax.is_some() { of_the_whole(failure) } else { failure })?;
     live.beyond.add(records.len(), begin.elapsed());
     live.session.sequence = sequence;
     live.session.updated_at = now;
@@ -165,6 +171,13 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let id = live.session.id;
     let states = records.iter().map(|record| record.state);
     let body = match (&advance.plan, advance.steps) {
+        _ if let (Some(relax), Some(protocol)) = (advance.relax, relaxed) => {
+            let steps = relax.steps.map(|steps| match steps {
+                Steps::All => states.collect(),
+                Steps::Last => vec![live.contact.state().into()],
+            });
+            written(&RelaxReply { id, sequence, dry_run: false, steps, protocol })?
+        }
         (Plan::Single(_), _) => {
             let state = live.contact.state().into();
             written(&MoveReply { id, sequence, state, stress, accuracy, warnings })?

@@ -14,6 +14,9 @@ pub enum SessionError {
     /// There was such a session, and it has expired.
     #[error("the contact {0} has expired")]
     Expired(Uuid),
+    /// It is another contact than the client says.
+    #[error("the contact {0} has another definition: leave `contact` out, or give it as it was made")]
+    OtherDefinition(Uuid),
     /// The sequence is not the one that the client expects.
     #[error("the contact is at sequence {found}, not at {expected}")]
     Stale {

@@ -22,6 +22,7 @@ mod idempotency;
 mod live;
 mod meters;
 mod read;
+mod relax;
 mod replay;
 mod snapshot;
 

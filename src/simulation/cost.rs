@@ -5,6 +5,7 @@
 //! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few.
 
 use crate::mechanics::Profile;
+use crate::wire::protocol::{Aim, ProtocolTask};
 use crate::wire::session::Advance;
 use crate::wire::simulate::Simulation;
 use crate::wire::{self, Comparison, Plan, Solver, Steps, limits};
@@ -31,6 +32,18 @@ const SEARCH: u64 = 1_000_000;
 /// One spring in one move, or seen from one radius.
 const SPRING: u64 = 3;
 
+/// One pair of kinks of a protocol, over all looks at it and all three laws.
+const PAIR: u64 = 15_000;
+/// The least that a protocol costs.
+const PROTOCOL: u64 = 200_000;
+/// Reversals that a target is taken to need.
+const SOUGHT: usize = 100;
+
+/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that grows by
+/// doubling.
+const REVERSAL_BYTES: usize = 1_024;
+/// One trial of a protocol with errors.
+const SAMPLE_BYTES: usize = 16;
 /// One move as it is kept while it is made, and the piece of memory that it leaves.
 const MOVE_BYTES: usize = 256;
 /// One state in a reply, and as JSON in a text that grows by doubling.
@@ -115,7 +128,36 @@ pub fn bytes_of_simulation(simulation: &Simulation) -> usize {
 #[must_use]
 pub fn bytes_of_advance(advance: &Advance) -> usize {
     let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
-    bytes_of_moves(&advance.plan, advance.steps) + advance.plan.length() * RECORD_BYTES + bytes_of_stress(radii)
+    advance.relax.map_or(0, |relax| bytes_of_protocol(&relax.task))
+        + bytes_of_moves(&advance.plan, advance.steps)
+        + advance.plan.length() * RECORD_BYTES
+        + bytes_of_stress(radii)
+}
+
+/// Reversals that a protocol has at the most.
+fn reversals(task: &ProtocolTask, sought: usize) -> usize {
+    match task.aim {
+        Aim::Reversals(reversals) => reversals,
+        Aim::Target(_) => sought,
+    }
+}
+
+/// What it costs to find a protocol from a memory of so many pieces, on a sphere.
+#[must_use]
+pub fn of_protocol(task: &ProtocolTask, depth: usize) -> Nanoseconds {
+    let reversals = reversals(task, SOUGHT);
+    let tried = task.robustness.map_or(0, |robustness| robustness.samples as u64);
+    let once = estimated_cost(reversals + 1, 0, 0, 0, true);
+    let pairs = (reversals * (reversals + depth.min(SOUGHT))) as u64;
+    PROTOCOL + pairs * PAIR + 3 * tried.saturating_mul(once)
+}
+
+/// Bytes that a protocol takes, with its reply and, in a session, its moves.
+#[must_use]
+pub fn bytes_of_protocol(task: &ProtocolTask) -> usize {
+    let most = reversals(task, *limits::PROTOCOL_REVERSALS.end());
+    let tried = task.robustness.map_or(0, |robustness| robustness.samples);
+    (most + 2) * (REVERSAL_BYTES + MOVE_BYTES + STATE_BYTES + RECORD_BYTES) + tried * SAMPLE_BYTES
 }
 
 /// What a simulation costs.

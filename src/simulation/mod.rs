@@ -7,6 +7,8 @@
 mod compare;
 pub mod cost;
 mod pool;
+mod protocol;
+mod robustness;
 mod run;
 mod solver;
 mod stop;
@@ -18,7 +20,8 @@ pub use compare::compare;
 pub use pool::{
     BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, PoolMeters, QUEUE, REQUESTS, Reservation, Taken,
 };
-pub use run::{Timer, accuracy, contact, follow, protocol, residual, simulate, stresses};
+pub use protocol::{Subject, protocol, protocol_for};
+pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
 pub use warnings::{Seen, missed, news, warnings};

@@ -58,7 +58,7 @@ fn run<S: Solver>(
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
     let figures = solver.figures();
-    let protocol = protocol(&simulation.plan, &solver)?;
+    let protocol = equal_peaks(&simulation.plan, &solver)?;
     let mut largest = figures.contact_radius;
     let all = simulation.steps == Steps::All;
     let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
@@ -138,13 +138,13 @@ fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Fail
 ///
 /// # Errors
 /// [`Failure::Refused`] for a cut-off radius that the contact does not allow.
-pub fn protocol<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
+pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
     plan.protocol(solver.exact())
         .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })
 }
 
 /// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
-/// [`protocol()`] has found for the plan.
+/// [`equal_peaks`] has found for the plan.
 ///
 /// # Errors
 /// [`Failure`] at the first move without an answer, with a pointer to it; the moves before it have been made.

@@ -9,6 +9,20 @@ use crate::mechanics::range::{self, Range};
 pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
 /// Reversals of a falling amplitude; each is one move, and one more ends the path at nought.
 pub const REVERSALS: RangeInclusive<usize> = 1..=99_999;
+/// Reversals of a protocol that is to be found: kinks are sought one by one, and the cost grows with their square.
+pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=500;
+/// What may remain of the largest stress after a protocol, over μ times the pressure.
+pub const TARGET: Range = Range { quantity: "target", unit: "", min: 1e-4, max: 10.0 };
+/// Standard deviation of the displacements of a protocol, relative to themselves.
+pub const AMPLITUDE_ERROR: Range = Range { quantity: "amplitude_error", unit: "", min: 0.0, max: 1.0 };
+/// The fraction that the coefficient of friction may be off.
+pub const FRICTION_ERROR: Range = Range { quantity: "friction_error", unit: "", min: 0.0, max: 0.9 };
+/// How many times a protocol is tried with errors.
+pub const SAMPLES: RangeInclusive<usize> = 2..=10_000;
+/// The same if the client does not say.
+pub const DEFAULT_SAMPLES: usize = 200;
+/// Where a sequence of random numbers may begin: what every JSON reader takes for a whole number.
+pub const SEED: RangeInclusive<u64> = 0..=(1 << 53) - 1;
 /// Points of a uniform stress request, both ends included.
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
 /// Radii of a stress request that lists them.

@@ -17,6 +17,7 @@ pub mod parse;
 pub mod path;
 pub mod problem;
 pub mod profile;
+pub mod protocol;
 pub mod reply;
 pub mod session;
 pub mod simulate;
@@ -32,6 +33,7 @@ pub use parse::{Document, Rejection, parse, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
 pub use problem::ProblemDocument;
 pub use profile::{Profile, SphereProfile};
+pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, Figures, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
     CreateRequest, ForkRequest, HistoryItem, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use crate::mechanics::Setup;
+use crate::mechanics::{DEFAULT_TOLERANCE, Setup};
 
 use super::check::{At, Faults};
 use super::definition::{ContactDefinition, Material, Preload};
@@ -13,6 +13,7 @@ use super::one_key::given;
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
 use super::profile::Profile;
+use super::protocol::Relaxation;
 use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
 use super::simulate::Steps;
 use super::stress::{Sampling, Stress, StressRequest};
@@ -285,6 +286,16 @@ pub struct Advance {
     pub steps: Steps,
     /// The tolerance for what is not exact.
     pub tolerance: f64,
+    /// Whether the moves are to be found first, so that little stress remains; `plan` has none then.
+    pub relax: Option<Relaxation>,
+}
+
+impl From<Relaxation> for Advance {
+    fn from(relaxation: Relaxation) -> Advance {
+        let steps = relaxation.steps.unwrap_or(Steps::Last);
+        let plan = Plan::Displacement(Vec::new());
+        Advance { plan, stress: None, steps, tolerance: DEFAULT_TOLERANCE, relax: Some(relaxation) }
+    }
 }
 
 impl Document for CreateRequest {
@@ -323,7 +334,7 @@ impl Document for MoveRequest {
         step.check(At::Root, &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
         let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
-        faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance }))
+        faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None }))
     }
 }
 
@@ -342,7 +353,7 @@ impl Document for PathRequest {
         let plan = self.path.check(At::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
         let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
-        faults.done(Some(Advance { plan, stress, steps: self.steps, tolerance }))
+        faults.done(Some(Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
     }
 }
 

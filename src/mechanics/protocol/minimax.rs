@@ -17,12 +17,15 @@ const CORE: usize = 32;
 const TOLERANCE: f64 = 1e-13;
 /// How E is changed until it is bracketed.
 const STRIDE: f64 = 1.25;
+/// How often, and by which part, a lower E is tried than the one found.
+const BELOW: usize = 8;
+const STEP_BELOW: f64 = 0.01;
 
 /// The kinks for one E, the outermost first.
-struct Marched {
-    kinks: Vec<Point>,
+pub(super) struct Marched {
+    pub(super) kinks: Vec<Point>,
     /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
-    excess: Option<f64>,
+    pub(super) excess: Option<f64>,
 }
 
 impl Marched {
@@ -35,6 +38,8 @@ impl Marched {
 pub(super) struct Equal {
     pub(super) levels: Vec<f64>,
     pub(super) ratio: f64,
+    /// The largest of them, over G* m/pi.
+    pub(super) limit: f64,
 }
 
 /// A contact that is judged from a cut-off radius outwards.
@@ -48,8 +53,13 @@ pub(super) struct Problem<'a> {
 impl Problem<'_> {
     /// Shear stress over G* m/pi after the kinks, but for the sign of the last stroke.
     fn shear(&self, kinks: &[Point], at: &At) -> f64 {
+        self.shear_down_to(self.profile.point(Double::ZERO), kinks, at)
+    }
+
+    /// The share of that of the rings beyond `least`.
+    pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &At) -> f64 {
         let (mut outer, mut sign, mut sum) = (self.edge, 1.0, 0.0);
-        for inner in kinks.iter().copied().chain([self.profile.point(Double::ZERO)]) {
+        for inner in kinks.iter().copied().chain([least]) {
             if outer.radius < at.radius {
                 break;
             }
@@ -123,19 +133,63 @@ impl Problem<'_> {
         (0..looks).map(|index| sign * self.shear(kinks, &At::radius(radius(index)))).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    fn march(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Option<Marched> {
+    pub(super) fn march(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Option<Marched> {
+        self.march_with(limit, (0, 1.0), go_on)
+    }
+
+    /// The same with a share of the limit for the extremum of this index, the outermost first.
+    pub(super) fn march_with(
+        &self,
+        limit: f64,
+        (index, share): (usize, f64),
+        go_on: &dyn Fn() -> bool,
+    ) -> Option<Marched> {
         let mut kinks = Vec::with_capacity(self.reversals);
         while kinks.len() < self.reversals {
             if !go_on() {
                 return None;
             }
-            match self.next(&kinks, limit) {
+            match self.next(&kinks, if kinks.len() == index { share * limit } else { limit }) {
                 Some(kink) => kinks.push(kink),
                 None => return Some(Marched { kinks, excess: None }),
             }
         }
         let excess = self.core(&kinks) / limit - 1.0;
         Some(Marched { kinks, excess: Some(excess) })
+    }
+
+    /// Closes the bracket of an E that is too small and one that is not.
+    fn close(
+        &self,
+        mut low: f64,
+        mut under: Option<f64>,
+        high: &mut f64,
+        best: &mut Marched,
+        go_on: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let mut over = best.excess;
+        for look in 0..LOOKS {
+            if *high - low <= TOLERANCE * *high || best.excess.is_some_and(|excess| excess.abs() <= TOLERANCE) {
+                break;
+            }
+            // Every fifth look halves, so that the bracket closes whatever the curve.
+            let share = match (under, over) {
+                (Some(above), Some(below)) if look % 5 != 4 && above > below => above / (above - below),
+                _ => 0.5,
+            };
+            let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (*high - low);
+            let marched = self.march(trial, go_on)?;
+            // The weight of an end that stays is halved (Illinois).
+            if marched.fits() {
+                (*high, over) = (trial, marched.excess);
+                *best = marched;
+                under = under.map(|excess| 0.5 * excess);
+            } else {
+                (low, under) = (trial, marched.excess);
+                over = over.map(|excess| 0.5 * excess);
+            }
+        }
+        Some(())
     }
 
     /// The smallest E, and its kinks; `None` if `go_on` said no, or there is no such E.
@@ -171,24 +225,23 @@ impl Problem<'_> {
         if !best.fits() || low >= high {
             return None;
         }
-        for look in 0..LOOKS {
-            if high - low <= TOLERANCE * high {
-                break;
-            }
-            // Every third look halves, so that the bracket closes whatever the curve.
-            let share = match (under, best.excess) {
-                (Some(above), Some(below)) if look % 3 != 2 && above > below => above / (above - below),
-                _ => 0.5,
-            };
-            let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (high - low);
+        self.close(low, under, &mut high, &mut best, go_on)?;
+        // The core need not fall all the way as E rises: a little lower there may be another one that fits.
+        for _ in 0..BELOW {
+            let trial = high * (1.0 - STEP_BELOW);
             let marched = self.march(trial, go_on)?;
-            if marched.fits() {
+            if marched.excess.is_some_and(|excess| excess <= 0.0) {
+                let lower = trial * (1.0 - STEP_BELOW);
+                let under = self.march(lower, go_on)?;
                 (high, best) = (trial, marched);
+                if !under.fits() {
+                    self.close(lower, under.excess, &mut high, &mut best, go_on)?;
+                }
             } else {
-                (low, under) = (trial, marched.excess);
+                break;
             }
         }
         let ratio = (self.core(&best.kinks) / high).clamp(0.0, 1.0);
-        Some(Equal { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio })
+        Some(Equal { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
     }
 }

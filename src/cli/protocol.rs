@@ -1,0 +1,128 @@
+//! `stickslip protocol`: one protocol without a server.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use serde_json::{Map, Value, json};
+use stickslip::api::problem::{Kind, Problem};
+use stickslip::simulation::{self, Failure, Stop};
+use stickslip::wire::protocol::ProtocolSubject;
+use stickslip::wire::{self, ProtocolReply, ProtocolRequest};
+
+use super::print;
+use super::simulate::{json, read};
+
+/// What to find: the body of POST /protocols, or its parts; a part given by a flag goes before that in the file.
+#[derive(Args)]
+pub struct Protocol {
+    /// A file with the body of POST /protocols, or - for standard input.
+    #[arg(required_unless_present = "contact")]
+    file: Option<PathBuf>,
+    /// A file with the definition of a contact: its profile, material, friction and preload.
+    #[arg(long)]
+    contact: Option<PathBuf>,
+    /// Number of reversals.
+    #[arg(long, conflicts_with = "target")]
+    reversals: Option<usize>,
+    /// The largest shear stress that may remain, over mu times the largest pressure; the fewest reversals are found.
+    #[arg(long)]
+    target: Option<f64>,
+    /// The law of the amplitudes.
+    #[arg(long)]
+    kind: Option<Law>,
+    /// Where the path ends.
+    #[arg(long)]
+    end: Option<End>,
+    /// The first displacement, m, instead of that of gross slip.
+    #[arg(long)]
+    start: Option<f64>,
+    /// Standard deviation of each displacement, relative to itself: asks what remains then.
+    #[arg(long)]
+    amplitude_error: Option<f64>,
+    /// The fraction that the coefficient of friction may be off: asks what remains then.
+    #[arg(long)]
+    friction_error: Option<f64>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Law {
+    Linear,
+    EqualPeaks,
+    Minimax,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum End {
+    DisplacementZero,
+    ForceZero,
+    Free,
+}
+
+impl Protocol {
+    /// Finds it and prints the reply.
+    pub fn run(self) -> Result<(), String> {
+        let body = self.body()?;
+        let reply = wire::read::<ProtocolRequest>(&body)
+            .map_err(Problem::from)
+            .and_then(|(subject, task)| match subject {
+                ProtocolSubject::Virgin(made, first) => {
+                    let found: Result<ProtocolReply, Failure> =
+                        simulation::protocol_for(&made.0, &made.1, first, &task, &Stop::default());
+                    Ok(found?)
+                }
+                ProtocolSubject::Living(..) => {
+                    Err(Problem::at(Kind::InvalidInput, "/start/contact_id", "needs a running service"))
+                }
+            })
+            .map_err(|problem| json(&problem.document("command line")))?;
+        print(json(&reply))
+    }
+
+    /// The file with what the flags say put over it.
+    fn body(&self) -> Result<Vec<u8>, String> {
+        let file = self.file.as_deref().map(read).transpose()?;
+        let mut body = match file {
+            // As it is, so that what is wrong with it is told by its place.
+            Some(file) if !self.says_more() => return Ok(file),
+            Some(file) => parsed(&file)?,
+            None => Value::Object(Map::new()),
+        };
+        if let Some(contact) = &self.contact {
+            body["contact"] = parsed(&read(contact)?)?;
+        }
+        let members = body.as_object_mut().ok_or("the body is not an object")?;
+        if self.reversals.is_some() || self.target.is_some() {
+            members.retain(|name, _| name != "reversals" && name != "target");
+        }
+        let name = |value: clap::builder::PossibleValue| json!(value.get_name().replace('-', "_"));
+        let mut robustness = members.get("robustness").cloned().unwrap_or_else(|| json!({}));
+        for (name, value) in [("amplitude_error", self.amplitude_error), ("friction_error", self.friction_error)] {
+            if let Some(value) = value {
+                robustness[name] = json!(value);
+                members.insert("robustness".to_owned(), robustness.clone());
+            }
+        }
+        let said = [
+            ("reversals", self.reversals.map(|value| json!(value))),
+            ("target", self.target.map(|value| json!(value))),
+            ("kind", self.kind.and_then(|kind| kind.to_possible_value()).map(name)),
+            ("end", self.end.and_then(|end| end.to_possible_value()).map(name)),
+            ("start", self.start.map(|value| json!({"displacement": value}))),
+        ];
+        members.extend(said.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
+        serde_json::to_vec(&body).map_err(|error| error.to_string())
+    }
+
+    fn says_more(&self) -> bool {
+        let numbers = [self.target, self.start, self.amplitude_error, self.friction_error];
+        self.contact.is_some()
+            || self.reversals.is_some()
+            || self.kind.is_some()
+            || self.end.is_some()
+            || numbers.iter().any(Option::is_some)
+    }
+}
+
+fn parsed(text: &[u8]) -> Result<Value, String> {
+    serde_json::from_slice(text).map_err(|error| format!("not JSON: {error}"))
+}

@@ -1,0 +1,90 @@
+//! A bound from below on what any sequence of reversals can leave, with its proof.
+//!
+//! After gross slip and N reversals w is made of N + 1 straight pieces of slope 1 or -1 over the levels. The stress is
+//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx; by Abel's inversion u(x) = (2/G*) int_x^a tau r dr/sqrt(r^2 - x^2). Between two radii
+//! x1 < x2 of one piece the difference of u is m (g(x2) - g(x1)). The difference of the two kernels of the inversion, by its
+//! magnitude, has the integral
+//!
+//! B(x1, x2) = 2 sqrt(x2^2 - x1^2) - (sqrt(a^2 - x1^2) - sqrt(a^2 - x2^2)),
+//!
+//! so that a largest stress E allows no piece with g(x2) - g(x1) > (2/(G* m)) E B(x1, x2) between any two of its radii.
+//! From the edge inwards each piece therefore ends at the latest where that first fails against its outer end; if N + 1 such
+//! pieces do not come as far as the innermost radius that is judged, no N reversals leave as little as E. (A sequence whose
+//! piece k begins further out than this one's ends further out too: a pair that fails here would lie within it.)
+//!
+//! It has the right power of N, and on a sphere is some half of what the equal alternating extrema leave. That these are
+//! the best is not proven by it: an argument by the signs of differences (de la Vallée-Poussin's) fails, as the kernel
+//! (x^2 - r^2)^(-1/2) does not diminish variation. A study with restarts in `tests/protocols.rs` finds nothing better.
+
+use super::super::contact::Contact;
+use super::super::profile::Profile;
+use super::{cutoff_of, outermost_singular};
+
+/// Steps from the edge to the centre in which the end of a piece is looked for.
+const STEPS: usize = 4_096;
+/// Halvings of the bracket of E.
+const HALVINGS: usize = 40;
+
+/// The shear stress, Pa, that some point of the judged part of the contact carries at the least after gross slip and so many
+/// reversals, whatever their displacements; nought where nothing is known, as at a vertical edge.
+#[must_use]
+pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
+    let (profile, edge) = (&*contact.profile, contact.contact_radius());
+    let vertical = profile.rim_radius().is_some_and(|rim| edge >= rim);
+    if vertical || edge <= 0.0 || contact.friction <= 0.0 {
+        return 0.0;
+    }
+    let cutoff = cutoff_of(outermost_singular(profile, edge), edge);
+    let grid = Grid::new(profile, cutoff, edge);
+    // One piece from the edge to the cut-off holds below this.
+    let mut high = (grid.levels[0] - grid.levels[STEPS]) / (edge * edge - cutoff * cutoff).sqrt();
+    if !(high > 0.0 && high.is_finite()) {
+        return 0.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if grid.reached(middle, reversals + 1) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    low * 0.5 * contact.elasticity.g_star() * contact.scale()
+}
+
+/// Radii from the edge inwards with their levels.
+struct Grid {
+    radii: Vec<f64>,
+    levels: Vec<f64>,
+}
+
+impl Grid {
+    fn new(profile: &Profile, cutoff: f64, edge: f64) -> Grid {
+        // Even in the square of the radius.
+        let square = |index: usize| edge * edge - (edge * edge - cutoff * cutoff) * index as f64 / STEPS as f64;
+        let radii: Vec<f64> = (0..=STEPS).map(|index| square(index).max(0.0).sqrt()).collect();
+        let levels = radii.iter().map(|radius| profile.level(*radius)).collect();
+        Grid { radii, levels }
+    }
+
+    /// Whether so many pieces may come as far as the end of the grid under a largest stress of `limit`, G* m/2. That only the
+    /// radii of the grid are looked at makes it say yes too often, never too seldom.
+    fn reached(&self, limit: f64, pieces: usize) -> bool {
+        let square = |index: usize| self.radii[index] * self.radii[index];
+        let half = |index: usize| (square(0) - square(index)).max(0.0).sqrt();
+        let mut outer = 0;
+        for _ in 0..pieces {
+            let holds = |inner: usize| {
+                let kernel = 2.0 * (square(outer) - square(inner)).max(0.0).sqrt() - (half(inner) - half(outer));
+                self.levels[outer] - self.levels[inner] <= limit * kernel
+            };
+            // The first that fails ends the piece, at the latest.
+            match (outer + 1..=STEPS).find(|inner| !holds(*inner)) {
+                Some(inner) => outer = inner,
+                None => return true,
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,54 @@
+//! What remains if a path is not followed exactly: the same again and again, each time with errors of its own.
+
+use super::super::contact::Contact;
+use super::super::error::Error;
+use super::super::state::{Move, Tangential};
+use super::design::Judged;
+
+/// What may be off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Standard deviation of each displacement, relative to itself; normally distributed.
+    pub amplitude: f64,
+    /// The part that the coefficient of friction may be off either way, the same all along a path; evenly distributed.
+    pub friction: f64,
+    /// Where the sequence of random numbers begins.
+    pub seed: u64,
+}
+
+/// The largest shear stress, Pa, that a path of displacements, m, leaves in each of so many trials, the smallest first.
+/// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the same
+/// errors, whatever the path.
+///
+/// # Errors
+/// What `make` and the moves refuse, and [`Error::BrokenOff`] if `go_on` said no.
+pub fn trials(
+    make: &dyn Fn(f64) -> Result<Contact, Error>,
+    path: &[f64],
+    errors: &Errors,
+    samples: usize,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Vec<f64>, Error> {
+    let mut random = fastrand::Rng::with_seed(errors.seed);
+    let mut found = Vec::with_capacity(samples);
+    for _ in 0..samples {
+        if !go_on() {
+            return Err(Error::BrokenOff);
+        }
+        let mut contact = make(1.0 + errors.friction * (2.0 * random.f64() - 1.0))?;
+        for target in path {
+            let target = target * (1.0 + errors.amplitude * normal(&mut random));
+            contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
+        }
+        let residual = contact.residual_while(go_on).ok_or(Error::BrokenOff)?;
+        found.push(Judged::of(&contact).largest(&contact, &residual));
+    }
+    found.sort_by(f64::total_cmp);
+    Ok(found)
+}
+
+/// A number of the normal distribution, by Box and Muller.
+fn normal(random: &mut fastrand::Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - random.f64()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * random.f64()).cos()
+}

@@ -1,0 +1,103 @@
+//! Protocols for sessions: what would relax one, without touching it.
+
+use uuid::Uuid;
+
+use crate::mechanics::DEFAULT_TOLERANCE;
+use crate::simulation::{self, Failure, Reservation, Stop, Subject, cost, follow};
+use crate::wire::protocol::{ProtocolTask, Relaxation};
+use crate::wire::{ContactDefinition, Plan, ProtocolReply, RelaxReply, Steps};
+
+use super::live::Live;
+use super::{SessionError, Sessions, written};
+
+/// The protocol that begins from the present state of a session.
+pub(super) fn found(live: &Live, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
+    let definition = &*live.session.definition;
+    simulation::protocol(&Subject { contact: &live.contact, definition, first: None, setup: None }, task, stop)
+}
+
+/// The failure of a move that the client has not given itself.
+pub(super) fn of_the_whole(failure: Failure) -> Failure {
+    match failure {
+        Failure::Refused { error, .. } => Failure::Refused { pointer: String::new(), error },
+        Failure::MemoryFull { depth, .. } => Failure::MemoryFull { pointer: String::new(), depth },
+        Failure::TooLong { allowed, .. } => Failure::TooLong { pointer: "/reversals".to_owned(), allowed },
+        Failure::Stopped => Failure::Stopped,
+    }
+}
+
+impl Sessions {
+    /// The protocol that begins from the present state of a session, which `said` to have this definition, and the sequence
+    /// that it belongs to, with the memory that it takes.
+    ///
+    /// # Errors
+    /// [`SessionError`], among them [`SessionError::OtherDefinition`].
+    pub async fn protocol(
+        &self,
+        id: Uuid,
+        said: Option<ContactDefinition>,
+        task: ProtocolTask,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        self.look(id, said, None, task, move |live, stop| written(&found(live, &task, stop)?)).await
+    }
+
+    /// What [`Sessions::advance`] would do to relax a session at the sequence that the client expects; nothing is changed.
+    ///
+    /// # Errors
+    /// [`SessionError`].
+    pub async fn rehearse(
+        &self,
+        id: Uuid,
+        relaxation: Relaxation,
+        expected: Option<u64>,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        let Relaxation { task, steps, .. } = relaxation;
+        let work = move |live: &mut Live, stop: &Stop| {
+            let protocol = found(live, &task, stop)?;
+            let plan = Plan::Displacement(protocol.path.displacement.clone());
+            let mut states = Vec::new();
+            if steps.is_some() {
+                follow(&mut live.contact, &plan, None, DEFAULT_TOLERANCE, stop, |_, contact| {
+                    states.push(contact.state().into());
+                })
+                .map_err(of_the_whole)?;
+            }
+            if steps == Some(Steps::Last) {
+                states.drain(..states.len().saturating_sub(1));
+            }
+            let (sequence, steps) = (live.session.sequence, steps.map(|_| states));
+            written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
+        };
+        self.look(id, None, expected, task, work).await
+    }
+
+    /// Works on a copy of a session: the lock is held for the copy alone, so that the session can move on meanwhile.
+    async fn look(
+        &self,
+        id: Uuid,
+        said: Option<ContactDefinition>,
+        expected: Option<u64>,
+        task: ProtocolTask,
+        work: impl FnOnce(&mut Live, &Stop) -> Result<Vec<u8>, SessionError> + Send + 'static,
+    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        let (stop, _raised_at_the_end) = self.common.pool.deadline();
+        let (mut live, held) = {
+            let mut guard = self.lock(id).await?;
+            let live = self.present(&mut guard).await?;
+            let found = live.session.sequence;
+            if let Some(expected) = expected.filter(|expected| *expected != found) {
+                return Err(SessionError::Stale { expected, found });
+            }
+            if said.is_some_and(|said| said != *live.session.definition) {
+                return Err(SessionError::OtherDefinition(id));
+            }
+            let held = self.common.pool.reserve(live.contact.memory_bytes() + cost::bytes_of_protocol(&task)).await?;
+            (live.clone(), held)
+        };
+        let sequence = live.session.sequence;
+        let cost = cost::of_protocol(&task, live.contact.memory_depth());
+        let cost = cost::on(live.contact.profile(), cost, true);
+        let body = self.common.pool.run(cost, move || work(&mut live, &stop)).await??;
+        Ok((sequence, body, held))
+    }
+}

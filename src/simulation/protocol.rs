@@ -1,0 +1,237 @@
+//! From a protocol asked for to the path, what it leaves, and what the others would.
+
+use crate::mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
+use crate::mechanics::{Contact, Error, Setup};
+use crate::wire::limits;
+use crate::wire::protocol::{
+    Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
+    ProtocolReply, ProtocolTask, StartReply,
+};
+use crate::wire::reply::finite;
+use crate::wire::{ContactDefinition, Warning};
+
+use super::robustness::robustness;
+use super::run::{Timer, accuracy, contact};
+use super::{Failure, Seen, Stop, warnings};
+
+/// A contact for which a protocol is sought, and what the reversals begin from.
+pub struct Subject<'a> {
+    /// The contact.
+    pub contact: &'a Contact,
+    /// The definition, for the warnings.
+    pub definition: &'a ContactDefinition,
+    /// The displacement to begin with, m, of a contact that has never moved; else it begins from the present state.
+    pub first: Option<f64>,
+    /// What a contact with another coefficient of friction is made of.
+    pub setup: Option<&'a Setup>,
+}
+
+impl Subject<'_> {
+    fn start(&self) -> Start {
+        self.first.map_or(Start::Here, Start::Displacement)
+    }
+
+    /// A JSON pointer to what the mechanics finds fault with.
+    fn place(&self, error: &Error) -> &'static str {
+        match error {
+            Error::OutOfRange { quantity: "friction", .. } if self.setup.is_some() => "/contact/friction",
+            Error::OutOfRange { quantity: "indentation", .. } if self.setup.is_some() => "/contact/preload",
+            Error::OutOfRange { quantity: "displacement", .. } => "/start/displacement",
+            _ => "",
+        }
+    }
+
+    fn design(&self, kind: Kind, reversals: usize, end: End, stop: &Stop) -> Result<Design, Failure> {
+        let found = design(self.contact, self.start(), kind, reversals, end, &|| stop.check().is_ok());
+        found.map_err(|error| match stop.check() {
+            Err(Failure::TooLong { allowed, .. }) => Failure::TooLong { pointer: "/reversals".to_owned(), allowed },
+            Err(stopped) => stopped,
+            Ok(()) => Failure::Refused { pointer: self.place(&error).to_owned(), error },
+        })
+    }
+
+    /// The design of the fewest reversals that leave no more than `largest`, Pa.
+    fn fewest(&self, kind: Kind, largest: f64, target: f64, end: End, stop: &Stop) -> Result<(usize, Design), Failure> {
+        let most = *limits::PROTOCOL_REVERSALS.end();
+        let mut low = 0;
+        let mut high = 1;
+        let mut found = loop {
+            let design = self.design(kind, high, end, stop)?;
+            if design.largest <= largest {
+                break design;
+            }
+            if high == most {
+                let error = Error::OutOfRange {
+                    quantity: "target",
+                    value: target,
+                    allowed: format!("what {most} reversals reach, {:.3e}, or more", target * design.largest / largest),
+                };
+                return Err(Failure::Refused { pointer: "/target".to_owned(), error });
+            }
+            (low, high) = (high, (2 * high).min(most));
+        };
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            let design = self.design(kind, middle, end, stop)?;
+            if design.largest <= largest {
+                (high, found) = (middle, design);
+            } else {
+                low = middle;
+            }
+        }
+        // More reversals need not leave less on every shape: a few less are looked at as well.
+        for fewer in (high.saturating_sub(FEWER).max(1)..high).rev().skip(1) {
+            let design = self.design(kind, fewer, end, stop)?;
+            if design.largest <= largest {
+                (high, found) = (fewer, design);
+            }
+        }
+        Ok((high, found))
+    }
+}
+
+/// The protocol for a contact that has never moved, from a displacement, m, or from that of gross slip.
+///
+/// # Errors
+/// As [`protocol`], and if the preload cannot be reached.
+pub fn protocol_for(
+    definition: &ContactDefinition,
+    setup: &Setup,
+    first: Option<f64>,
+    task: &ProtocolTask,
+    stop: &Stop,
+) -> Result<ProtocolReply, Failure> {
+    let contact = contact(setup.clone(), "/contact")?;
+    let first = Some(first.unwrap_or_else(|| contact.gross_slip_displacement()));
+    protocol(&Subject { contact: &contact, definition, first, setup: Some(setup) }, task, stop)
+}
+
+/// How many reversals fewer than those found by halving are looked at.
+const FEWER: usize = 3;
+
+/// The protocol asked for, with what it leaves and what the others would.
+///
+/// # Errors
+/// [`Failure`] where there is nothing to move against, the target is out of reach, or the time is up.
+pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
+    let timer = Timer::start();
+    let contact = subject.contact;
+    let (figures, judged) = (contact.figures(), Judged::of(contact));
+    let mean = figures.normal_force / (std::f64::consts::PI * figures.contact_radius * figures.contact_radius);
+    let unit = figures.gross_slip_force / figures.normal_force * figures.max_pressure.unwrap_or(mean);
+    let end = End::from(task.end);
+    let (reversals, chosen) = match task.aim {
+        Aim::Reversals(reversals) => (reversals, subject.design(task.kind.into(), reversals, end, stop)?),
+        Aim::Target(target) => subject.fewest(task.kind.into(), target * unit, target, end, stop)?,
+    };
+    let full = contact.gross_slip_displacement();
+    let slides = subject.first.is_some_and(|first| first.abs() >= full * (1.0 - 1e-12));
+    let bound = finite(lower_bound(contact, reversals)).filter(|bound| slides && *bound > 0.0);
+    let outcome = |kind: ProtocolKind, design: &Design| -> Result<Outcome, Failure> {
+        let state = design.contact.state();
+        let tried = task.robustness.as_ref();
+        let tried = tried.map(|errors| robustness(subject, errors, &design.displacements, unit, stop)).transpose()?;
+        Ok(Outcome {
+            residual: design.residual.clone().into(),
+            largest: finite(design.largest),
+            relative: finite(design.largest / unit),
+            displacement: state.displacement,
+            force: state.force + 0.0,
+            dissipated_energy: state.dissipated_energy - contact.state().dissipated_energy,
+            gap: (kind == ProtocolKind::Minimax).then(|| gap(design, bound)),
+            robustness: tried,
+        })
+    };
+    let other = |kind: ProtocolKind| -> Result<Option<Outcome>, Failure> {
+        if kind == task.kind {
+            return Ok(None);
+        }
+        outcome(kind, &subject.design(kind.into(), reversals, end, stop)?).map(Some)
+    };
+    let own = outcome(task.kind, &chosen)?;
+    let comparison = Comparison {
+        linear: other(ProtocolKind::Linear)?,
+        equal_peaks: other(ProtocolKind::EqualPeaks)?,
+        minimax: other(ProtocolKind::Minimax)?,
+    };
+    Ok(ProtocolReply {
+        contact: figures.into(),
+        kind: task.kind,
+        end: task.end,
+        reversals,
+        start: StartReply {
+            displacement: chosen.displacements.first().copied().unwrap_or_default(),
+            stroke: match chosen.way {
+                Way::Given => FirstStroke::Given,
+                Way::GrossSlip => FirstStroke::GrossSlip,
+                Way::Partial => FirstStroke::Partial,
+                Way::Stay => FirstStroke::Stay,
+            },
+        },
+        judged: JudgedReply {
+            from_radius: judged.from,
+            to_radius: judged.to,
+            unit,
+            pressure: if figures.max_pressure.is_some() { PressureUnit::Largest } else { PressureUnit::Mean },
+            objective: objective(&judged),
+        },
+        residual: own.residual,
+        largest: own.largest,
+        relative: own.relative,
+        displacement: own.displacement,
+        force: own.force,
+        dissipated_energy: own.dissipated_energy,
+        gap: own.gap,
+        robustness: own.robustness,
+        comparison,
+        accuracy: accuracy(&chosen.contact, timer, "protocols are sought on the exact memory"),
+        path: DisplacementPath { displacement: chosen.displacements },
+        warnings: noted(subject),
+    })
+}
+
+fn noted(subject: &Subject<'_>) -> Vec<Warning> {
+    let contact = subject.contact;
+    let (contact_radius, elasticity) = (contact.contact_radius(), contact.elasticity());
+    let noise = contact.profile().noise(contact_radius);
+    let seen =
+        Seen { contact_radius, e_star: elasticity.e_star(), indentation: contact.indentation(), noise, missed: None };
+    warnings(&subject.definition.profile, &elasticity, &seen)
+}
+
+fn objective(judged: &Judged) -> String {
+    let Judged { from, to, vertical } = *judged;
+    match (from > 0.0, vertical) {
+        (false, false) => "the largest shear stress of the whole contact".to_owned(),
+        (true, false) => format!(
+            "the largest shear stress from the radius {from:e} m on: further in it is infinite at a radius where the slope of the \
+             profile jumps, whatever is done"
+        ),
+        (false, true) => format!(
+            "the largest shear stress up to the radius {to:e} m: at the vertical edge it is infinite unless the path ends with no \
+             load there"
+        ),
+        (true, true) => format!(
+            "the largest shear stress between the radii {from:e} m and {to:e} m: further in it is infinite whatever is done, and \
+             at the vertical edge unless the path ends with no load there"
+        ),
+    }
+}
+
+fn gap(design: &Design, bound: Option<f64>) -> Gap {
+    let method = match (design.spread.is_some(), design.way) {
+        (true, _) => {
+            "equal alternating extrema; a study with restarts has found nothing better, and `lower_bound` is proven"
+        }
+        (false, Way::Stay) => "the present state has less than any path that was found would leave",
+        (false, Way::Partial) => {
+            "alternating extrema outside, and inside the part of the history that leaves least with them; found by search, no \
+             bound is known"
+        }
+        (false, Way::Given | Way::GrossSlip) => {
+            "alternating extrema, all but one equal for the sake of the end, or the better one of the two laws; found by search"
+        }
+    };
+    let proven = bound.map(|bound| 1.0 - bound / design.largest).filter(|gap| gap.is_finite());
+    Gap { spread: design.spread, lower_bound: bound, proven, method: method.to_owned() }
+}

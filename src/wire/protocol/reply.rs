@@ -1,0 +1,198 @@
+//! What `POST /protocols` and `POST /contacts/{id}/relax` reply.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use super::super::reply::{Accuracy, Figures, Residual, State, Warning};
+use super::{ProtocolEnd, ProtocolKind};
+
+/// How to move so that little shear stress remains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ProtocolReply {
+    /// The figures of the contact at its present load.
+    pub contact: Figures,
+    /// The law of the amplitudes.
+    pub kind: ProtocolKind,
+    /// Where the path ends.
+    pub end: ProtocolEnd,
+    /// Number of reversals N_R.
+    pub reversals: usize,
+    /// The path, to be given to `/simulate` or `/contacts/{id}/path` as it is.
+    pub path: DisplacementPath,
+    /// How the path begins.
+    pub start: StartReply,
+    /// Where and in which unit the remaining stress is judged.
+    pub judged: JudgedReply,
+    /// What remains.
+    pub residual: Residual,
+    /// The largest shear stress that remains where it is judged, Pa; `null` where it is infinite.
+    pub largest: Option<f64>,
+    /// The same over `judged.unit`, a pure number.
+    pub relative: Option<f64>,
+    /// Tangential displacement at the end, m.
+    pub displacement: f64,
+    /// Tangential force at the end, N.
+    pub force: f64,
+    /// Work done against friction on the path, J.
+    pub dissipated_energy: f64,
+    /// How far the path may be from the best there is, of `minimax` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub gap: Option<Gap>,
+    /// What remains if it is not followed exactly, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub robustness: Option<RobustnessReply>,
+    /// The same for the other laws, with as many reversals.
+    pub comparison: Comparison,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// What to know about the results.
+    pub warnings: Vec<Warning>,
+}
+
+/// A path of displacements.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct DisplacementPath {
+    /// Tangential displacements of the indenter, m, one move each.
+    pub displacement: Vec<f64>,
+}
+
+/// How a path begins.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StartReply {
+    /// The first displacement of the path, m.
+    pub displacement: f64,
+    /// Which beginning was chosen.
+    pub stroke: FirstStroke,
+}
+
+/// The beginning of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FirstStroke {
+    /// A displacement of a contact that has never moved, as asked for.
+    Given,
+    /// A stroke to gross slip, which wipes out the whole history.
+    GrossSlip,
+    /// A stroke that wipes out the outer part of the history, and leaves the inner one as it is.
+    Partial,
+    /// None: less stress is there already than any other path would leave.
+    Stay,
+}
+
+/// Where and in which unit the remaining stress is judged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JudgedReply {
+    /// From this radius on, m: nought, but where the stress is infinite whatever is done (the tip of a cone, the rim of a
+    /// truncated profile).
+    pub from_radius: f64,
+    /// Up to this radius, m: the contact radius, but at a vertical edge.
+    pub to_radius: f64,
+    /// μ times the pressure that stresses are compared with, Pa.
+    pub unit: f64,
+    /// Which pressure that is.
+    pub pressure: PressureUnit,
+    /// What is made small, in words.
+    pub objective: String,
+}
+
+/// The pressure that stresses are compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PressureUnit {
+    /// The largest one.
+    Largest,
+    /// The mean one, where the largest is infinite.
+    Mean,
+}
+
+/// How far a path may be from the best there is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Gap {
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to it; `null` where they are
+    /// not all meant to be equal: with a prescribed end, or a start from a history.
+    pub spread: Option<f64>,
+    /// What some point of the contact carries after gross slip and so many reversals, whatever they are, Pa: proven. `null` for
+    /// other starts, and at a vertical edge.
+    pub lower_bound: Option<f64>,
+    /// 1 - `lower_bound`/`largest`, a pure number: the largest gap that is not ruled out by proof.
+    pub proven: Option<f64>,
+    /// How the path was found, and what speaks for it.
+    pub method: String,
+}
+
+/// What remains when a protocol is not followed exactly: of the largest stress over `judged.unit`, pure numbers. `null` where
+/// it is infinite.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RobustnessReply {
+    /// How many times it was tried.
+    pub samples: usize,
+    /// The mean.
+    pub mean: Option<f64>,
+    /// The standard error of the mean.
+    pub standard_error: Option<f64>,
+    /// The value that 95 of 100 stay below.
+    pub percentile_95: Option<f64>,
+}
+
+/// The figures of the other laws.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Comparison {
+    /// The linear fall.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub linear: Option<Outcome>,
+    /// Equal peaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub equal_peaks: Option<Outcome>,
+    /// Minimax.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub minimax: Option<Outcome>,
+}
+
+/// What a law leaves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Outcome {
+    /// What remains.
+    pub residual: Residual,
+    /// The largest shear stress that remains where it is judged, Pa; `null` where it is infinite.
+    pub largest: Option<f64>,
+    /// The same over `judged.unit`, a pure number.
+    pub relative: Option<f64>,
+    /// Tangential displacement at the end, m.
+    pub displacement: f64,
+    /// Tangential force at the end, N.
+    pub force: f64,
+    /// Work done against friction on the path, J.
+    pub dissipated_energy: f64,
+    /// How far the path may be from the best there is, of `minimax` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub gap: Option<Gap>,
+    /// What remains if it is not followed exactly, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub robustness: Option<RobustnessReply>,
+}
+
+/// What came of relaxing a contact, or would come of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RelaxReply {
+    /// The contact.
+    pub id: Uuid,
+    /// How many moves it has behind it.
+    pub sequence: u64,
+    /// Whether the path was only shown.
+    pub dry_run: bool,
+    /// The states along the path: all of them, or the last; if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub steps: Option<Vec<State>>,
+    /// The path and what it leaves.
+    #[serde(flatten)]
+    pub protocol: ProtocolReply,
+}
