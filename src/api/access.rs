@@ -35,8 +35,13 @@ pub enum Need {
 use Need::{Key, Nothing};
 
 /// What each route needs. A route that is not here needs the highest role there is.
-const NEEDS: [(&str, &str, Need); 18] = [
+const NEEDS: [(&str, &str, Need); 23] = [
     ("POST", "/simulate", Key(Role::Read)),
+    ("POST", "/sweep", Key(Role::Write)),
+    ("GET", "/jobs/{id}", Key(Role::Read)),
+    ("DELETE", "/jobs/{id}", Key(Role::Write)),
+    ("GET", "/jobs/{id}/result", Key(Role::Read)),
+    ("GET", "/jobs/{id}/events", Key(Role::Read)),
     ("GET", "/contacts", Key(Role::Read)),
     ("POST", "/contacts", Key(Role::Write)),
     ("GET", "/contacts/{id}", Key(Role::Read)),
@@ -104,6 +109,7 @@ impl FromRequestParts<App> for Own {
         let mut own = app.clone();
         if let Some(tenant) = parts.extensions.get::<Tenant>() {
             own.sessions = app.sessions.of(tenant.clone());
+            own.jobs = app.jobs.of(tenant.clone());
         }
         Ok(Own(own))
     }

@@ -7,8 +7,9 @@ pub mod descriptors;
 pub mod door;
 mod events;
 mod extract;
-mod format;
+pub mod format;
 pub mod headers;
+mod jobs;
 pub mod limits;
 mod meta;
 mod metrics;
@@ -20,6 +21,8 @@ mod query;
 mod reply;
 mod serve;
 mod simulate;
+mod sweep;
+pub mod table;
 mod traffic;
 
 use std::sync::Arc;
@@ -30,6 +33,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
+use crate::jobs::Jobs;
 use crate::sessions::Sessions;
 use crate::simulation::Pool;
 
@@ -44,6 +48,8 @@ pub use serve::{serve, serve_through};
 pub struct App {
     /// The sessions.
     pub sessions: Sessions,
+    /// The jobs.
+    pub jobs: Jobs,
     /// Where long work is done.
     pub pool: Pool,
     /// Who may use it.
@@ -86,6 +92,10 @@ fn dressed(router: Router, Access { keys, origins }: Access, traffic: Arc<traffi
 fn described() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(openapi::base())
         .routes(routes!(simulate::simulate))
+        .routes(routes!(sweep::sweep))
+        .routes(routes!(jobs::get, jobs::delete))
+        .routes(routes!(jobs::result))
+        .routes(routes!(jobs::events))
         .routes(routes!(contacts::create, contacts::list))
         .routes(routes!(contacts::get, contacts::delete))
         .routes(routes!(contacts::fork))

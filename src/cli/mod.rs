@@ -7,6 +7,7 @@ mod report;
 mod serve;
 mod settings;
 mod simulate;
+mod sweep;
 mod upkeep;
 
 use std::fmt::Display;
@@ -22,6 +23,7 @@ use key::Key;
 use report::Report;
 use serve::Serve;
 use settings::{Refusal, Settings};
+use sweep::Sweep;
 use upkeep::{Backup, Check};
 
 /// Frictional contact with memory, exactly: a service, and the same on the command line.
@@ -45,6 +47,8 @@ enum Command {
         /// The file, or - for standard input.
         file: PathBuf,
     },
+    /// Run the body of POST /sweep from a file and print the table.
+    Sweep(Sweep),
     /// Print the OpenAPI document.
     Openapi,
     /// Ask a running service whether it is well; for container health checks.
@@ -94,6 +98,7 @@ impl Command {
             Command::Serve(options) => serve::serve(options),
             Command::Config(_) => print(settings),
             Command::Simulate { file } => simulate::simulate(&file),
+            Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
             Command::Key(key) => key::key(key),
