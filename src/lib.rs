@@ -15,6 +15,8 @@
 //!
 //! [`sessions`] are contacts that live: a cache over the store, one writer at a time each, replay, and retries.
 //!
+//! [`jobs`] are sweeps over many simulations, at once or beyond the request that asks for them.
+//!
 //! [`access`] says who may do what: keys, roles and tenants.
 //!
 //! [`metrics`] are the counters that every floor may use, and the page that shows them.
@@ -30,6 +32,7 @@ pub mod api;
 mod chart;
 pub mod client;
 pub mod figures;
+pub mod jobs;
 pub mod mechanics;
 pub mod metrics;
 pub mod otlp;

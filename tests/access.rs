@@ -18,6 +18,11 @@ use uuid::Uuid;
 /// Every endpoint: what it takes, how it answers who may use it, and the roles that may; none listed is everybody.
 const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/accuracy", "simulation", 200, &["read", "write"]),
+    ("POST", "/sweep", "sweep", 200, &["write"]),
+    ("GET", "/jobs/{id}", "", 200, &["read", "write"]),
+    ("DELETE", "/jobs/{id}", "", 204, &["write"]),
+    ("GET", "/jobs/{id}/result", "", 200, &["read", "write"]),
+    ("GET", "/jobs/{id}/events", "", 200, &["read", "write"]),
     ("POST", "/simulate", "simulation", 200, &["read", "write"]),
     ("POST", "/protocols", "protocol", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
@@ -46,6 +51,10 @@ fn body(name: &str) -> Option<Value> {
         "relax" => Some(json!({"reversals": 2})),
         "ball" => Some(ball()),
         "move" => Some(json!({"displacement": 1e-8})),
+        "sweep" => {
+            Some(json!({"base": {"contact": ball(), "path": {"force": [1.0]}}, "outputs": ["/steps/0/displacement"],
+            "axes": [{"pointer": "/contact/friction", "values": [0.3, 0.4]}]}))
+        }
         "path" => Some(json!({"path": {"displacement": [1e-8, 0.0]}})),
         _ => None,
     }
@@ -107,6 +116,27 @@ impl Guarded {
     }
 }
 
+impl Guarded {
+    /// A job that is done.
+    async fn job(&self, who: &str) -> String {
+        let mut sweep = body("sweep").unwrap();
+        sweep["job"] = json!(true);
+        let response = self.send(Some(who), "POST", "/sweep", Some(&sweep), &[]).await;
+        let path = response.headers()["location"].to_str().unwrap().to_owned();
+        let ended = async {
+            loop {
+                let job: Value = self.send(Some(who), "GET", &path, None, &[]).await.json().await.unwrap();
+                if job["state"] != "running" {
+                    break;
+                }
+                tokio::time::sleep(Duration::from_millis(5)).await;
+            }
+        };
+        tokio::time::timeout(Duration::from_secs(60), ended).await.expect("the job does not end");
+        path.strip_prefix("/jobs/").unwrap().to_owned()
+    }
+}
+
 fn operations() -> BTreeSet<(String, String)> {
     let document: Value = serde_json::from_str(stickslip::api::document()).unwrap();
     let paths = document["paths"].as_object().unwrap().clone();
@@ -136,7 +166,11 @@ async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
                 Some("both") => &["read", "metrics"],
                 Some(_) => std::slice::from_ref(who.as_ref().unwrap()),
             };
-            let path = route.replace("{id}", &server.contact("write").await.to_string()).replace("{code}", "forbidden");
+            let id = match route {
+                route if route.starts_with("/jobs") => server.job("write").await,
+                _ => server.contact("write").await.to_string(),
+            };
+            let path = route.replace("{id}", &id).replace("{code}", "forbidden");
             let path = path.replace("/stress", "/stress?points=3");
             let response = server.send(who, method, &path, body(body_name).as_ref(), &[]).await;
             let expected = match who {
@@ -317,6 +351,30 @@ async fn without_keys_the_nameless_tenant_is_served(file: &str) {
     let refused = open.client.contact(theirs.parse().unwrap()).await.unwrap_err();
     assert_eq!(refused.problem().unwrap().status, 404);
     open.stop().await;
+}
+
+#[tokio::test]
+async fn a_job_is_there_for_its_tenant_alone() {
+    let keys: [(&'static str, &[Role], &str); 2] =
+        [("north", &[Role::Write], "north"), ("south", &[Role::Write], "south")];
+    let server = Guarded::start("memory:", &[], &keys).await;
+    let (job, options) = (server.job("north").await, [("idempotency-key", "mine")]);
+    for (method, more) in [("GET", ""), ("GET", "/result"), ("GET", "/events"), ("DELETE", "")] {
+        let refusal = problem(server.send(Some("south"), method, &format!("/jobs/{job}{more}"), None, &[]).await).await;
+        assert_eq!(refusal.code, "job_not_found", "{method} {more}");
+    }
+    assert_eq!(server.send(Some("north"), "GET", &format!("/jobs/{job}/result"), None, &[]).await.status(), 200);
+    // The name of a request belongs to its tenant, and so does what it may ask for.
+    let mut sweep = body("sweep").unwrap();
+    sweep["job"] = json!(true);
+    let mut places = BTreeSet::new();
+    for who in ["north", "south", "north"] {
+        let response = server.send(Some(who), "POST", "/sweep", Some(&sweep), &options).await;
+        places.insert(response.headers()["location"].to_str().unwrap().to_owned());
+    }
+    assert_eq!(places.len(), 2);
+    while server.send(Some("north"), "POST", "/sweep", Some(&sweep), &[]).await.status() == 202 {}
+    assert_eq!(server.send(Some("south"), "POST", "/sweep", Some(&sweep), &[]).await.status(), 202);
 }
 
 #[tokio::test]

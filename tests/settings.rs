@@ -11,7 +11,7 @@ use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 21] = [
+const CASES: [(&str, [&str; 3]); 22] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
     ("keys", ["a.keys", "b.keys", "c.keys"]),
     ("insecure", ["true", "true", "true"]),
@@ -19,6 +19,7 @@ const CASES: [(&str, [&str; 3]); 21] = [
     ("store", ["memory:", "sqlite:a.db", "sqlite:b.db"]),
     ("cache-bytes", ["1MiB", "2MiB", "3000"]),
     ("expire-after", ["1h", "2h", "30d"]),
+    ("job-lease", ["1s", "2s", "1m"]),
     ("log", ["warn", "debug", "stickslip=trace"]),
     ("log-format", ["json", "json", "json"]),
     ("otlp-endpoint", ["http://a.example:4318", "http://b.example", "http://c.example"]),

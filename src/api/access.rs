@@ -39,6 +39,11 @@ const NEEDS: &[(&str, &str, Need)] = &[
     ("POST", "/accuracy", Key(Role::Read)),
     ("POST", "/simulate", Key(Role::Read)),
     ("POST", "/protocols", Key(Role::Read)),
+    ("POST", "/sweep", Key(Role::Write)),
+    ("GET", "/jobs/{id}", Key(Role::Read)),
+    ("DELETE", "/jobs/{id}", Key(Role::Write)),
+    ("GET", "/jobs/{id}/result", Key(Role::Read)),
+    ("GET", "/jobs/{id}/events", Key(Role::Read)),
     ("GET", "/contacts", Key(Role::Read)),
     ("POST", "/contacts", Key(Role::Write)),
     ("GET", "/contacts/{id}", Key(Role::Read)),
@@ -107,6 +112,7 @@ impl FromRequestParts<App> for Own {
         let mut own = app.clone();
         if let Some(tenant) = parts.extensions.get::<Tenant>() {
             own.sessions = app.sessions.of(tenant.clone());
+            own.jobs = app.jobs.of(tenant.clone());
         }
         Ok(Own(own))
     }

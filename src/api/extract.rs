@@ -57,6 +57,9 @@ pub struct OptionalCommand<T: Document>(pub Command<T>);
 /// The session named in the path. What is not an identifier names no session.
 pub struct ContactId(pub Uuid);
 
+/// The job named in the path. What is not an identifier names no job.
+pub struct JobId(pub Uuid);
+
 /// The sequence that the client expects by `If-Match`; none if it does not say, or says `*`.
 pub struct Expected(pub Option<u64>);
 
@@ -186,6 +189,19 @@ impl FromRequestParts<App> for ContactId {
         let missing = |id: &str| Problem::new(Kind::ContactNotFound, format!("there is no contact {id}"));
         match Path::<String>::from_request_parts(parts, app).await {
             Ok(Path(id)) => Uuid::parse_str(&id).map(ContactId).map_err(|_| missing(&id)),
+            // Percent signs that do not decode.
+            Err(_) => Err(missing("of this name")),
+        }
+    }
+}
+
+impl FromRequestParts<App> for JobId {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let missing = |id: &str| Problem::new(Kind::JobNotFound, format!("there is no job {id}"));
+        match Path::<String>::from_request_parts(parts, app).await {
+            Ok(Path(id)) => Uuid::parse_str(&id).map(JobId).map_err(|_| missing(&id)),
             // Percent signs that do not decode.
             Err(_) => Err(missing("of this name")),
         }

@@ -8,8 +8,9 @@ pub mod descriptors;
 pub mod door;
 mod events;
 mod extract;
-mod format;
+pub mod format;
 pub mod headers;
+mod jobs;
 pub mod limits;
 mod meta;
 mod metrics;
@@ -22,6 +23,8 @@ mod query;
 mod reply;
 mod serve;
 mod simulate;
+mod sweep;
+pub mod table;
 mod traffic;
 
 use std::sync::Arc;
@@ -31,6 +34,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
+use crate::jobs::Jobs;
 use crate::sessions::Sessions;
 use crate::simulation::Pool;
 
@@ -45,6 +49,8 @@ pub use serve::{serve, serve_through};
 pub struct App {
     /// The sessions.
     pub sessions: Sessions,
+    /// The jobs.
+    pub jobs: Jobs,
     /// Where long work is done.
     pub pool: Pool,
     /// Who may use it.
@@ -88,6 +94,10 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(simulate::simulate))
         .routes(routes!(accuracy::accuracy))
         .routes(routes!(protocols::protocols))
+        .routes(routes!(sweep::sweep))
+        .routes(routes!(jobs::get, jobs::delete))
+        .routes(routes!(jobs::result))
+        .routes(routes!(jobs::events))
         .routes(routes!(contacts::create, contacts::list))
         .routes(routes!(contacts::get, contacts::delete))
         .routes(routes!(contacts::fork))

@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::access::Role;
 use crate::mechanics::DEFAULT_TOLERANCE;
 use crate::mechanics::range::{self, Range};
-use crate::wire::{EndEvent, ProblemDocument, limits, profile};
+use crate::wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
 use super::access::{Need, need};
 use super::format::{self, Format};
@@ -51,7 +51,7 @@ pub struct IdempotencyKey {
     info(title = "stickslip"),
     // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
     components(schemas(
-        ProblemDocument, EndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
+        ProblemDocument, EndEvent, JobEndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
         profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
         profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
         profile::TabulatedProfile, profile::SumProfile
@@ -60,6 +60,7 @@ pub struct IdempotencyKey {
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "protocols", description = "How to move so that little shear stress remains"),
         (name = "contacts", description = "Contacts that live on the server and remember"),
+        (name = "jobs", description = "Sweeps that go on after they have been asked for"),
         (name = "service", description = "Health, and this document")
     )
 )]
@@ -158,6 +159,12 @@ fn limited() -> Vec<(&'static str, &'static str, Limit)> {
         ("FallingAmplitude", "amplitude", Number(range::DISPLACEMENT)),
         ("StressRequest", "points", Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end())),
         ("StressRequest", "radii", Numbers(*radii.start(), *radii.end(), range::CONTACT_RADIUS)),
+        ("SweepRequest", "axes", Items(*limits::SWEEP_AXES.start(), *limits::SWEEP_AXES.end())),
+        ("SweepRequest", "outputs", Items(*limits::SWEEP_OUTPUTS.start(), *limits::SWEEP_OUTPUTS.end())),
+        ("Axis", "values", Numbers(*limits::AXIS_VALUES.start(), *limits::AXIS_VALUES.end(), limits::AXIS_NUMBER)),
+        ("Span", "from", Number(limits::AXIS_NUMBER)),
+        ("Span", "to", Number(limits::AXIS_NUMBER)),
+        ("Span", "count", Count(*limits::AXIS_COUNT.start(), *limits::AXIS_COUNT.end())),
         ("Springs", "count", Count(range::SPRING_COUNT.min as usize, range::SPRING_COUNT.max as usize)),
     ];
     all.push(("AccuracyRequest", "solvers", Items(*limits::SOLVERS.start(), *limits::SOLVERS.end())));
@@ -316,13 +323,16 @@ fn write_formats(document: &mut Value) {
         return;
     };
     for (path, operations) in paths {
-        let table = path.ends_with("/stress") || path.ends_with("/history");
+        let versioned = path.ends_with("/stress") || path.ends_with("/history");
+        let table = versioned || path == "/sweep" || path == "/jobs/{id}/result";
         if !table && path != "/contacts/{id}" {
             continue;
         }
-        let operation = &mut operations["get"];
-        operation["responses"]["304"] =
-            json!({"description": "The client has this version already, as its If-None-Match says"});
+        let operation = &mut operations[if path == "/sweep" { "post" } else { "get" }];
+        if versioned || !table {
+            operation["responses"]["304"] =
+                json!({"description": "The client has this version already, as its If-None-Match says"});
+        }
         if table {
             let names = Format::ALL.map(Format::name);
             for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
@@ -353,17 +363,20 @@ fn write_refusals(document: &mut Value) {
     for (path, operations) in paths {
         let Value::Object(operations) = operations else { continue };
         for (method, operation) in operations {
-            let changes_contact =
-                path.ends_with("/move") || path.ends_with("/path") || path.ends_with("/relax") || method == "delete";
-            let defines_contact = ["/simulate", "/accuracy", "/protocols"].contains(&path.as_str());
-            let about_contacts = path.starts_with("/contacts") || defines_contact;
+            let job = path.starts_with("/jobs");
+            let changes = ["/move", "/path", "/relax"].iter().any(|end| path.ends_with(end));
+            let changes_contact = changes || (method == "delete" && !job);
+            let defines_contact = ["/simulate", "/accuracy", "/protocols", "/sweep"].contains(&path.as_str());
+            let about_contacts = path.starts_with("/contacts") || defines_contact || job;
             let refusals = [
                 (method == "post", "400", "The body is not JSON"),
                 (path.contains('{') || path == "/protocols", "404", "There is no such thing"),
-                (path.contains("/{id}"), "410", "The contact was idle for so long that it has expired"),
+                (path.contains("/{id}") && !job, "410", "The contact was idle for so long that it has expired"),
                 (method == "post", "408", "The body did not arrive in time"),
                 (changes_contact, "409", "The state of the contact forbids this"),
                 (changes_contact, "412", "The contact is not at the sequence given in If-Match"),
+                (path.ends_with("/result"), "409", "The job has not ended, or has failed"),
+                (path == "/sweep", "429", "The tenant has as many jobs as it may; try again after Retry-After"),
                 (method == "post", "413", "The body is too large"),
                 (method == "post", "415", "The body is not declared as application/json"),
                 (about_contacts, "422", "The request is invalid, or the mechanics has no answer to it"),

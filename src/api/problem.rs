@@ -7,7 +7,10 @@
 //!   that error. All but the first are 422, as the syntax is not to blame.
 //! - No key, or one that is not known: [`Kind::Unauthorized`]. A key that does not allow it: [`Kind::Forbidden`]. What belongs
 //!   to another tenant does not exist.
-//! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session.
+//! - A name that does not exist: [`Kind::NotFound`] for a path, [`Kind::ContactNotFound`] for a session, [`Kind::JobNotFound`]
+//!   for a job.
+//! - The result of a job that is not there: [`Kind::JobNotDone`] if it may come, [`Kind::JobFailed`] if it never will.
+//! - A tenant with as many jobs as it may have: [`Kind::TooManyJobs`].
 //! - No format that `Accept` admits: [`Kind::NotAcceptable`].
 //! - A sound request that the present state forbids: [`Kind::StaleSequence`] if the client has said what state it expects,
 //!   else [`Kind::Conflict`].
@@ -23,9 +26,10 @@
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
+use crate::jobs::JobError;
 use crate::mechanics;
 use crate::sessions::SessionError;
-use crate::simulation::{Failure, PoolError};
+use crate::simulation::{Failure, PoolError, SweepError};
 use crate::store::StoreError;
 use crate::wire::{Fault, ProblemDocument, Rejection};
 
@@ -49,6 +53,14 @@ pub enum Kind {
     NotFound,
     /// No such session.
     ContactNotFound,
+    /// No such job.
+    JobNotFound,
+    /// The job has not ended.
+    JobNotDone,
+    /// The job has no result, and never will.
+    JobFailed,
+    /// The tenant has as many jobs as it may.
+    TooManyJobs,
     /// The session was idle for so long that it has been deleted.
     ContactExpired,
     /// The path has no such method.
@@ -91,13 +103,17 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, for the documentation.
-    pub const ALL: [Kind; 25] = [
+    pub const ALL: [Kind; 29] = [
         Kind::AmbiguousRequest,
         Kind::NotJson,
         Kind::Unauthorized,
         Kind::Forbidden,
         Kind::NotFound,
         Kind::ContactNotFound,
+        Kind::JobNotFound,
+        Kind::JobNotDone,
+        Kind::JobFailed,
+        Kind::TooManyJobs,
         Kind::ContactExpired,
         Kind::MethodNotAllowed,
         Kind::NotAcceptable,
@@ -131,6 +147,10 @@ impl Kind {
             Kind::Forbidden => (StatusCode::FORBIDDEN, "forbidden", "The key does not allow this"),
             Kind::NotFound => (StatusCode::NOT_FOUND, "not_found", "There is nothing at this path"),
             Kind::ContactNotFound => (StatusCode::NOT_FOUND, "contact_not_found", "There is no such contact"),
+            Kind::JobNotFound => (StatusCode::NOT_FOUND, "job_not_found", "There is no such job"),
+            Kind::JobNotDone => (StatusCode::CONFLICT, "job_not_done", "The job has not ended"),
+            Kind::JobFailed => (StatusCode::CONFLICT, "job_failed", "The job has failed"),
+            Kind::TooManyJobs => (StatusCode::TOO_MANY_REQUESTS, "too_many_jobs", "There are too many jobs"),
             Kind::ContactExpired => (StatusCode::GONE, "contact_expired", "The contact has expired"),
             Kind::MethodNotAllowed => {
                 (StatusCode::METHOD_NOT_ALLOWED, "method_not_allowed", "This path has no such method")
@@ -248,7 +268,7 @@ impl IntoResponse for Problem {
     /// The status alone: the document waits in the extensions for `observe`, which knows the request's identifier.
     fn into_response(self) -> Response {
         let mut response = self.kind.parts().0.into_response();
-        if matches!(self.kind, Kind::Overloaded | Kind::StorageUnavailable) {
+        if matches!(self.kind, Kind::Overloaded | Kind::StorageUnavailable | Kind::TooManyJobs) {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER.as_secs()));
         }
         if matches!(self.kind, Kind::Unauthorized) {
@@ -301,6 +321,27 @@ impl From<PoolError> for Problem {
     }
 }
 
+impl From<JobError> for Problem {
+    fn from(error: JobError) -> Self {
+        let detail = error.to_string();
+        match error {
+            JobError::NotFound(_) => Problem::new(Kind::JobNotFound, detail),
+            JobError::Unfinished { .. } => Problem::new(Kind::JobNotDone, detail),
+            JobError::Failed(_) => Problem::new(Kind::JobFailed, detail),
+            JobError::TooMuch { .. } => Problem::at(Kind::TooMuchWork, "/axes", detail),
+            JobError::KeyReused => Problem::new(Kind::IdempotencyKeyReused, detail),
+            JobError::TooManyStreams => Problem::new(Kind::Overloaded, detail),
+            JobError::Sweep(SweepError::Failure(failure)) => failure.into(),
+            JobError::Sweep(SweepError::Pool(error)) | JobError::Pool(error) => error.into(),
+            JobError::Store(StoreError::TooManyJobs(_)) => {
+                Problem::new(Kind::TooManyJobs, format!("{detail}: delete some, or wait until they are gone"))
+            }
+            JobError::Store(error) => SessionError::Store(error).into(),
+            JobError::Broken(_) => Problem::internal(detail),
+        }
+    }
+}
+
 impl From<SessionError> for Problem {
     fn from(error: SessionError) -> Self {
         let detail = error.to_string();
@@ -323,6 +364,35 @@ impl From<SessionError> for Problem {
                 Problem::new(Kind::StorageUnavailable, advice).because(detail)
             }
             SessionError::Store(_) | SessionError::Broken(_) => Problem::internal(detail),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Problem;
+    use crate::mechanics::{self, range};
+    use crate::simulation::Failure;
+
+    #[test]
+    fn a_point_of_a_sweep_fails_by_the_code_that_it_is_refused_with_alone() {
+        let errors = [
+            range::FRICTION.check(-1.0).unwrap_err(),
+            mechanics::Error::BeyondProfile { radius: 2.0, limit: 1.0 },
+            mechanics::Error::NotConvexEnough { radius: 1.0 },
+            mechanics::Error::Table { what: "r falls", index: 1 },
+            mechanics::Error::ForceExceedsFriction { target: 2.0, limit: 1.0, part: 0.5 },
+            mechanics::Error::BrokenOff,
+            mechanics::Error::Unsupported { what: "this" },
+        ];
+        let refused = errors.map(|error| Failure::Refused { pointer: String::new(), error });
+        let others = [
+            Failure::MemoryFull { pointer: String::new(), depth: 1 },
+            Failure::TooLong { pointer: String::new(), allowed: std::time::Duration::ZERO },
+            Failure::Stopped,
+        ];
+        for failure in refused.into_iter().chain(others) {
+            assert_eq!(failure.code(), Problem::from(failure.clone()).code(), "{failure:?}");
         }
     }
 }

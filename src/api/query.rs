@@ -92,6 +92,15 @@ impl Params {
         self.finish(Some((after, limit, format)))
     }
 
+    /// The format of a table if it is named.
+    ///
+    /// # Errors
+    /// A [`Problem`] with every fault of the parameters.
+    pub fn table(mut self) -> Result<Option<Format>, Problem> {
+        let format = self.format();
+        self.finish(Some(format))
+    }
+
     fn format(&mut self) -> Option<Format> {
         let named = |text: &str| Format::ALL.into_iter().find(|format| format.name() == text);
         self.take("format", "one of `columns`, `rows`, `csv`, `ndjson`", named)

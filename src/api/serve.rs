@@ -42,7 +42,7 @@ pub async fn serve_through(
     app: App,
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> io::Result<()> {
-    let sessions = app.sessions.clone();
+    let (sessions, jobs) = (app.sessions.clone(), app.jobs.clone());
     let body_time = door.limits().body;
     let (pool, traffic) = (app.pool.clone(), traffic());
     let (router, refusals) = (router(app, Arc::clone(&traffic)), refusals(traffic));
@@ -77,6 +77,7 @@ pub async fn serve_through(
     drop(listener);
     // A client that follows a contact would never be done.
     sessions.end_events();
+    jobs.end_events();
     // Fails if nobody is connected.
     let _ = closing.send(());
     if timeout(GRACE, closing.closed()).await.is_err() {

@@ -8,6 +8,7 @@ mod report;
 mod serve;
 mod settings;
 mod simulate;
+mod sweep;
 mod upkeep;
 
 use std::fmt::Display;
@@ -24,6 +25,7 @@ use protocol::Protocol;
 use report::Report;
 use serve::Serve;
 use settings::{Refusal, Settings};
+use sweep::Sweep;
 use upkeep::{Backup, Check};
 
 /// Frictional contact with memory, exactly: a service, and the same on the command line.
@@ -49,6 +51,8 @@ enum Command {
     },
     /// Find a path that leaves little shear stress, and print the reply of POST /protocols.
     Protocol(Protocol),
+    /// Run the body of POST /sweep from a file and print the table.
+    Sweep(Sweep),
     /// Print the OpenAPI document.
     Openapi,
     /// Ask a running service whether it is well; for container health checks.
@@ -99,6 +103,7 @@ impl Command {
             Command::Config(_) => print(settings),
             Command::Simulate { file } => simulate::simulate(&file),
             Command::Protocol(protocol) => protocol.run(),
+            Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
             Command::Key(key) => key::key(key),

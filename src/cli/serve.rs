@@ -9,6 +9,7 @@ use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use stickslip::api::headers::Origin;
 use stickslip::api::{self, Access, App, Door, bound};
+use stickslip::jobs::{self, Jobs};
 use stickslip::sessions::{self, Sessions};
 use stickslip::simulation::Pool;
 use stickslip::store::{self, Store};
@@ -27,6 +28,9 @@ const LAST_WORK: Duration = Duration::from_millis(500);
 
 /// The shortest time after which an idle contact may expire.
 const SHORTEST_IDLE_TIME: Duration = Duration::from_secs(1);
+
+/// The shortest lease on a part of a job: a renewal must come in time.
+const SHORTEST_LEASE: Duration = Duration::from_secs(1);
 
 /// The settings. Each comes as a flag, from the environment or from the file, whatever it is: `settings` sees to that.
 #[derive(Args)]
@@ -57,6 +61,9 @@ pub struct Serve {
     /// Delete contacts that have not moved for so long, such as 30d or 12h; left out, they stay.
     #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = idle_time)]
     expire_after: Option<Duration>,
+    /// How long a process may be silent before others on the same database take the parts of jobs that it works on.
+    #[arg(long, env = "STICKSLIP_JOB_LEASE", default_value_t = humantime::Duration::from(jobs::LEASE), value_parser = lease)]
+    job_lease: humantime::Duration,
     #[command(flatten)]
     overload: Overload,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
@@ -158,6 +165,11 @@ fn idle_time(text: &str) -> Result<Duration, String> {
     if time < SHORTEST_IDLE_TIME { Err(format!("at least {SHORTEST_IDLE_TIME:?}")) } else { Ok(time) }
 }
 
+fn lease(text: &str) -> Result<humantime::Duration, String> {
+    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
+    if time < SHORTEST_LEASE { Err(format!("at least {SHORTEST_LEASE:?}")) } else { Ok(time.into()) }
+}
+
 fn filter(text: &str) -> Result<String, String> {
     EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
@@ -180,10 +192,12 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     let door = Door::new(options.overload.connections());
     let memory_bound = bound::memory(door.limits(), pool.capacity(), options.cache_bytes.as_u64());
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
+    let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);
+    tokio::spawn(jobs.clone().work(options.job_lease.into()));
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
-    let app = App { sessions, pool, access };
+    let app = App { sessions, jobs, pool, access };
     api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))
 }

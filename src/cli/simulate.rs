@@ -20,7 +20,7 @@ pub fn simulate(file: &Path) -> Result<(), String> {
     print(json(&reply))
 }
 
-/// A file, or standard input for `-`.
+/// The content of a file, or of standard input for `-`.
 pub fn read(file: &Path) -> Result<Vec<u8>, String> {
     let mut body = Vec::new();
     let read = if file.as_os_str() == "-" {
@@ -28,11 +28,10 @@ pub fn read(file: &Path) -> Result<Vec<u8>, String> {
     } else {
         File::open(file).and_then(|mut file| file.read_to_end(&mut body))
     };
-    read.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
-    Ok(body)
+    read.map(|_| body).map_err(|error| format!("cannot read {}: {error}", file.display()))
 }
 
-/// A document for people.
+/// A value as JSON for people.
 pub fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| error.to_string())
 }

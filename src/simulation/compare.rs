@@ -13,7 +13,7 @@ use crate::wire::{
     SolverKind, limits,
 };
 
-use super::run::{contact, follow, foundation, protocol, stresses};
+use super::run::{contact, equal_peaks, follow, foundation, stresses};
 use super::{Failure, Solver, Stop};
 
 /// The reference is held to this part of the tolerance: four times the chords, with a sixteenth of their error.
@@ -55,7 +55,7 @@ pub fn compare(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Fa
     let Comparison { setup, plan, tolerance, .. } = comparison;
     let begin = Instant::now();
     let start = contact(setup.clone(), "/contact")?;
-    let protocol = protocol(plan, &start)?;
+    let protocol = equal_peaks(plan, &start)?;
     let follows = |tolerance: f64| -> Result<_, Failure> {
         let (mut truth, mut load) = (start.clone(), start.normal_force());
         let mut forces = Vec::with_capacity(plan.length());

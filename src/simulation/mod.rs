@@ -9,9 +9,12 @@ pub mod cost;
 mod pool;
 mod protocol;
 mod robustness;
+mod rows;
 mod run;
+mod shape;
 mod solver;
 mod stop;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod warnings;
@@ -21,9 +24,11 @@ pub use pool::{
     BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, PoolMeters, QUEUE, REQUESTS, Reservation, Taken,
 };
 pub use protocol::{Subject, protocol, protocol_for};
+pub use rows::Rows;
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
+pub use sweep::{Sweep, SweepError, Workers};
 pub use warnings::{Seen, missed, news, warnings};
 
 use std::time::Duration;
@@ -61,6 +66,26 @@ pub enum Failure {
     /// Nobody is waiting for the result any longer.
     #[error("stopped, as nobody waits for the result any longer")]
     Stopped,
+}
+
+impl Failure {
+    /// The code that `POST /simulate` refuses it with.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Failure::Refused { error, .. } => match error {
+                mechanics::Error::OutOfRange { .. } | mechanics::Error::Table { .. } => "invalid_input",
+                mechanics::Error::BeyondProfile { .. } => "beyond_profile",
+                mechanics::Error::NotConvexEnough { .. } => "profile_not_convex_enough",
+                mechanics::Error::ForceExceedsFriction { .. } => "force_exceeds_friction",
+                mechanics::Error::BrokenOff => "too_much_work",
+                mechanics::Error::Unsupported { .. } => "unsupported_move",
+            },
+            Failure::MemoryFull { .. } => "conflict",
+            Failure::TooLong { .. } => "too_much_work",
+            Failure::Stopped => "overloaded",
+        }
+    }
 }
 
 /// The member of the wire documents that an error is about, if it is about one.

@@ -247,6 +247,27 @@ impl Pool {
         &self.0.meters
     }
 
+    /// Does work on as many threads as are free, one at least: it is told how many they are, and is to be short, as it may have
+    /// taken all of them.
+    ///
+    /// # Errors
+    /// As [`Pool::run`].
+    pub async fn share<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(usize) -> T + Send + 'static,
+    ) -> Result<T, PoolError> {
+        let meters = Arc::clone(&self.0.meters);
+        let mut permit = self.permits(&self.0.threads, 1).await?;
+        while let Ok(another) = Arc::clone(&self.0.threads).try_acquire_owned() {
+            permit.merge(another);
+        }
+        let task = spawn_blocking(move || {
+            let _running: Vec<_> = (0..permit.num_permits()).map(|_| meters.running.enter()).collect();
+            meters.timed(|| work(permit.num_permits()))
+        });
+        task.await.map_err(|_| PoolError::Panicked)
+    }
+
     /// Does the work: at once if it is cheap, else on a thread of its own. What costs nothing is not counted.
     ///
     /// # Errors

@@ -17,6 +17,8 @@ pub struct Stop(Arc<Flag>);
 struct Flag {
     raised: AtomicBool,
     allowed: Option<Duration>,
+    // Goes up with this one as well.
+    whole: Option<Stop>,
     // The first look at the flag: what a request has waited for a thread is not held against it.
     begun: OnceLock<Instant>,
 }
@@ -40,6 +42,19 @@ impl Stop {
         (stop.clone(), StopOnDrop(stop))
     }
 
+    /// A flag that goes up when the guard is dropped, and not before.
+    #[must_use]
+    pub fn unbounded() -> (Stop, StopOnDrop) {
+        let stop = Stop::default();
+        (stop.clone(), StopOnDrop(stop))
+    }
+
+    /// A flag for a part of the work: it goes up with this one, or when the part has taken so long.
+    #[must_use]
+    pub fn within_it(&self, allowed: Duration) -> Stop {
+        Stop(Arc::new(Flag { allowed: Some(allowed), whole: Some(self.clone()), ..Flag::default() }))
+    }
+
     /// How long the work may take, if there is a bound.
     #[must_use]
     pub fn allowed(&self) -> Option<Duration> {
@@ -51,6 +66,9 @@ impl Stop {
     /// # Errors
     /// [`Failure::Stopped`] if the guard is gone, [`Failure::TooLong`] if the time is up.
     pub fn check(&self) -> Result<(), Failure> {
+        if let Some(whole) = &self.0.whole {
+            whole.check()?;
+        }
         // Nothing is published through the flag, so that no ordering is needed.
         if self.0.raised.load(Ordering::Relaxed) {
             return Err(Failure::Stopped);

@@ -1,5 +1,7 @@
 //! Everything in the process: fast, and gone when it ends.
 
+mod jobs;
+
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -22,6 +24,8 @@ const RECEIPT_OVERHEAD: usize = 256;
 pub struct MemoryStore {
     // A std mutex: it is held for a lookup, a push or a page of copies, never across an await.
     inner: Mutex<Inner>,
+    // Locked after the others, where both are.
+    jobs: jobs::Jobs,
     changes: Changes,
 }
 
@@ -223,6 +227,7 @@ impl Store for MemoryStore {
     }
 
     fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
+        self.jobs.sweep();
         let mut inner = self.lock();
         inner.receipts.sweep();
         let idle: Vec<Uuid> = idle_since.map_or_else(Vec::new, |since| {

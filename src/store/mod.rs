@@ -7,6 +7,7 @@
 
 pub mod changes;
 pub mod commits;
+pub mod jobs;
 pub mod memory;
 pub mod open;
 pub mod postgres;
@@ -22,6 +23,7 @@ use crate::wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;
+pub use jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
 pub use memory::MemoryStore;
 pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
@@ -151,6 +153,9 @@ pub enum StoreError {
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
+    /// The tenant has as many jobs as it may, and says what there is too much of.
+    #[error("{0}")]
+    TooManyJobs(String),
     /// There is no room left. Nothing has changed.
     #[error("the storage is full: {0}")]
     Full(String),
@@ -167,7 +172,7 @@ pub type Answer<'a, T> = BoxFuture<'a, Result<T, StoreError>>;
 
 /// A place to keep sessions. It tells whose they are, and leaves it to its callers to keep tenants apart: an identifier is as
 /// good as any other here.
-pub trait Store: Send + Sync + 'static {
+pub trait Store: JobStore {
     /// Whether it can serve.
     fn ready(&self) -> Answer<'_, ()>;
 
@@ -207,7 +212,7 @@ pub trait Store: Send + Sync + 'static {
     fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()>;
 
     /// Deletes receipts past [`RECEIPT_LIFETIME`], and, where `idle_since` is given, the sessions that have not moved since.
-    /// Those are [`StoreError::Expired`] from then on. Returns how many sessions went.
+    /// Those are [`StoreError::Expired`] from then on. Jobs go too whose time is over. Returns how many sessions went.
     fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64>;
 
     /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.

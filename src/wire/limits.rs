@@ -50,6 +50,22 @@ pub const FAULTS: usize = 100;
 pub const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
 /// Points of a tabulated profile.
 pub const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
+/// Axes of a sweep.
+pub const SWEEP_AXES: RangeInclusive<usize> = 1..=3;
+/// Values of an axis that is a linear or logarithmic span, both ends included.
+pub const AXIS_COUNT: RangeInclusive<usize> = 2..=2_000_000;
+/// Values of an axis that lists them.
+pub const AXIS_VALUES: RangeInclusive<usize> = 1..=10_000;
+/// A value of an axis; the field that it goes to has a range of its own.
+pub const AXIS_NUMBER: Range = Range { quantity: "value of an axis", unit: "", min: -1e280, max: 1e280 };
+/// Outputs of a sweep.
+pub const SWEEP_OUTPUTS: RangeInclusive<usize> = 1..=16;
+/// Points of a sweep: the product of the counts of its axes.
+pub const SWEEP_POINTS: usize = 2_000_000;
+/// Numbers that come out of a sweep: points times outputs.
+pub const SWEEP_NUMBERS: usize = 8_000_000;
+/// Points without an answer that the reply to a sweep lists; all of them are counted.
+pub const SWEEP_FAILURES: usize = 100;
 
 /// The range of a count that the mechanics has among its quantities.
 const fn count(range: &Range) -> RangeInclusive<usize> {

@@ -8,13 +8,16 @@
 //! which member is meant. Numbers that are not finite leave as `null`.
 
 pub mod accuracy;
+pub mod any;
 pub mod check;
 pub mod definition;
 pub mod event;
+pub mod job;
 pub mod limits;
 mod one_key;
 pub mod parse;
 pub mod path;
+pub mod pluck;
 pub mod problem;
 pub mod profile;
 pub mod protocol;
@@ -24,12 +27,14 @@ pub mod simulate;
 mod slope;
 pub mod stress;
 mod strict;
+pub mod sweep;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{At, Fault, Faults};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
-pub use parse::{Document, Rejection, parse, read};
+pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
+pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
 pub use problem::ProblemDocument;
 pub use profile::{Profile, SphereProfile};
@@ -41,3 +46,4 @@ pub use session::{
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
+pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};

@@ -1,6 +1,7 @@
 //! From bytes to a typed document, with a pointer to whatever does not fit.
 
 use serde::de::{DeserializeOwned, IgnoredAny};
+use serde_json::Value;
 use serde_path_to_error::{Deserializer, Path, Segment, Track};
 
 use crate::mechanics;
@@ -76,6 +77,16 @@ pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
             Ok(()) => Err(Rejection::Invalid(vec![fault(&track.path(), &error.to_string())])),
         },
     }
+}
+
+/// Parses a document that has been read as a value already.
+///
+/// # Errors
+/// The fault if it is another document than asked for.
+pub fn parse_value<T: DeserializeOwned>(value: &Value) -> Result<T, Fault> {
+    let mut track = Track::new();
+    let parsed = T::deserialize(Strict(Deserializer::new(value, &mut track)));
+    parsed.map_err(|error| fault(&track.path(), &error.to_string()))
 }
 
 fn well_formed(body: &[u8]) -> Result<(), String> {

@@ -15,6 +15,7 @@ use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::api::{self, Access, App};
 use stickslip::client::Client;
+use stickslip::jobs::Jobs;
 use stickslip::sessions::{CAPACITY, Sessions};
 use stickslip::simulation::Pool;
 use stickslip::store::{MemoryStore, Store};
@@ -36,15 +37,23 @@ impl Server {
     /// A server over a store, with so many bytes of states at hand.
     pub async fn with(store: Arc<dyn Store>, capacity: usize) -> Server {
         let pool = Pool::of_the_machine();
+        let jobs = Jobs::new(Arc::clone(&store), pool.clone());
         let sessions = Sessions::new(store, pool.clone(), capacity);
-        Server::over(sessions, pool).await
+        Server::of(sessions, jobs, pool).await
     }
 
-    /// A server over sessions that the test has its hands on too.
+    /// A server over sessions that the test has its hands on too; jobs are kept apart from them.
     pub async fn over(sessions: Sessions, pool: Pool) -> Server {
+        let jobs = Jobs::new(Arc::new(MemoryStore::new()), pool.clone());
+        Server::of(sessions, jobs, pool).await
+    }
+
+    async fn of(sessions: Sessions, jobs: Jobs, pool: Pool) -> Server {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let base = format!("http://{}", listener.local_addr().unwrap());
-        tokio::spawn(api::serve(listener, App { sessions, pool, access: Access::default() }, std::future::pending()));
+        tokio::spawn(jobs.clone().work(stickslip::jobs::LEASE));
+        let app = App { sessions, jobs, pool, access: Access::default() };
+        tokio::spawn(api::serve(listener, app, std::future::pending()));
         Server { client: Client::new(&base), base, http: reqwest::Client::new() }
     }
 

@@ -4,6 +4,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 mod changes;
+mod jobs;
 mod keys;
 mod life;
 mod numbers;
@@ -39,6 +40,8 @@ pub async fn are_kept<F: Future<Output = Arc<dyn Store>>>(store: impl Fn() -> F)
     sweeping::receipts_in_their_time_survive_a_sweep(&*store().await).await;
     tenants::a_session_is_its_tenants_for_ever(&*store().await).await;
     tenants::who_asks_for_what_has_expired_is_told_whose_it_was(&*store().await).await;
+    jobs::each_chunk_is_given_once_and_heard_once(&*store().await).await;
+    jobs::a_taken_key_or_a_full_tenant_takes_no_job(&*store().await).await;
     changes::whoever_waits_is_woken_by_a_change(&*store().await).await;
 }
 

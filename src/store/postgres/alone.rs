@@ -144,7 +144,8 @@ impl Link {
         Ok(gone)
     }
 
-    async fn announce(&self, transaction: &Transaction<'_>, ids: &[Uuid]) -> Result<(), Fault> {
+    /// Announces changes when the transaction is committed.
+    pub(super) async fn announce(&self, transaction: &Transaction<'_>, ids: &[Uuid]) -> Result<(), Fault> {
         if self.announces && !ids.is_empty() {
             execute(transaction, sql::NOTIFY, &[&sql::CHANNEL, &announcements(ids)]).await?;
         }
@@ -192,13 +193,19 @@ async fn sweep_receipts(connection: &Object) -> Result<u64, Fault> {
     Ok(connection.execute(&statement, &[&RECEIPT_LIFETIME.as_secs_f64(), &RECEIPTS]).await?)
 }
 
-async fn begin(connection: &mut Object) -> Result<Transaction<'_>, Fault> {
+/// Begins a transaction that may take long.
+pub(super) async fn begin(connection: &mut Object) -> Result<Transaction<'_>, Fault> {
     let transaction = connection.build_transaction().isolation_level(IsolationLevel::ReadCommitted).start().await?;
     transaction.batch_execute(sql::ALLOW_LONG).await?;
     Ok(transaction)
 }
 
-async fn execute(transaction: &Transaction<'_>, statement: &str, parameters: &[Parameter<'_>]) -> Result<u64, Fault> {
+/// Tells how many rows a statement has touched.
+pub(super) async fn execute(
+    transaction: &Transaction<'_>,
+    statement: &str,
+    parameters: &[Parameter<'_>],
+) -> Result<u64, Fault> {
     let statement = transaction.prepare_cached(statement).await?;
     Ok(transaction.execute(&statement, parameters).await?)
 }

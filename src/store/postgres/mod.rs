@@ -12,6 +12,7 @@ mod explain;
 mod fault;
 mod flight;
 mod job;
+mod jobs;
 mod link;
 mod listen;
 mod rows;
@@ -240,6 +241,7 @@ impl Store for PostgresStore {
 
     fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
         async move {
+            self.link.sweep_jobs().await?;
             let gone = self.link.sweep(idle_since).await?;
             gone.iter().for_each(|id| self.changes.wake(*id));
             Ok(gone.len() as u64)

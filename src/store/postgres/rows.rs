@@ -19,12 +19,14 @@ pub(super) fn split(at: Timestamp) -> (SystemTime, i16) {
     (whole.into(), i16::try_from(beyond).unwrap_or_default())
 }
 
-fn joined(whole: SystemTime, beyond: i16) -> Result<Timestamp, StoreError> {
+/// The same back.
+pub(super) fn joined(whole: SystemTime, beyond: i16) -> Result<Timestamp, StoreError> {
     let whole = Timestamp::try_from(whole).map_err(|error| odd(&error))?;
     Timestamp::from_nanosecond(whole.as_nanosecond() + i128::from(beyond)).map_err(|error| odd(&error))
 }
 
-fn odd(error: &dyn std::fmt::Display) -> StoreError {
+/// A row that is not as this program writes it.
+pub(super) fn odd(error: &dyn std::fmt::Display) -> StoreError {
     StoreError::Failed(format!("a row cannot be read: {error}"))
 }
 

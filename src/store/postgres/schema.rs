@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use tokio_postgres::{Client, Error};
 
 /// The migrations, oldest first. A published one is never edited: the version of a database is how many it has seen.
-const MIGRATIONS: [&str; 2] = [TABLES, TENANTS];
+const MIGRATIONS: [&str; 3] = [TABLES, TENANTS, JOBS];
 
 const TABLES: &str = "
 CREATE TABLE contacts (
@@ -67,6 +67,35 @@ const TENANTS: &str = "
 ALTER TABLE contacts ADD COLUMN tenant text NOT NULL DEFAULT '';
 ALTER TABLE expired ADD COLUMN tenant text NOT NULL DEFAULT '';
 CREATE INDEX contacts_by_tenant ON contacts (tenant, id);
+";
+
+/// Jobs, and the chunks that they are done in.
+const JOBS: &str = "
+CREATE TABLE jobs (
+    id uuid PRIMARY KEY,
+    tenant text NOT NULL,
+    created_at timestamptz NOT NULL,
+    created_ns smallint NOT NULL,
+    finished_at timestamptz,
+    error text,
+    points bigint NOT NULL,
+    chunk bigint NOT NULL,
+    done bigint NOT NULL,
+    failed bigint NOT NULL,
+    bytes bigint NOT NULL,
+    cost bigint NOT NULL,
+    request text NOT NULL
+);
+CREATE INDEX jobs_by_tenant ON jobs (tenant);
+CREATE TABLE job_chunks (
+    job uuid NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+    chunk bigint NOT NULL,
+    owner uuid,
+    leased_until timestamptz,
+    content bytea,
+    PRIMARY KEY (job, chunk)
+);
+CREATE INDEX job_chunks_open ON job_chunks (job, chunk) WHERE content IS NULL;
 ";
 
 /// Held while the tables are made, so that of several replicas that start together one makes them: "stickslip" in ASCII,

@@ -166,3 +166,76 @@ WITH RECURSIVE owners (contact) AS (
 )
 SELECT contact FROM owners
 WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.id = owners.contact)";
+
+/// Held while the jobs of a tenant are counted and another is made.
+pub(super) const LOCK_TENANT: &str = "SELECT pg_advisory_xact_lock($1)";
+
+pub(super) const JOBS_OF_TENANT: &str = "
+SELECT count(*), coalesce(sum(bytes), 0)::bigint,
+    coalesce(sum(CASE WHEN finished_at IS NULL THEN cost ELSE 0 END), 0)::bigint
+FROM jobs WHERE tenant = $1";
+
+pub(super) const CREATE_JOB: &str = "
+INSERT INTO jobs (id, tenant, created_at, created_ns, points, chunk, done, failed, bytes, cost, request)
+VALUES ($1, $2, $3, $4, $5, $6, 0, 0, $7, $8, $9)";
+
+pub(super) const CREATE_CHUNKS: &str = "
+INSERT INTO job_chunks (job, chunk) SELECT $1::uuid, chunk FROM generate_series(0::bigint, $2::bigint - 1) AS chunk";
+
+pub(super) const KEEP_RECEIPT: &str = "
+INSERT INTO receipts (key, fingerprint, created, sequence, body) VALUES ($1, $2, $3, $4, $5)";
+
+pub(super) const JOB: &str = "
+SELECT id, tenant, created_at, created_ns, finished_at, error, points, chunk, done, failed, bytes, cost
+FROM jobs WHERE id = $1";
+
+pub(super) const JOB_REQUEST: &str = "SELECT request FROM jobs WHERE id = $1";
+
+/// Takes a chunk of a job beyond `$1` that nobody works on, or whose holder has not been heard of for so long.
+pub(super) const CLAIM: &str = "
+WITH next AS (
+    SELECT job, chunk FROM job_chunks
+    WHERE content IS NULL AND job > $1 AND (leased_until IS NULL OR leased_until < now())
+    ORDER BY job, chunk LIMIT 1 FOR UPDATE SKIP LOCKED
+)
+UPDATE job_chunks SET owner = $2, leased_until = now() + $3::double precision * INTERVAL '1 second'
+FROM next WHERE job_chunks.job = next.job AND job_chunks.chunk = next.chunk
+RETURNING job_chunks.job, job_chunks.chunk";
+
+pub(super) const RENEW: &str = "
+UPDATE job_chunks SET leased_until = now() + $4::double precision * INTERVAL '1 second'
+WHERE job = $1 AND chunk = $2 AND owner = $3 AND content IS NULL
+RETURNING chunk";
+
+pub(super) const RELEASE: &str = "
+UPDATE job_chunks SET owner = NULL, leased_until = NULL
+WHERE job = $1 AND chunk = $2 AND owner = $3 AND content IS NULL";
+
+/// Locks a job that has not ended: before its chunks, as deleting it does.
+pub(super) const LOCK_JOB: &str = "SELECT id FROM jobs WHERE id = $1 AND finished_at IS NULL FOR UPDATE";
+
+pub(super) const KEEP_CHUNK: &str = "
+UPDATE job_chunks SET content = $3, owner = NULL, leased_until = NULL
+WHERE job = $1 AND chunk = $2 AND content IS NULL";
+
+pub(super) const COUNT_CHUNK: &str = "
+UPDATE jobs SET done = done + $2, failed = failed + $3,
+    finished_at = CASE WHEN done + $2 = points THEN clock_timestamp() END
+WHERE id = $1";
+
+pub(super) const FAIL_JOB: &str = "UPDATE jobs SET finished_at = now(), error = $2 WHERE id = $1";
+
+pub(super) const DROP_CHUNKS: &str = "DELETE FROM job_chunks WHERE job = $1 AND content IS NULL";
+
+pub(super) const CHUNKS: &str = "
+SELECT content FROM job_chunks WHERE job = $1 AND chunk >= $2 AND content IS NOT NULL ORDER BY chunk LIMIT $3";
+
+pub(super) const DELETE_JOB: &str = "DELETE FROM jobs WHERE id = $1";
+
+/// Jobs whose time is over, some at a time. What another replica is deleting is left to it.
+pub(super) const SWEEP_JOBS: &str = "
+DELETE FROM jobs WHERE id IN (
+    SELECT id FROM jobs
+    WHERE finished_at < now() - $1::double precision * INTERVAL '1 second'
+        OR created_at < now() - $2::double precision * INTERVAL '1 second'
+    LIMIT $3 FOR UPDATE SKIP LOCKED)";

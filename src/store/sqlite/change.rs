@@ -7,6 +7,7 @@ use uuid::Uuid;
 use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
 use super::fork;
+use super::jobs::JobChange;
 use super::known::Known;
 use super::rows::{MOVE_COLUMNS, bound, insert_move, integer, nanoseconds, natural, tenant};
 
@@ -24,6 +25,7 @@ pub(super) enum Change {
     KeepSnapshot { id: Uuid, snapshot: Snapshot },
     SweepReceipts,
     Expire { ids: Vec<Uuid>, since: Timestamp },
+    Job(JobChange),
 }
 
 /// A session to be copied with its past.
@@ -70,6 +72,7 @@ impl Change {
         match self {
             Change::Append { id, .. } | Change::Delete { id, .. } => std::slice::from_ref(id),
             Change::Expire { ids, .. } => ids,
+            Change::Job(change) => change.touched(),
             Change::Create { .. } | Change::Fork(_) | Change::KeepSnapshot { .. } | Change::SweepReceipts => &[],
         }
     }
@@ -112,6 +115,7 @@ impl Change {
                 let sequence = integer(snapshot.sequence)?;
                 database.prepare_cached(sql)?.execute(params![id.to_string(), sequence, snapshot.state])?;
             }
+            Change::Job(change) => return change.make(database),
             Change::SweepReceipts => return Ok(Done::Made(sweep_receipts(database)?)),
             Change::Expire { ids, since } => {
                 let mut gone = 0;

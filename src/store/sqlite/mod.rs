@@ -10,6 +10,7 @@ mod change;
 mod fault;
 mod file;
 mod fork;
+mod jobs;
 mod known;
 mod read;
 mod readers;
@@ -28,6 +29,7 @@ use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
+use super::jobs::Board;
 use super::{Answer, Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
 use crate::wire::SessionSummary;
 use change::{Change, Fork};
@@ -50,6 +52,7 @@ pub struct SqliteStore {
     readers: Readers,
     changes: Arc<Changes>,
     commits: Arc<Commits>,
+    board: Board,
 }
 
 impl SqliteStore {
@@ -59,6 +62,8 @@ impl SqliteStore {
     /// Why it cannot be used, in one line. The file is as it was then.
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
         let file::Opened { database, lock } = file::open(path)?;
+        let board = Board::default();
+        jobs::unfinished(&database, &board).map_err(|error| error.to_string())?;
         let changes = Arc::new(Changes::default());
         let commits = Arc::new(Commits::new("sqlite"));
         let writer =
@@ -71,7 +76,7 @@ impl SqliteStore {
         });
         let thread = thread.map_err(|error| error.to_string())?;
         let readers = Readers::new(path.to_owned(), Some(lock));
-        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes, commits })
+        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes, commits, board })
     }
 
     /// Opens a file to look at, beside the process that serves it or alone. Changes fail.
@@ -81,7 +86,8 @@ impl SqliteStore {
     pub fn open_to_read(path: &Path) -> Result<SqliteStore, String> {
         backup::look(path)?;
         let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-        Ok(SqliteStore { queue: None, writer: None, readers: Readers::new(path.to_owned(), None), changes, commits })
+        let (readers, board) = (Readers::new(path.to_owned(), None), Board::default());
+        Ok(SqliteStore { queue: None, writer: None, readers, changes, commits, board })
     }
 
     /// Copies the store in a file to another that is not there yet, while it is in use or not; says how many bytes that has.
@@ -114,6 +120,7 @@ impl SqliteStore {
 
     async fn sweep_all(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError> {
         while self.change(Change::SweepReceipts).await? > 0 {}
+        self.sweep_jobs().await?;
         let Some(since) = idle_since else { return Ok(0) };
         let (mut gone, mut next) = (0, Some(0));
         while let Some(after) = next {

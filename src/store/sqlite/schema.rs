@@ -8,7 +8,7 @@ use rusqlite::Connection;
 pub(super) const APPLICATION: i32 = 0x7374_636b;
 
 /// What leads from each version to the next; the first one from nothing.
-const VERSIONS: [&str; 3] = [VERSION_1, VERSION_2, VERSION_3];
+const VERSIONS: [&str; 4] = [VERSION_1, VERSION_2, VERSION_3, VERSION_4];
 
 /// The version that this program writes.
 pub(super) const NEWEST: i32 = VERSIONS.len() as i32;
@@ -133,6 +133,31 @@ SELECT
 FROM contacts AS c
 LEFT JOIN moves AS m
     ON m.contact = c.number AND m.sequence = (SELECT max(sequence) FROM moves WHERE contact = c.number);
+";
+
+/// Jobs, and what came of their chunks.
+const VERSION_4: &str = "
+CREATE TABLE jobs (
+    number INTEGER PRIMARY KEY,
+    id TEXT NOT NULL UNIQUE,
+    tenant TEXT NOT NULL,
+    created_at INTEGER NOT NULL,
+    finished_at INTEGER,
+    error TEXT,
+    points INTEGER NOT NULL,
+    chunk INTEGER NOT NULL,
+    done INTEGER NOT NULL,
+    failed INTEGER NOT NULL,
+    bytes INTEGER NOT NULL,
+    cost INTEGER NOT NULL,
+    request TEXT NOT NULL
+) STRICT;
+CREATE TABLE job_chunks (
+    job INTEGER NOT NULL REFERENCES jobs (number) ON DELETE CASCADE,
+    chunk INTEGER NOT NULL,
+    content BLOB NOT NULL,
+    PRIMARY KEY (job, chunk)
+) STRICT;
 ";
 
 /// The version of a database; nought where there is nothing in it yet.

@@ -1,0 +1,244 @@
+//! Sweeps, at once or as jobs that go on after their request has been answered.
+//!
+//! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks under
+//! way and no others, and whoever works on the same store goes on with the rest. Jobs take turns, chunk by chunk. What a
+//! tenant may ask for is bounded in number, bytes and work.
+
+mod error;
+mod events;
+mod work;
+
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use jiff::Timestamp;
+use tokio::sync::{Notify, Semaphore, watch};
+use uuid::Uuid;
+
+use crate::simulation::cost::{INLINE, Nanoseconds};
+use crate::simulation::{Pool, Rows, Stop, Sweep, Workers};
+use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
+use crate::wire::sweep::Draft;
+use crate::wire::{self, JobProgress, JobReply, JobState, SweepRequest};
+
+pub use error::JobError;
+pub use events::Happening;
+
+/// Clients that may follow jobs at a time.
+pub const STREAMS: usize = 250;
+/// A sweep of more work than this becomes a job.
+pub const AT_ONCE: Nanoseconds = 1_000_000_000;
+/// What the jobs of a tenant may come to.
+pub const LIMITS: JobLimits = JobLimits { jobs: 50, bytes: 512 * 1024 * 1024, cost: 48 * HOUR };
+/// What one job may cost.
+pub const LARGEST_JOB: Nanoseconds = 12 * HOUR;
+/// How long a process may be silent before others take what it works on.
+pub const LEASE: Duration = Duration::from_secs(30);
+
+const HOUR: Nanoseconds = 3_600_000_000_000;
+/// Bytes of a number in a result, stored or at hand.
+const NUMBER_BYTES: usize = 8;
+/// What a job takes beside its request and its result.
+const JOB_BYTES: usize = 4_096;
+/// Chunks that are read from the store at a time.
+const CHUNKS_AT_ONCE: usize = 16;
+
+/// The jobs of a tenant. Clones, and those of other tenants, are handles on the same.
+#[derive(Clone)]
+pub struct Jobs {
+    tenant: Tenant,
+    common: Arc<Common>,
+}
+
+struct Common {
+    store: Arc<dyn Store>,
+    pool: Pool,
+    // Made with the first sweep.
+    workers: OnceLock<Result<Workers, String>>,
+    // Tells those who work that there is something to do.
+    new: Notify,
+    // What this process calls itself where it takes chunks.
+    owner: Uuid,
+    streams: Arc<Semaphore>,
+    ending: watch::Sender<bool>,
+}
+
+impl Jobs {
+    /// Jobs in a store, of the tenant without a name.
+    #[must_use]
+    pub fn new(store: Arc<dyn Store>, pool: Pool) -> Jobs {
+        let common = Common {
+            store,
+            pool,
+            workers: OnceLock::new(),
+            new: Notify::new(),
+            owner: Uuid::now_v7(),
+            streams: Arc::new(Semaphore::new(STREAMS)),
+            ending: watch::Sender::new(false),
+        };
+        Jobs { tenant: Tenant::default(), common: Arc::new(common) }
+    }
+
+    /// The jobs of another tenant.
+    #[must_use]
+    pub fn of(&self, tenant: Tenant) -> Jobs {
+        Jobs { tenant, common: Arc::clone(&self.common) }
+    }
+
+    /// Computes a sweep at once.
+    ///
+    /// # Errors
+    /// [`JobError::Sweep`] if it was stopped or took too long.
+    pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<Rows, JobError> {
+        Ok(sweep.compute(0..sweep.points(), &self.common.pool, self.workers()?, stop, None).await?)
+    }
+
+    fn workers(&self) -> Result<&Workers, JobError> {
+        let made = self.common.workers.get_or_init(|| Workers::new(self.common.pool.capacity().threads));
+        made.as_ref().map_err(|why| JobError::Broken(format!("no threads for sweeps: {why}")))
+    }
+
+    /// Makes a job of a sweep. The reply is the job as it stands then.
+    ///
+    /// # Errors
+    /// [`JobError`]; no job has been made then.
+    pub async fn start(&self, sweep: &Sweep, key: Option<RequestKey>) -> Result<Reply, JobError> {
+        let key = key.map(|key| key.of(&self.tenant));
+        if let Some(reply) = self.earlier(key.as_ref()).await? {
+            return Ok(reply);
+        }
+        if sweep.cost() > LARGEST_JOB {
+            let seconds = |cost| Duration::from_nanos(cost).as_secs();
+            return Err(JobError::TooMuch { wanted: seconds(sweep.cost()), allowed: seconds(LARGEST_JOB) });
+        }
+        let request =
+            serde_json::to_string(&sweep.draft().request).map_err(|error| JobError::Broken(error.to_string()))?;
+        let bytes = request.len() + sweep.numbers(sweep.points()) * NUMBER_BYTES + JOB_BYTES;
+        let job = Job {
+            id: Uuid::now_v7(),
+            tenant: self.tenant.clone(),
+            created_at: Timestamp::now(),
+            finished_at: None,
+            error: None,
+            points: sweep.points() as u64,
+            chunk: sweep.chunk() as u64,
+            done: 0,
+            failed: 0,
+            bytes: bytes as u64,
+            cost: sweep.cost(),
+        };
+        let body = serde_json::to_vec(&told(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
+        let reply = Reply { created: Some(job.id), sequence: 0, body };
+        let receipt = key.clone().map(|request| Receipt { request, reply: reply.clone() });
+        match self.common.store.create_job(job, request, LIMITS, receipt).await {
+            Ok(()) => {
+                self.common.new.notify_waiters();
+                Ok(reply)
+            }
+            // A twin of the request was faster.
+            Err(StoreError::KeyTaken) => self.earlier(key.as_ref()).await?.ok_or(JobError::Store(StoreError::KeyTaken)),
+            Err(error) => Err(JobError::Store(error)),
+        }
+    }
+
+    /// The reply that an earlier request with the same key got.
+    async fn earlier(&self, request: Option<&RequestKey>) -> Result<Option<Reply>, JobError> {
+        let Some(request) = request else { return Ok(None) };
+        match self.common.store.receipt(&request.key).await.map_err(JobError::Store)? {
+            None => Ok(None),
+            Some(receipt) if receipt.request.fingerprint == request.fingerprint => Ok(Some(receipt.reply)),
+            Some(_) => Err(JobError::KeyReused),
+        }
+    }
+
+    async fn own(&self, id: Uuid) -> Result<Job, JobError> {
+        let refused =
+            |error| if matches!(error, StoreError::NotFound) { JobError::NotFound(id) } else { JobError::Store(error) };
+        let job = self.common.store.job(id).await.map_err(refused)?;
+        if job.tenant == self.tenant { Ok(job) } else { Err(JobError::NotFound(id)) }
+    }
+
+    /// How a job stands.
+    ///
+    /// # Errors
+    /// [`JobError::NotFound`], or a failure of the store.
+    pub async fn get(&self, id: Uuid) -> Result<JobReply, JobError> {
+        self.own(id).await.map(|job| told(&job))
+    }
+
+    /// Bytes that the result of a job takes at hand.
+    ///
+    /// # Errors
+    /// [`JobError::NotFound`], [`JobError::Unfinished`], [`JobError::Failed`], or a failure of the store.
+    pub async fn size(&self, id: Uuid) -> Result<usize, JobError> {
+        let job = self.own(id).await?;
+        match (job.finished_at, job.error) {
+            (_, Some(error)) => Err(JobError::Failed(error)),
+            (None, None) => Err(JobError::Unfinished { done: job.done, points: job.points }),
+            (Some(_), None) => Ok(usize::try_from(2 * job.bytes).unwrap_or(usize::MAX)),
+        }
+    }
+
+    /// What was asked for, and what came of it.
+    ///
+    /// # Errors
+    /// As [`Jobs::size`].
+    pub async fn result(&self, id: Uuid) -> Result<(Draft, Rows), JobError> {
+        self.size(id).await?;
+        let job = self.own(id).await?;
+        let refused =
+            |error| if matches!(error, StoreError::NotFound) { JobError::NotFound(id) } else { JobError::Store(error) };
+        let request = self.common.store.job_request(id).await.map_err(refused)?;
+        let read = move || wire::read::<SweepRequest>(request.as_bytes());
+        let draft = self.common.pool.run(INLINE, read).await?;
+        let draft = draft.map_err(|error| JobError::Broken(format!("a job cannot be read: {error}")))?;
+        let (mut rows, mut next) = (Rows::default(), 0);
+        while next < job.chunks() {
+            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(refused)?;
+            if chunks.is_empty() {
+                // Deleted meanwhile, or else not whole.
+                self.own(id).await?;
+                return Err(JobError::Broken(format!("chunk {next} of job {id} is missing")));
+            }
+            for content in chunks {
+                let points = job.chunk.min(job.points - next * job.chunk);
+                let numbers = usize::try_from(points).unwrap_or(usize::MAX).saturating_mul(draft.outputs.len());
+                let read = Rows::from_bytes(&content, numbers);
+                rows.append(read.ok_or_else(|| JobError::Broken(format!("chunk {next} of job {id} cannot be read")))?);
+                next += 1;
+            }
+        }
+        Ok((draft, rows))
+    }
+
+    /// Ends a job and deletes it.
+    ///
+    /// # Errors
+    /// [`JobError::NotFound`], or a failure of the store.
+    pub async fn delete(&self, id: Uuid) -> Result<(), JobError> {
+        self.own(id).await?;
+        match self.common.store.delete_job(id).await {
+            Err(StoreError::NotFound) => Err(JobError::NotFound(id)),
+            other => other.map_err(JobError::Store),
+        }
+    }
+}
+
+/// A job as its owner is told of it.
+fn told(job: &Job) -> JobReply {
+    let state = match (job.finished_at, &job.error) {
+        (_, Some(_)) => JobState::Failed,
+        (Some(_), None) => JobState::Done,
+        (None, None) => JobState::Running,
+    };
+    JobReply {
+        id: job.id,
+        state,
+        progress: JobProgress { points: job.points, done: job.done, failed: job.failed },
+        created_at: job.created_at,
+        finished_at: job.finished_at,
+        expires_at: job.expires_at(),
+        detail: job.error.clone(),
+        result: format!("/jobs/{}/result", job.id),
+    }
+}

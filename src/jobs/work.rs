@@ -1,0 +1,161 @@
+//! Working on jobs: claim a chunk, compute it, keep it, again and again.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Duration;
+
+use uuid::Uuid;
+
+use crate::simulation::cost::INLINE;
+use crate::simulation::{PoolError, Rows, Stop, Sweep, SweepError};
+use crate::store::{ChunkResult, Claim, Job, StoreError};
+use crate::wire::{self, SweepRequest};
+
+use super::{JobError, Jobs, NUMBER_BYTES};
+
+/// Chunks that a process works on at a time: while one is being stored, the threads have the other.
+const AT_A_TIME: usize = 2;
+/// How long to wait where there is nothing to do, or something is not to be had.
+const PAUSE: Duration = Duration::from_secs(1);
+/// How often a claim is renewed within a lease.
+const RENEWALS: u32 = 3;
+/// How often a chunk that the store does not take for now is offered to it.
+const OFFERS: usize = 30;
+
+/// A job that chunks have been taken of.
+type Known = Option<(Job, Arc<Sweep>)>;
+
+impl Jobs {
+    /// Works on the jobs of all tenants, and never ends. The chunks of a process that has not been heard of for the time of
+    /// a lease are taken by others.
+    pub async fn work(self, lease: Duration) {
+        futures::future::join_all((0..AT_A_TIME).map(|_| self.clone().work_alone(lease))).await;
+    }
+
+    async fn work_alone(self, lease: Duration) {
+        let (mut last, mut known) = (None, None);
+        loop {
+            let new = self.common.new.notified();
+            match self.common.store.claim(self.common.owner, last, lease).await {
+                Ok(Some(claim)) => {
+                    last = Some(claim.job);
+                    self.advance(claim, &mut known, lease).await;
+                }
+                Ok(None) => {
+                    known = None;
+                    let _ = tokio::time::timeout(PAUSE, new).await;
+                }
+                Err(error) => {
+                    tracing::debug!(%error, "no work can be taken for now");
+                    tokio::time::sleep(PAUSE).await;
+                }
+            }
+        }
+    }
+
+    /// Does a chunk, or gives it back.
+    async fn advance(&self, claim: Claim, known: &mut Known, lease: Duration) {
+        let error = match self.chunk(claim, known, lease).await {
+            // A job that has been deleted, and a claim that is none any more, are nobody's business.
+            Ok(()) | Err(JobError::NotFound(_) | JobError::Sweep(SweepError::Failure(_))) => return,
+            Err(error) => error,
+        };
+        let hopeless = match &error {
+            JobError::Broken(why) | JobError::Store(StoreError::Failed(why)) => Some(why.clone()),
+            JobError::Sweep(SweepError::Pool(PoolError::Panicked)) | JobError::Pool(PoolError::Panicked) => {
+                Some("the solver has failed; the operator finds the cause in the log".to_owned())
+            }
+            _ => None,
+        };
+        let done = match hopeless {
+            Some(why) => {
+                tracing::error!(job = %claim.job, chunk = claim.chunk, %error, "a job has failed");
+                self.common.store.fail_job(claim.job, why).await
+            }
+            None => {
+                tracing::debug!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is given back");
+                self.common.store.release(claim).await
+            }
+        };
+        if let Err(error) = done {
+            tracing::warn!(job = %claim.job, %error, "a chunk stays claimed until its lease is over");
+        }
+        tokio::time::sleep(PAUSE).await;
+    }
+
+    async fn chunk(&self, claim: Claim, known: &mut Known, lease: Duration) -> Result<(), JobError> {
+        if known.as_ref().is_none_or(|(job, _)| job.id != claim.job) {
+            *known = Some(self.open(claim.job).await?);
+        }
+        let Some((job, sweep)) = known else { return Ok(()) };
+        let first = claim.chunk * job.chunk;
+        let points = to_usize(first)..to_usize(job.points.min(first + job.chunk));
+        let pool = &self.common.pool;
+        let bytes = sweep.bytes(pool.capacity().threads) + 4 * NUMBER_BYTES * sweep.numbers(points.len());
+        let _held = pool.reserve(bytes).await?;
+        let rows = self.rows(claim, sweep, points.clone(), lease).await?;
+        let result = ChunkResult { points: points.len() as u64, failed: rows.failed, content: rows.to_bytes() };
+        self.keep(claim, result, lease).await
+    }
+
+    /// What a job asks for.
+    async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
+        let refused =
+            |error| if matches!(error, StoreError::NotFound) { JobError::NotFound(id) } else { JobError::Store(error) };
+        let job = self.common.store.job(id).await.map_err(refused)?;
+        let request = self.common.store.job_request(id).await.map_err(refused)?;
+        let plan = move || wire::read::<SweepRequest>(request.as_bytes()).and_then(Sweep::plan);
+        let sweep = self.common.pool.run(INLINE, plan).await?;
+        let sweep =
+            sweep.map_err(|error| JobError::Broken(format!("this version does not take the request: {error}")))?;
+        Ok((job, Arc::new(sweep)))
+    }
+
+    /// Computes a chunk while the claim holds.
+    async fn rows(
+        &self,
+        claim: Claim,
+        sweep: &Arc<Sweep>,
+        points: Range<usize>,
+        lease: Duration,
+    ) -> Result<Rows, JobError> {
+        let (stop, guard) = Stop::unbounded();
+        let mut guard = Some(guard);
+        let (pool, workers) = (&self.common.pool, self.workers()?);
+        let allowed = Some(pool.capacity().deadline);
+        let mut rows = std::pin::pin!(sweep.compute(points, pool, workers, &stop, allowed));
+        let mut changed = self.common.store.changes().subscribe(claim.job);
+        loop {
+            tokio::select! {
+                rows = &mut rows => return Ok(rows?),
+                _ = changed.changed() => {}
+                () = tokio::time::sleep(lease / RENEWALS) => {}
+            }
+            // A store that is out of reach says nothing about the claim.
+            if matches!(self.common.store.renew(claim, lease).await, Ok(false)) {
+                drop(guard.take());
+            }
+        }
+    }
+
+    /// Keeps what came of a chunk, as soon as the store takes it.
+    async fn keep(&self, claim: Claim, result: ChunkResult, lease: Duration) -> Result<(), JobError> {
+        for _ in 0..OFFERS {
+            match self.common.store.keep_chunk(claim, result.clone()).await {
+                Ok(()) => return Ok(()),
+                Err(StoreError::Full(_) | StoreError::Unavailable(_)) => {
+                    tokio::time::sleep(PAUSE).await;
+                    // In vain while the store is out of reach.
+                    let _ = self.common.store.renew(claim, lease).await;
+                }
+                Err(StoreError::NotFound) => return Err(JobError::NotFound(claim.job)),
+                Err(error) => return Err(JobError::Store(error)),
+            }
+        }
+        Err(JobError::Store(StoreError::Unavailable("the storage takes no results".to_owned())))
+    }
+}
+
+fn to_usize(number: u64) -> usize {
+    usize::try_from(number).unwrap_or(usize::MAX)
+}

@@ -1,0 +1,248 @@
+//! Jobs: work that goes on after its request has been answered, in chunks whose results are kept as they come.
+//!
+//! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are claimed
+//! by whoever has time for them, and a claim ends with its holder. What a chunk comes to are bytes that the store does not
+//! read.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Bound::{Excluded, Unbounded};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use jiff::{SignedDuration, Timestamp};
+use uuid::Uuid;
+
+use super::{Answer, Receipt, StoreError, Tenant};
+
+/// How long a job that has ended is kept, with its result.
+pub const JOB_LIFETIME: Duration = Duration::from_secs(24 * 60 * 60);
+/// How long a job may take to end.
+pub const JOB_PATIENCE: Duration = Duration::from_secs(7 * 24 * 60 * 60);
+
+/// A job as it is stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// Its identifier.
+    pub id: Uuid,
+    /// Whose it is.
+    pub tenant: Tenant,
+    /// When it was asked for.
+    pub created_at: Timestamp,
+    /// When it ended, well or not.
+    pub finished_at: Option<Timestamp>,
+    /// Why it failed, if it did.
+    pub error: Option<String>,
+    /// How many points it has.
+    pub points: u64,
+    /// How many of them go in a chunk; the last one may have fewer.
+    pub chunk: u64,
+    /// How many are done.
+    pub done: u64,
+    /// How many of these have no answer.
+    pub failed: u64,
+    /// Bytes that it takes to keep it, roughly.
+    pub bytes: u64,
+    /// Nanoseconds of work, roughly.
+    pub cost: u64,
+}
+
+impl Job {
+    /// How many chunks it has.
+    #[must_use]
+    pub fn chunks(&self) -> u64 {
+        self.points.div_ceil(self.chunk.max(1))
+    }
+
+    /// When it goes.
+    #[must_use]
+    pub fn expires_at(&self) -> Timestamp {
+        let (from, time) = match self.finished_at {
+            Some(at) => (at, JOB_LIFETIME),
+            None => (self.created_at, JOB_PATIENCE),
+        };
+        let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
+        from.checked_add(time).unwrap_or(Timestamp::MAX)
+    }
+}
+
+/// What the jobs of a tenant may come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JobLimits {
+    /// How many there may be, with those that have ended.
+    pub jobs: u64,
+    /// Bytes of all of them.
+    pub bytes: u64,
+    /// Nanoseconds of work of those that have not ended.
+    pub cost: u64,
+}
+
+impl JobLimits {
+    /// Whether a tenant with so many jobs, bytes and work to do may have another job.
+    pub(super) fn admit(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<(), StoreError> {
+        if jobs >= self.jobs {
+            return Err(StoreError::TooManyJobs(format!("{jobs} jobs are kept, and no more may be")));
+        }
+        if bytes.saturating_add(new.bytes) > self.bytes {
+            return Err(StoreError::TooManyJobs(format!("the results of all jobs may take {} bytes", self.bytes)));
+        }
+        if cost.saturating_add(new.cost) > self.cost {
+            let allowed = Duration::from_nanos(self.cost).as_secs();
+            return Err(StoreError::TooManyJobs(format!(
+                "the jobs under way may have {allowed} s of work before them"
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// A chunk of a job that somebody works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// The job.
+    pub job: Uuid,
+    /// The number of the chunk, from 0.
+    pub chunk: u64,
+    /// Who works on it: one process, by a name that it has made up.
+    pub owner: Uuid,
+}
+
+/// What came of a chunk.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChunkResult {
+    /// How many points it has.
+    pub points: u64,
+    /// How many of them have no answer.
+    pub failed: u64,
+    /// The result itself.
+    pub content: Vec<u8>,
+}
+
+/// A place to keep jobs. As with sessions, tenants are kept apart by the callers.
+pub trait JobStore: Send + Sync + 'static {
+    /// Stores a new job and what was asked for, and the receipt with it, if the tenant may have another.
+    fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()>;
+
+    /// The job.
+    fn job(&self, id: Uuid) -> Answer<'_, Job>;
+
+    /// What was asked for.
+    fn job_request(&self, id: Uuid) -> Answer<'_, String>;
+
+    /// A chunk that nobody works on, of the first job beyond `after` that has one, or else of the first of all. In a store of
+    /// many processes it is free again after `lease`, unless it is renewed.
+    fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Answer<'_, Option<Claim>>;
+
+    /// Holds a claim for another `lease`; says whether it still is one.
+    fn renew(&self, claim: Claim, lease: Duration) -> Answer<'_, bool>;
+
+    /// Gives a chunk back.
+    fn release(&self, claim: Claim) -> Answer<'_, ()>;
+
+    /// Keeps what came of a chunk. Of two who did the same chunk the first is heard. With the last chunk the job ends.
+    fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()>;
+
+    /// Ends a job that cannot be done.
+    fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()>;
+
+    /// What came of at most `limit` chunks from a number on, in order.
+    fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>>;
+
+    /// Deletes a job, whether it has ended or not.
+    fn delete_job(&self, id: Uuid) -> Answer<'_, ()>;
+}
+
+/// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives it.
+#[derive(Default)]
+pub(super) struct Board {
+    // A std mutex: held for a lookup.
+    open: Mutex<BTreeMap<Uuid, Open>>,
+}
+
+#[derive(Default)]
+struct Open {
+    waiting: BTreeSet<u64>,
+    claimed: BTreeSet<u64>,
+}
+
+impl Board {
+    /// Puts up a job with the chunks that are to be done.
+    pub(super) fn open(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
+        self.lock().insert(id, Open { waiting: waiting.collect(), claimed: BTreeSet::new() });
+    }
+
+    /// A chunk to work on.
+    pub(super) fn claim(&self, owner: Uuid, after: Option<Uuid>) -> Option<Claim> {
+        let mut open = self.lock();
+        let from = after.unwrap_or(Uuid::nil());
+        let beyond = open.range((Excluded(from), Unbounded)).chain(open.range(..=from));
+        let job = beyond.filter(|(_, job)| !job.waiting.is_empty()).map(|(id, _)| *id).next()?;
+        let found = open.get_mut(&job)?;
+        let chunk = found.waiting.pop_first()?;
+        found.claimed.insert(chunk);
+        Some(Claim { job, chunk, owner })
+    }
+
+    /// Whether a claim still is one.
+    pub(super) fn holds(&self, claim: Claim) -> bool {
+        self.lock().get(&claim.job).is_some_and(|job| job.claimed.contains(&claim.chunk))
+    }
+
+    /// Gives a chunk back.
+    pub(super) fn release(&self, claim: Claim) {
+        if let Some(job) = self.lock().get_mut(&claim.job)
+            && job.claimed.remove(&claim.chunk)
+        {
+            job.waiting.insert(claim.chunk);
+        }
+    }
+
+    /// Takes down a chunk that is done.
+    pub(super) fn done(&self, claim: Claim) {
+        let mut open = self.lock();
+        if let Some(job) = open.get_mut(&claim.job) {
+            job.claimed.remove(&claim.chunk);
+            if job.claimed.is_empty() && job.waiting.is_empty() {
+                open.remove(&claim.job);
+            }
+        }
+    }
+
+    /// Takes down a job.
+    pub(super) fn close(&self, id: Uuid) {
+        self.lock().remove(&id);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<Uuid, Open>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Board;
+    use uuid::Uuid;
+
+    #[test]
+    fn jobs_take_turns_and_each_chunk_is_given_once() {
+        let (board, owner) = (Board::default(), Uuid::now_v7());
+        let (first, second) = (Uuid::now_v7(), Uuid::now_v7());
+        board.open(first, 0..2);
+        board.open(second, 0..2);
+        let mut last = None;
+        let mut turns = Vec::new();
+        while let Some(claim) = board.claim(owner, last) {
+            last = Some(claim.job);
+            turns.push((claim.job, claim.chunk));
+        }
+        assert_eq!(turns, [(first, 0), (second, 0), (first, 1), (second, 1)]);
+        let claim = super::Claim { job: first, chunk: 1, owner };
+        assert!(board.holds(claim));
+        board.release(claim);
+        assert!(!board.holds(claim));
+        assert_eq!(board.claim(owner, None), Some(claim));
+        board.close(first);
+        assert!(!board.holds(claim));
+        board.release(claim);
+        assert_eq!(board.claim(owner, None), None);
+    }
+}

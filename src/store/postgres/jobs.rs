@@ -1,0 +1,241 @@
+//! Jobs in the database, whose chunks all replicas take.
+//!
+//! Whoever takes a chunk has a lease on it, and renews it while it works. The chunks of a replica that is gone are taken by
+//! others when its leases are over.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use deadpool_postgres::Object;
+use futures::FutureExt as _;
+use jiff::Timestamp;
+use tokio_postgres::Row;
+use uuid::Uuid;
+
+use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_PATIENCE, Job, JobLimits, JobStore};
+use crate::store::{Answer, RECEIPT_LIFETIME, Receipt, StoreError, Tenant};
+
+use super::PostgresStore;
+use super::alone::{begin, execute};
+use super::fault::Fault;
+use super::link::{ANSWER, LONG_ANSWER, Link, Parameter, call, once};
+use super::rows::{count, counted, joined, odd, split};
+use super::sql;
+
+/// Jobs that one statement sweeps: their results are large.
+const SWEPT: i64 = 4;
+
+/// A job to be stored.
+struct NewJob {
+    job: Job,
+    request: String,
+    limits: JobLimits,
+    receipt: Option<Receipt>,
+}
+
+impl NewJob {
+    async fn make(&self, link: &Link, connection: &mut Object, sent: &AtomicBool) -> Result<(), Fault> {
+        let NewJob { job, request, limits, receipt } = self;
+        let transaction = begin(connection).await?;
+        let tenant = job.tenant.name();
+        // Tenants that share a number wait for each other, and no more.
+        execute(&transaction, sql::LOCK_TENANT, &[&i64::from(crc32fast::hash(tenant.as_bytes()))]).await?;
+        let statement = transaction.prepare_cached(sql::JOBS_OF_TENANT).await?;
+        let found = transaction.query_one(&statement, &[&tenant]).await?;
+        limits.admit(count(found.get(0)), count(found.get(1)), count(found.get(2)), job)?;
+        let (at, ns) = split(job.created_at);
+        let (points, chunk) = (counted(job.points), counted(job.chunk));
+        let (bytes, cost) = (counted(job.bytes), counted(job.cost));
+        let row: [Parameter<'_>; 9] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, request];
+        execute(&transaction, sql::CREATE_JOB, &row).await?;
+        execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &counted(job.chunks())]).await?;
+        if let Some(Receipt { request, reply }) = receipt {
+            let keys = [request.key.as_str()];
+            execute(&transaction, sql::FREE_KEYS, &[&keys.as_slice(), &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+            let fingerprint = request.fingerprint.as_slice();
+            let sequence = counted(reply.sequence);
+            let row: [Parameter<'_>; 5] = [&request.key, &fingerprint, &reply.created, &sequence, &reply.body];
+            execute(&transaction, sql::KEEP_RECEIPT, &row).await?;
+        }
+        link.announce(&transaction, &[job.id]).await?;
+        sent.store(true, Ordering::Relaxed);
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+fn job(row: &Row) -> Result<Job, StoreError> {
+    let finished: Option<std::time::SystemTime> = row.get(4);
+    Ok(Job {
+        id: row.get(0),
+        tenant: Tenant::new(row.get(1)),
+        created_at: joined(row.get(2), row.get(3))?,
+        finished_at: finished.map(Timestamp::try_from).transpose().map_err(|error| odd(&error))?,
+        error: row.get(5),
+        points: count(row.get(6)),
+        chunk: count(row.get(7)),
+        done: count(row.get(8)),
+        failed: count(row.get(9)),
+        bytes: count(row.get(10)),
+        cost: count(row.get(11)),
+    })
+}
+
+impl Link {
+    async fn create_job(&self, new: NewJob) -> Result<(), StoreError> {
+        let sent = AtomicBool::new(false);
+        let error = match call!(self, LONG_ANSWER, connection => new.make(self, connection, &sent)) {
+            Ok(()) => return Ok(()),
+            Err(error) => error,
+        };
+        // A lost connection may have hidden that an earlier attempt went well.
+        if sent.into_inner() && self.row(sql::JOB, &[&new.job.id]).await?.is_some() {
+            return Ok(());
+        }
+        match &new.receipt {
+            Some(receipt) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
+            _ => Err(error),
+        }
+    }
+
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>, StoreError> {
+        let lease = lease.as_secs_f64();
+        let mut froms = vec![Uuid::nil()];
+        froms.extend(after);
+        while let Some(from) = froms.pop() {
+            if let Some(row) = self.row(sql::CLAIM, &[&from, &owner, &lease]).await? {
+                return Ok(Some(Claim { job: row.get(0), chunk: count(row.get(1)), owner }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether there was such a job.
+    async fn keep_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
+        let transaction = begin(connection).await?;
+        let Claim { job, chunk, .. } = claim;
+        let statement = transaction.prepare_cached(sql::LOCK_JOB).await?;
+        if transaction.query_opt(&statement, &[&job]).await?.is_none() {
+            return Ok(false);
+        }
+        if execute(&transaction, sql::KEEP_CHUNK, &[&job, &counted(chunk), &result.content]).await? > 0 {
+            let (points, failed) = (counted(result.points), counted(result.failed));
+            execute(&transaction, sql::COUNT_CHUNK, &[&job, &points, &failed]).await?;
+            self.announce(&transaction, &[job]).await?;
+        }
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    async fn fail_job(&self, connection: &mut Object, id: Uuid, error: &str) -> Result<(), Fault> {
+        let transaction = begin(connection).await?;
+        let statement = transaction.prepare_cached(sql::LOCK_JOB).await?;
+        if transaction.query_opt(&statement, &[&id]).await?.is_some() {
+            execute(&transaction, sql::FAIL_JOB, &[&id, &error]).await?;
+            execute(&transaction, sql::DROP_CHUNKS, &[&id]).await?;
+            self.announce(&transaction, &[id]).await?;
+            transaction.commit().await?;
+        }
+        Ok(())
+    }
+
+    async fn delete_job(&self, connection: &mut Object, id: Uuid, sent: &AtomicBool) -> Result<bool, Fault> {
+        let transaction = begin(connection).await?;
+        if execute(&transaction, sql::DELETE_JOB, &[&id]).await? == 0 {
+            return Ok(sent.load(Ordering::Relaxed));
+        }
+        self.announce(&transaction, &[id]).await?;
+        sent.store(true, Ordering::Relaxed);
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Deletes the jobs whose time is over.
+    pub(super) async fn sweep_jobs(&self) -> Result<(), StoreError> {
+        while counted(call!(self, LONG_ANSWER, connection => sweep(connection))?) == SWEPT {}
+        Ok(())
+    }
+}
+
+async fn sweep(connection: &mut Object) -> Result<u64, Fault> {
+    let transaction = begin(connection).await?;
+    let times = [JOB_LIFETIME, JOB_PATIENCE].map(|time| time.as_secs_f64());
+    let gone = execute(&transaction, sql::SWEEP_JOBS, &[&times[0], &times[1], &SWEPT]).await?;
+    transaction.commit().await?;
+    Ok(gone)
+}
+
+impl JobStore for PostgresStore {
+    fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()> {
+        self.link.create_job(NewJob { job, request, limits, receipt }).boxed()
+    }
+
+    fn job(&self, id: Uuid) -> Answer<'_, Job> {
+        async move { self.link.row(sql::JOB, &[&id]).await?.as_ref().map_or(Err(StoreError::NotFound), job) }.boxed()
+    }
+
+    fn job_request(&self, id: Uuid) -> Answer<'_, String> {
+        async move {
+            let found = self.link.row(sql::JOB_REQUEST, &[&id]).await?;
+            found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
+        }
+        .boxed()
+    }
+
+    fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Answer<'_, Option<Claim>> {
+        self.link.claim(owner, after, lease).boxed()
+    }
+
+    fn renew(&self, claim: Claim, lease: Duration) -> Answer<'_, bool> {
+        async move {
+            let Claim { job, chunk, owner } = claim;
+            let (chunk, lease) = (counted(chunk), lease.as_secs_f64());
+            Ok(self.link.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
+        }
+        .boxed()
+    }
+
+    fn release(&self, claim: Claim) -> Answer<'_, ()> {
+        async move {
+            let Claim { job, chunk, owner } = claim;
+            self.link.rows(sql::RELEASE, &[&job, &counted(chunk), &owner]).await.map(drop)
+        }
+        .boxed()
+    }
+
+    fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()> {
+        async move {
+            let kept = call!(self.link, ANSWER, connection => self.link.keep_chunk(connection, claim, &result))?;
+            self.changes.wake(claim.job);
+            if kept { Ok(()) } else { Err(StoreError::NotFound) }
+        }
+        .boxed()
+    }
+
+    fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()> {
+        async move {
+            call!(self.link, ANSWER, connection => self.link.fail_job(connection, id, &error))?;
+            self.changes.wake(id);
+            Ok(())
+        }
+        .boxed()
+    }
+
+    fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>> {
+        async move {
+            let found = self.link.rows(sql::CHUNKS, &[&id, &counted(first), &counted(limit as u64)]).await?;
+            Ok(found.iter().map(|row| row.get(0)).collect())
+        }
+        .boxed()
+    }
+
+    fn delete_job(&self, id: Uuid) -> Answer<'_, ()> {
+        async move {
+            let sent = AtomicBool::new(false);
+            let gone = call!(self.link, LONG_ANSWER, connection => self.link.delete_job(connection, id, &sent))?;
+            self.changes.wake(id);
+            if gone { Ok(()) } else { Err(StoreError::NotFound) }
+        }
+        .boxed()
+    }
+}

@@ -1,0 +1,165 @@
+//! Any JSON value, each member of an object given once: what is to be a document of ours when its numbers have been put in.
+
+use std::fmt;
+
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Number, Value};
+
+use super::check::escaped;
+
+/// A JSON value without repeated members.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Any(pub Value);
+
+impl<'de> Deserialize<'de> for Any {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(AnyVisitor).map(Any)
+    }
+}
+
+struct AnyVisitor;
+
+impl<'de> Visitor<'de> for AnyVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        Number::from_f64(value).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        Ok(Value::String(value.to_owned()))
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Value, A::Error> {
+        let mut values = Vec::new();
+        while let Some(Any(value)) = elements.next_element()? {
+            values.push(value);
+        }
+        Ok(Value::Array(values))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        let mut values = Map::new();
+        while let Some(name) = members.next_key::<String>()? {
+            if values.contains_key(&name) {
+                return Err(A::Error::custom(format_args!("duplicate field `{name}`")));
+            }
+            let Any(value) = members.next_value()?;
+            values.insert(name, value);
+        }
+        Ok(Value::Object(values))
+    }
+}
+
+/// A JSON pointer (RFC 6901), taken apart.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Pointer(Box<[String]>);
+
+impl Pointer {
+    /// Takes a pointer apart; none if it is not written as one.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Pointer> {
+        if text.is_empty() {
+            return Some(Pointer(Box::default()));
+        }
+        let segment = |segment: &str| {
+            let rest = segment.replace("~0", "").replace("~1", "");
+            (!rest.contains('~')).then(|| segment.replace("~1", "/").replace("~0", "~"))
+        };
+        text.strip_prefix('/')?.split('/').map(segment).collect::<Option<_>>().map(Pointer)
+    }
+
+    /// Its parts.
+    #[must_use]
+    pub fn segments(&self) -> &[String] {
+        &self.0
+    }
+
+    /// Puts a number where it points to: in place of a number, or as a member that is missing. Says whether it could.
+    pub fn put(&self, document: &mut Value, number: Number) -> bool {
+        let Some((last, way)) = self.0.split_last() else { return false };
+        let parent = way.iter().try_fold(document, |node, segment| match node {
+            Value::Object(members) => members.get_mut(segment),
+            Value::Array(elements) => index(segment).and_then(|index| elements.get_mut(index)),
+            _ => None,
+        });
+        match parent {
+            Some(Value::Object(members)) => match members.get_mut(last) {
+                Some(Value::Number(found)) => *found = number,
+                Some(_) => return false,
+                None => drop(members.insert(last.clone(), Value::Number(number))),
+            },
+            Some(Value::Array(elements)) => match index(last).and_then(|index| elements.get_mut(index)) {
+                Some(Value::Number(found)) => *found = number,
+                _ => return false,
+            },
+            _ => return false,
+        }
+        true
+    }
+}
+
+impl fmt::Display for Pointer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|segment| write!(f, "/{}", escaped(segment)))
+    }
+}
+
+/// The index of an element, as RFC 6901 writes it.
+#[must_use]
+pub fn index(segment: &str) -> Option<usize> {
+    let plain = segment == "0" || !segment.starts_with(['0', '+']);
+    plain.then(|| segment.parse().ok()).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Any, Pointer};
+    use serde_json::{Number, json};
+
+    #[test]
+    fn numbers_are_put_where_numbers_are_or_may_be() {
+        let base = json!({"a": [1, {"b/c": 2.5}], "text": "x"});
+        for (pointer, value) in [("/a/0", 7), ("/a/1/b~1c", 7), ("/new", 7), ("/a/1/new", 7)] {
+            let mut document = base.clone();
+            let pointer = Pointer::parse(pointer).unwrap();
+            assert!(pointer.put(&mut document, Number::from(value)), "{pointer}");
+            assert_eq!(document.pointer(&pointer.to_string()), Some(&json!(7)));
+        }
+        for pointer in ["", "/text", "/a", "/a/2", "/a/00", "/a/-", "/text/x", "/none/x"] {
+            let mut document = base.clone();
+            assert!(!Pointer::parse(pointer).unwrap().put(&mut document, Number::from(7)), "{pointer}");
+            assert_eq!(document, base);
+        }
+        assert!(Pointer::parse("a").is_none() && Pointer::parse("/~2").is_none());
+    }
+
+    #[test]
+    fn a_member_given_twice_is_refused_wherever_it_is() {
+        let of = |text: &str| serde_json::from_str::<Any>(text);
+        assert_eq!(of(r#"{"a":[1,-2,0.1,"s",null,true,{}]}"#).unwrap().0, json!({"a":[1,-2,0.1,"s",null,true,{}]}));
+        assert!(of(r#"{"a":[{"b":1,"b":1}]}"#).unwrap_err().to_string().contains("duplicate field `b`"));
+    }
+}

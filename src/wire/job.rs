@@ -1,0 +1,64 @@
+//! What `/jobs` tells of work that goes on after its request has been answered.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use super::event::EndReason;
+
+/// A piece of work that the server does on its own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JobReply {
+    /// Its identifier.
+    pub id: Uuid,
+    /// How it stands.
+    pub state: JobState,
+    /// How far it has come.
+    pub progress: JobProgress,
+    /// When it was asked for (ISO 8601, UTC).
+    pub created_at: Timestamp,
+    /// When it ended (ISO 8601, UTC).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub finished_at: Option<Timestamp>,
+    /// When it goes, with its result (ISO 8601, UTC).
+    pub expires_at: Timestamp,
+    /// Why it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub detail: Option<String>,
+    /// The path of its result, which is there once the state is `done`.
+    #[schema(example = "/jobs/0199…/result")]
+    pub result: String,
+}
+
+/// How a job stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum JobState {
+    /// It waits for its turn, or is worked on.
+    Running,
+    /// Its result is there.
+    Done,
+    /// It cannot be done.
+    Failed,
+}
+
+/// How far a job has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct JobProgress {
+    /// Points in all.
+    pub points: u64,
+    /// Points that are computed and stored.
+    pub done: u64,
+    /// Points among them that have no answer.
+    pub failed: u64,
+}
+
+/// The data of the event `end`, the last one before a job has ended itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct JobEndEvent {
+    /// Why there are no more.
+    pub reason: EndReason,
+}

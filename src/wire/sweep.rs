@@ -1,0 +1,370 @@
+//! The body of `POST /sweep`, and the table that comes of it.
+
+use std::collections::{BTreeMap, HashSet};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Number, Value};
+use utoipa::ToSchema;
+
+use super::any::{Any, Pointer};
+use super::check::{At, Faults};
+use super::limits;
+use super::one_key::given;
+use super::parse::{Document, Rejection, parse_value};
+use super::simulate::SimulateRequest;
+
+/// How far from a whole number, relatively, a value may be that goes to a field of whole numbers; it is rounded then.
+const WHOLE: f64 = 1e-9;
+
+/// Many simulations that differ in up to three numbers, and what is wanted of each. The points are all combinations of the
+/// values of the axes, the last axis running fastest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "base": {
+        "contact": {
+            "profile": {"type": "sphere", "radius": 0.01},
+            "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+            "friction": 0.3,
+            "preload": {"normal_force": 10.0}
+        },
+        "path": {"falling_amplitude": {"reversals": 20}}, "steps": "last", "residual": true
+    },
+    "axes": [{"pointer": "/path/falling_amplitude/reversals", "linear": {"from": 1, "to": 100, "count": 100}}],
+    "outputs": ["/residual/max"]
+}))]
+pub struct SweepRequest {
+    /// The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
+    #[schema(value_type = SimulateRequest)]
+    pub base: Any,
+    /// The numbers that change.
+    pub axes: Vec<Axis>,
+    /// JSON pointers to numbers in the reply to `POST /simulate`, a column each. Where a point does not have one, such as a
+    /// peak of a number that it does not reach, the column has `null`.
+    #[schema(example = json!(["/residual/max"]))]
+    pub outputs: Vec<String>,
+    /// Make a job of it, however small it is.
+    #[serde(default)]
+    pub job: bool,
+}
+
+/// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and `values`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// JSON pointer to the number in the base, or to a member for a number that the base leaves out.
+    #[schema(example = "/contact/friction")]
+    pub pointer: String,
+    /// Evenly spaced values.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub linear: Option<Span>,
+    /// Values with the same ratio from one to the next; both ends positive, or both negative.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub logarithmic: Option<Span>,
+    /// These values.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub values: Option<Vec<f64>>,
+}
+
+/// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and is
+/// rounded; else list the values.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Span {
+    /// The first value.
+    pub from: f64,
+    /// The last value.
+    pub to: f64,
+    /// How many values, both ends included.
+    pub count: usize,
+}
+
+/// The table of a sweep: a row a point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SweepReply {
+    /// How many points, and numbers in each column.
+    pub points: usize,
+    /// The columns by their pointers: the axes, then the outputs; `null` where a point has no such number or no answer.
+    pub columns: BTreeMap<String, Vec<Option<f64>>>,
+    /// How many points have no answer.
+    pub failed: u64,
+    /// The first of them.
+    pub failures: Vec<PointFailure>,
+}
+
+/// A point without an answer.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct PointFailure {
+    /// The row, counted from 0.
+    pub index: u64,
+    /// What `POST /simulate` would give as the code of the problem.
+    #[schema(example = "beyond_profile")]
+    pub code: String,
+    /// JSON pointer into the base, if a place is to blame.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub pointer: String,
+    /// What is wrong.
+    pub detail: String,
+}
+
+/// A sweep whose axes lead to numbers. What comes of the numbers together is not known yet.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// The request as it came.
+    pub request: SweepRequest,
+    /// The axes.
+    pub axes: Vec<Run>,
+    /// The outputs.
+    pub outputs: Vec<Pointer>,
+    /// How many points.
+    pub points: usize,
+}
+
+/// The values of an axis on their way to a field.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The field.
+    pub pointer: Pointer,
+    /// Whether it takes whole numbers.
+    pub whole: bool,
+    values: Values,
+}
+
+#[derive(Clone, Debug)]
+enum Values {
+    Linear(Span),
+    Logarithmic(Span),
+    Listed(Vec<f64>),
+}
+
+impl Document for SweepRequest {
+    type Checked = Draft;
+
+    fn check(self) -> Result<Draft, Rejection> {
+        let mut faults = Faults::default();
+        let at = At::Root.member("axes");
+        let mut axes = Vec::new();
+        if faults.length(at, self.axes.len(), &limits::SWEEP_AXES) {
+            axes.extend(
+                self.axes.iter().enumerate().filter_map(|(index, axis)| axis.check(at.index(index), &mut faults)),
+            );
+        }
+        let outputs = self.check_outputs(&mut faults);
+        let points = axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count()));
+        if points > limits::SWEEP_POINTS {
+            faults.add(at, format_args!("{points} points: allowed are {}", limits::SWEEP_POINTS));
+        } else if points.saturating_mul(outputs.len()) > limits::SWEEP_NUMBERS {
+            let (outputs, most) = (outputs.len(), limits::SWEEP_NUMBERS);
+            faults.add(at, format_args!("{points} points times {outputs} outputs: allowed are {most} numbers"));
+        }
+        let mut names = HashSet::new();
+        for (index, axis) in axes.iter().enumerate() {
+            if !names.insert(&axis.pointer) {
+                faults.add(at.index(index).member("pointer"), "another axis has the same pointer");
+            }
+        }
+        if faults.is_empty() {
+            find_kinds(&self.base.0, &mut axes, &mut faults);
+        }
+        let draft = Draft { request: self, axes, outputs, points };
+        faults.done(Some(draft))
+    }
+}
+
+impl SweepRequest {
+    fn check_outputs(&self, faults: &mut Faults) -> Vec<Pointer> {
+        let at = At::Root.member("outputs");
+        let mut outputs: Vec<Pointer> = Vec::new();
+        if !faults.length(at, self.outputs.len(), &limits::SWEEP_OUTPUTS) {
+            return outputs;
+        }
+        for (index, text) in self.outputs.iter().enumerate() {
+            let at = at.index(index);
+            match Pointer::parse(text) {
+                None => faults.add(at, NO_POINTER),
+                Some(pointer) if outputs.contains(&pointer) || self.axes.iter().any(|axis| axis.pointer == *text) => {
+                    faults.add(at, "another column has the same pointer");
+                }
+                Some(pointer) => outputs.push(pointer),
+            }
+        }
+        outputs
+    }
+}
+
+const NO_POINTER: &str = "not a JSON pointer (RFC 6901), such as /contact/friction";
+
+impl Axis {
+    fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Run> {
+        let pointer = Pointer::parse(&self.pointer);
+        if pointer.is_none() {
+            faults.add(at.member("pointer"), NO_POINTER);
+        }
+        let choices = [
+            self.linear.map(|span| ("linear", Values::Linear(span))),
+            self.logarithmic.map(|span| ("logarithmic", Values::Logarithmic(span))),
+            self.values.clone().map(|values| ("values", Values::Listed(values))),
+        ];
+        let mut choices = choices.into_iter().flatten();
+        let (Some((name, values)), None) = (choices.next(), choices.next()) else {
+            faults.add(at, "expected `pointer` and one key, one of `linear`, `logarithmic`, `values`");
+            return None;
+        };
+        let fits = values.check(at.member(name), faults);
+        (fits && pointer.is_some()).then_some(Run { pointer: pointer?, whole: false, values })
+    }
+}
+
+impl Values {
+    fn check(&self, at: At<'_>, faults: &mut Faults) -> bool {
+        let number = |at: At<'_>, value: f64, faults: &mut Faults| {
+            faults.number(at, value, &limits::AXIS_NUMBER);
+            limits::AXIS_NUMBER.contains(value)
+        };
+        match self {
+            Values::Listed(values) => {
+                let fits = faults.length(at, values.len(), &limits::AXIS_VALUES);
+                fits && values.iter().enumerate().all(|(index, value)| number(at.index(index), *value, faults))
+            }
+            Values::Linear(span) | Values::Logarithmic(span) => {
+                faults.count(at.member("count"), span.count, &limits::AXIS_COUNT);
+                let numbers = number(at.member("from"), span.from, faults) && number(at.member("to"), span.to, faults);
+                let mut fits = numbers && limits::AXIS_COUNT.contains(&span.count);
+                if let Values::Logarithmic(span) = self {
+                    let ratio = span.to / span.from;
+                    if fits && !(ratio.is_normal() && ratio > 0.0) {
+                        faults.add(at, "both ends must be positive or both negative, and not too far apart");
+                        fits = false;
+                    }
+                }
+                fits
+            }
+        }
+    }
+}
+
+impl Run {
+    /// How many values.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match &self.values {
+            Values::Linear(span) | Values::Logarithmic(span) => span.count,
+            Values::Listed(values) => values.len(),
+        }
+    }
+
+    fn raw(&self, index: usize) -> f64 {
+        match &self.values {
+            Values::Listed(values) => values.get(index).copied().unwrap_or(f64::NAN),
+            Values::Linear(Span { to, count, .. }) | Values::Logarithmic(Span { to, count, .. })
+                if index + 1 == *count =>
+            {
+                *to
+            }
+            // The product first: where the result is whole, it is so exactly.
+            Values::Linear(Span { from, to, count }) => from + (to - from) * index as f64 / (count - 1) as f64,
+            Values::Logarithmic(Span { from, to, count }) => from * (to / from).powf(index as f64 / (count - 1) as f64),
+        }
+    }
+
+    /// A value.
+    #[must_use]
+    pub fn value(&self, index: usize) -> f64 {
+        let raw = self.raw(index);
+        if self.whole { raw.round() } else { raw }
+    }
+
+    /// The same as JSON; of a field of whole numbers without a point.
+    #[must_use]
+    pub fn number(&self, index: usize) -> Number {
+        let value = self.value(index);
+        // Beyond the first bound no float has a fraction, and no field takes it.
+        if self.whole && value.abs() <= (1_u64 << 53) as f64 {
+            return if value >= 0.0 { Number::from(value as u64) } else { Number::from(value as i64) };
+        }
+        Number::from_f64(value).unwrap_or_else(|| Number::from(0))
+    }
+
+    /// The indices of the smallest and the largest value.
+    #[must_use]
+    pub fn ends(&self) -> [usize; 2] {
+        match &self.values {
+            Values::Linear(span) | Values::Logarithmic(span) => [0, span.count - 1],
+            Values::Listed(values) => {
+                let by = |(_, one): &(usize, &f64), (_, other): &(usize, &f64)| one.total_cmp(other);
+                let least = values.iter().enumerate().min_by(by).map_or(0, |(index, _)| index);
+                [least, values.iter().enumerate().max_by(by).map_or(0, |(index, _)| index)]
+            }
+        }
+    }
+
+    fn broken(&self) -> Option<usize> {
+        (0..self.count()).find(|index| {
+            let raw = self.raw(*index);
+            (raw - raw.round()).abs() > WHOLE * raw.abs()
+        })
+    }
+}
+
+impl Draft {
+    /// Puts the values of a point into a copy of the base.
+    pub fn put(&self, document: &mut Value, point: usize) {
+        for (axis, index) in indices(&self.axes, point) {
+            // Whether there is a place for it has been found out with the kinds.
+            axis.pointer.put(document, axis.number(index));
+        }
+    }
+
+    /// Where in the sweep a place in the body of a point stands.
+    #[must_use]
+    pub fn place_of(&self, pointer: &str) -> String {
+        let axis = self.axes.iter().position(|axis| axis.pointer.to_string() == pointer);
+        axis.map_or_else(|| format!("/base{pointer}"), |index| format!("/axes/{index}"))
+    }
+}
+
+/// The values of the axes at a point, by their indices.
+pub fn indices(axes: &[Run], point: usize) -> impl Iterator<Item = (&Run, usize)> {
+    let mut below = axes.iter().fold(1, |points: usize, axis| points.saturating_mul(axis.count()));
+    let mut rest = point;
+    axes.iter().map(move |axis| {
+        below /= axis.count().max(1);
+        let index = rest / below.max(1);
+        rest %= below.max(1);
+        (axis, index)
+    })
+}
+
+/// Finds out which of the fields take whole numbers, by trying: a field that is no number, and all that is wrong with the base
+/// whatever the numbers are, comes out on the way.
+fn find_kinds(base: &Value, axes: &mut [Run], faults: &mut Faults) {
+    let at = At::Root.member("axes");
+    let fraction = Number::from_f64(0.5).unwrap_or_else(|| Number::from(1));
+    let mut document = base.clone();
+    loop {
+        for (index, axis) in axes.iter().enumerate() {
+            let number = if axis.whole { Number::from(1) } else { fraction.clone() };
+            if !axis.pointer.put(&mut document, number) {
+                faults.add(at.index(index).member("pointer"), "the base has no number there, and no place for one");
+                return;
+            }
+        }
+        let Err(fault) = parse_value::<SimulateRequest>(&document) else { break };
+        match axes.iter_mut().enumerate().find(|(_, axis)| axis.pointer.to_string() == fault.pointer) {
+            Some((_, axis)) if !axis.whole => axis.whole = true,
+            Some((index, _)) => return faults.add(at.index(index).member("pointer"), fault.detail),
+            None => return faults.add(At::Pointer(&format!("/base{}", fault.pointer)), fault.detail),
+        }
+    }
+    for (index, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.whole) {
+        if let Some(broken) = axis.broken() {
+            let value = axis.raw(broken);
+            let detail =
+                format_args!("the field takes whole numbers, and value {broken} is {value:?}: list the values");
+            faults.add(at.index(index), detail);
+        }
+    }
+}
