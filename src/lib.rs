@@ -33,6 +33,7 @@ pub mod figures;
 pub mod mechanics;
 pub mod metrics;
 pub mod otlp;
+mod plot;
 pub mod report;
 pub mod sessions;
 pub mod simulation;

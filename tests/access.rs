@@ -27,6 +27,7 @@ const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 17] = [
     ("POST", "/contacts/{id}/path", "path", 200, &["write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}/loop", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/events", "", 200, &["read", "write"]),
     ("GET", "/metrics", "", 200, &["metrics"]),
     ("GET", "/openapi.json", "", 200, &[]),

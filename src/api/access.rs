@@ -35,7 +35,7 @@ pub enum Need {
 use Need::{Key, Nothing};
 
 /// What each route needs. A route that is not here needs the highest role there is.
-const NEEDS: [(&str, &str, Need); 18] = [
+const NEEDS: [(&str, &str, Need); 19] = [
     ("POST", "/simulate", Key(Role::Read)),
     ("GET", "/contacts", Key(Role::Read)),
     ("POST", "/contacts", Key(Role::Write)),
@@ -46,6 +46,7 @@ const NEEDS: [(&str, &str, Need); 18] = [
     ("POST", "/contacts/{id}/fork", Key(Role::Write)),
     ("GET", "/contacts/{id}/stress", Key(Role::Read)),
     ("GET", "/contacts/{id}/history", Key(Role::Read)),
+    ("GET", "/contacts/{id}/loop", Key(Role::Read)),
     ("GET", "/contacts/{id}/events", Key(Role::Read)),
     ("GET", "/metrics", Key(Role::Metrics)),
     ("GET", "/healthz", Nothing),

@@ -15,11 +15,14 @@ mod metrics;
 mod moves;
 mod observe;
 mod openapi;
+mod plots;
 pub mod problem;
 mod query;
+mod reads;
 mod reply;
 mod serve;
 mod simulate;
+mod table;
 mod traffic;
 
 use std::sync::Arc;
@@ -91,8 +94,9 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(contacts::fork))
         .routes(routes!(moves::apply))
         .routes(routes!(moves::path))
-        .routes(routes!(contacts::stress))
-        .routes(routes!(contacts::history))
+        .routes(routes!(reads::stress))
+        .routes(routes!(reads::history))
+        .routes(routes!(reads::hysteresis))
         .routes(routes!(events::events))
         .routes(routes!(meta::openapi))
         .routes(routes!(meta::problem))

@@ -252,6 +252,7 @@ fn write_parameters(document: &mut Value) {
         for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
             let limit = match parameter["name"].as_str() {
                 Some("limit") => Limit::Count(*server::PAGE.start(), *server::PAGE.end()),
+                Some("points_per_move") => Limit::Count(*limits::LOOP_POINTS.start(), *limits::LOOP_POINTS.end()),
                 Some("points") => Limit::Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end()),
                 Some("Idempotency-Key") => Limit::Length(server::KEY_LENGTH),
                 _ => continue,
@@ -304,7 +305,7 @@ fn write_formats(document: &mut Value) {
         return;
     };
     for (path, operations) in paths {
-        let table = path.ends_with("/stress") || path.ends_with("/history");
+        let table = ["/stress", "/history", "/loop"].iter().any(|end| path.ends_with(end));
         if !table && path != "/contacts/{id}" {
             continue;
         }
@@ -320,8 +321,11 @@ fn write_formats(document: &mut Value) {
             }
             let content = &mut operation["responses"]["200"]["content"];
             content[format::ROWS] = json!({"schema": {"type": "array", "items": {"type": "object"}}});
-            for media_type in [format::CSV, format::NDJSON] {
+            for media_type in [format::CSV, format::NDJSON, format::SVG] {
                 content[media_type] = json!({"schema": {"type": "string"}});
+            }
+            for media_type in [format::ARROW, format::PNG] {
+                content[media_type] = json!({"schema": {"type": "string", "format": "binary"}});
             }
             operation["responses"]["406"] = refusal("Accept admits none of the formats");
         }

@@ -24,6 +24,7 @@ mod meters;
 mod read;
 mod replay;
 mod snapshot;
+mod trace;
 
 use std::sync::Arc;
 

@@ -13,6 +13,8 @@ pub const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
 /// Radii of a stress request that lists them.
 pub const STRESS_RADII: RangeInclusive<usize> = 1..=10_000;
+/// Points of a hysteresis loop that one move is given.
+pub const LOOP_POINTS: RangeInclusive<usize> = 1..=100;
 /// Radii at which the search for extrema looks at the springs.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver

@@ -22,6 +22,7 @@ pub mod simulate;
 mod slope;
 pub mod stress;
 mod strict;
+pub mod trace;
 
 pub use check::{At, Fault, Faults};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
@@ -37,3 +38,4 @@ pub use session::{
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
+pub use trace::LoopPage;
