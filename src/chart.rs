@@ -44,6 +44,7 @@ impl Series {
 impl Chart {
     /// The chart as an SVG document.
     pub(crate) fn svg(&self) -> Result<String, String> {
+        crate::plot::ready();
         let mut text = String::new();
         self.draw(&mut text, false).map_err(|fault| fault.to_string())?;
         Ok(text)

@@ -36,6 +36,7 @@ pub mod jobs;
 pub mod mechanics;
 pub mod metrics;
 pub mod otlp;
+mod plot;
 pub mod report;
 pub mod sessions;
 pub mod simulation;

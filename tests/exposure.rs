@@ -153,7 +153,15 @@ async fn a_page_of_a_named_origin_may_do_what_its_key_allows_and_others_nothing(
         assert!(answer.status().is_success(), "{origin}");
         assert_eq!(header(answer.headers(), "access-control-allow-origin"), expected, "{origin}");
         let list = |name: &str| header(answer.headers(), name).unwrap_or_default().to_lowercase();
-        for name in ["authorization", "content-type", "idempotency-key", "if-match", "last-event-id", "x-request-id"] {
+        for name in [
+            "authorization",
+            "content-type",
+            "idempotency-key",
+            "if-match",
+            "if-none-match",
+            "last-event-id",
+            "x-request-id",
+        ] {
             assert!(list("access-control-allow-headers").split(',').any(|allowed| allowed == name), "{name}");
         }
         assert_eq!(list("access-control-allow-methods"), "get,post,delete");
@@ -164,7 +172,7 @@ async fn a_page_of_a_named_origin_may_do_what_its_key_allows_and_others_nothing(
         assert_eq!(made.status().as_u16(), 201);
         assert_eq!(header(made.headers(), "access-control-allow-origin"), expected, "{origin}");
         let exposed = header(made.headers(), "access-control-expose-headers").unwrap().to_lowercase();
-        for name in ["etag", "location", "x-request-id", "retry-after"] {
+        for name in ["etag", "link", "location", "x-request-id", "retry-after"] {
             assert!(exposed.split(',').any(|shown| shown == name), "{name}");
         }
         // Refusals too can be read by the page.

@@ -54,6 +54,7 @@ const NEEDS: &[(&str, &str, Need)] = &[
     ("POST", "/contacts/{id}/fork", Key(Role::Write)),
     ("GET", "/contacts/{id}/stress", Key(Role::Read)),
     ("GET", "/contacts/{id}/history", Key(Role::Read)),
+    ("GET", "/contacts/{id}/loop", Key(Role::Read)),
     ("GET", "/contacts/{id}/events", Key(Role::Read)),
     ("GET", "/metrics", Key(Role::Metrics)),
     ("GET", "/healthz", Nothing),

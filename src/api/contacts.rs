@@ -1,17 +1,17 @@
-//! `/contacts`: sessions are made, listed, looked at, forked and deleted.
+//! `/contacts`: sessions are made, listed, looked at, forked and deleted. What they have done is in [`super::reads`].
 
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use crate::wire::{CreateRequest, ForkRequest, HistoryPage, NewSession, SessionPage, SessionReply, StressReply};
+use crate::wire::{CreateRequest, ForkRequest, NewSession, SessionPage, SessionReply};
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected, OptionalCommand};
-use super::format::{self, Format};
+use super::format::Format;
 use super::openapi::{ContactPath, IdempotencyKey, IfMatch};
-use super::problem::{Kind, Problem};
+use super::problem::Problem;
 use super::query::Params;
 use super::{limits, reply};
 
@@ -107,113 +107,4 @@ pub async fn fork(
     OptionalCommand(command): OptionalCommand<ForkRequest>,
 ) -> Result<Response, Problem> {
     Ok(reply::of_change(app.sessions.fork(id, command.body, command.key).await?))
-}
-
-/// Where stresses are asked for.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-#[expect(dead_code, reason = "described here, read by `Params`")]
-pub struct StressQuery {
-    /// Number of radii, evenly spaced from the centre to the edge, both included; this or `radii`.
-    #[param(nullable = false, example = 100)]
-    points: Option<usize>,
-    /// Radii, m, with commas between them.
-    #[param(nullable = false)]
-    radii: Option<String>,
-    /// Which fields, with commas between them, out of `pressure`, `shear`, `slip` and `displacement`; left out, the first two.
-    #[param(nullable = false)]
-    fields: Option<String>,
-    /// Whether the extrema of the shear stress are wanted too.
-    #[param(nullable = false, default = false)]
-    residual: Option<bool>,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv` or `ndjson`; left out, what `Accept` prefers.
-    #[param(nullable = false, default = "columns")]
-    format: Option<String>,
-}
-
-/// Read the stresses of a contact
-#[utoipa::path(
-    get, path = "/contacts/{id}/stress", tag = "contacts", params(ContactPath, StressQuery),
-    responses((status = 200, description = "The stresses in its present state", body = StressReply,
-        headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
-)]
-pub async fn stress(
-    Own(app): Own,
-    ContactId(id): ContactId,
-    headers: HeaderMap,
-    params: Params,
-) -> Result<Response, Problem> {
-    let (sampling, residual, named) = params.stress()?;
-    let format = Format::chosen(named, &headers)?;
-    if residual && format != Format::Columns {
-        let detail = "the extrema are no column: ask for them with the format `columns`";
-        return Err(Problem::at(Kind::InvalidInput, "/residual", detail));
-    }
-    if headers.contains_key(header::IF_NONE_MATCH) {
-        // Before anything is computed.
-        let tag = format.tag(&app.sessions.get(id).await?.sequence.to_string());
-        if reply::is_known(&headers, &tag) {
-            return Ok(reply::not_modified(&tag));
-        }
-    }
-    let more = if format == Format::Columns { 0 } else { format::STRESS_ROW };
-    let write = move |found: &StressReply| (format != Format::Columns).then(|| format::stress(format, found));
-    let (sequence, body, held) = app.sessions.stress(id, sampling, residual, more, write).await?;
-    Ok(reply::holding(format.reply(body, &format.tag(&sequence.to_string())), held))
-}
-
-/// Which moves to list.
-#[derive(IntoParams)]
-#[into_params(parameter_in = Query)]
-#[expect(dead_code, reason = "described here, read by `Params`")]
-pub struct HistoryQuery {
-    /// The `next` of the page before.
-    #[param(nullable = false)]
-    after: Option<u64>,
-    /// How many at most.
-    #[param(nullable = false)]
-    limit: Option<usize>,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv` or `ndjson`; left out, what `Accept` prefers.
-    #[param(nullable = false, default = "columns")]
-    format: Option<String>,
-}
-
-/// Read the past of a contact
-///
-/// A page of its moves with the states after them, oldest first.
-#[utoipa::path(
-    get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, HistoryQuery),
-    responses((status = 200, description = "A page of moves", body = HistoryPage,
-        headers(("ETag" = String, description = "The version of this page, in quotes"))))
-)]
-pub async fn history(
-    Own(app): Own,
-    ContactId(id): ContactId,
-    headers: HeaderMap,
-    params: Params,
-) -> Result<Response, Problem> {
-    let (after, limit, named) = params.history()?;
-    let format = Format::chosen(named, &headers)?;
-    let held = app.pool.reserve(limit * limits::HISTORY_ITEM).await?;
-    let page = app.sessions.history(id, after.unwrap_or(0), limit).await?;
-    // Moves never change: a page is told by its last move, and by whether there are more.
-    let last = page.items.last().map_or(after.unwrap_or(0), |item| item.sequence);
-    let more = if page.next.is_some() { "-more" } else { "" };
-    let tag = format.tag(&format!("{last}{more}"));
-    if reply::is_known(&headers, &tag) {
-        return Ok(reply::not_modified(&tag));
-    }
-    let body = match format {
-        Format::Columns => reply::written(&page)?,
-        flat => format::history(flat, &page),
-    };
-    let mut response = format.reply(body, &tag);
-    if let Some(next) = page.next {
-        let place =
-            format!("</contacts/{id}/history?after={next}&limit={limit}&format={}>; rel=\"next\"", format.name());
-        if let Ok(place) = HeaderValue::from_str(&place) {
-            response.headers_mut().insert(header::LINK, place);
-        }
-    }
-    Ok(reply::holding(response, held))
 }

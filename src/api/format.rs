@@ -1,12 +1,7 @@
 //! The formats that tables are given in, and how a client asks for one: by `?format=`, or else by `Accept`.
 
-use std::fmt::Write as _;
-
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse as _, Response};
-use serde_json::{Value, json};
-
-use crate::wire::{Field, HistoryPage, StressReply};
 
 use super::problem::{Kind, Problem};
 use super::reply::tagged;
@@ -17,8 +12,16 @@ pub const ROWS: &str = "application/vnd.stickslip.rows+json";
 pub const CSV: &str = "text/csv; charset=utf-8";
 /// The media type of one flat object a line.
 pub const NDJSON: &str = "application/x-ndjson";
+/// The media type of Arrow's stream of record batches.
+pub const ARROW: &str = "application/vnd.apache.arrow.stream";
+/// The media type of a plot to scale at will.
+pub const SVG: &str = "image/svg+xml";
+/// The media type of a plot in pixels.
+pub const PNG: &str = "image/png";
 /// Bytes of a row of stresses in the longest of the formats.
 pub const STRESS_ROW: usize = 256;
+/// Bytes that a plot takes while it is drawn.
+pub const PLOT: usize = 16 * 1024 * 1024;
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,11 +34,21 @@ pub enum Format {
     Csv,
     /// One flat JSON object a line.
     Ndjson,
+    /// A stream of Arrow's record batches: typed columns, read without parsing.
+    Arrow,
+    /// A plot to scale at will.
+    Svg,
+    /// A plot in pixels.
+    Png,
 }
 
 impl Format {
     /// All formats; where a client has no preference, the first.
-    pub const ALL: [Format; 4] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson];
+    pub const ALL: [Format; 7] =
+        [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow, Format::Svg, Format::Png];
+
+    /// Those of a table that nobody draws.
+    pub const TABLES: [Format; 5] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow];
 
     /// Its name in a query.
     #[must_use]
@@ -45,6 +58,9 @@ impl Format {
             Format::Rows => "rows",
             Format::Csv => "csv",
             Format::Ndjson => "ndjson",
+            Format::Arrow => "arrow",
+            Format::Svg => "svg",
+            Format::Png => "png",
         }
     }
 
@@ -56,6 +72,25 @@ impl Format {
             Format::Rows => ROWS,
             Format::Csv => CSV,
             Format::Ndjson => NDJSON,
+            Format::Arrow => ARROW,
+            Format::Svg => SVG,
+            Format::Png => PNG,
+        }
+    }
+
+    /// Whether it is a picture.
+    #[must_use]
+    pub fn is_plot(self) -> bool {
+        matches!(self, Format::Svg | Format::Png)
+    }
+
+    /// Bytes that it takes beyond the columns, for so many rows of so many bytes each.
+    #[must_use]
+    pub fn bytes(self, rows: usize, row: usize) -> usize {
+        match self {
+            Format::Columns => 0,
+            Format::Svg | Format::Png => PLOT + rows * row,
+            Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => rows * row,
         }
     }
 
@@ -64,6 +99,14 @@ impl Format {
     /// # Errors
     /// [`Kind::NotAcceptable`] if `Accept` admits none.
     pub fn chosen(named: Option<Format>, headers: &HeaderMap) -> Result<Format, Problem> {
+        Format::chosen_of(named, headers, &Format::ALL)
+    }
+
+    /// The same out of some formats.
+    ///
+    /// # Errors
+    /// [`Kind::NotAcceptable`] if `Accept` admits none of them.
+    pub fn chosen_of(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
         if let Some(format) = named {
             return Ok(format);
         }
@@ -74,17 +117,15 @@ impl Format {
             return Ok(Format::Columns);
         }
         let mut best = (0.0, None);
-        for format in Format::ALL {
+        for &format in formats {
             let quality = quality(&accepted, format.media_type());
             if quality > best.0 {
                 best = (quality, Some(format));
             }
         }
         best.1.ok_or_else(|| {
-            let known: Vec<String> = Format::ALL
-                .iter()
-                .map(|format| format!("{} (`?format={}`)", format.media_type(), format.name()))
-                .collect();
+            let known: Vec<String> =
+                formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
             Problem::new(Kind::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
         })
     }
@@ -132,99 +173,4 @@ fn quality(accepted: &str, media_type: &str) -> f64 {
         }
     }
     best.1
-}
-
-/// Stresses as a flat table.
-#[must_use]
-pub fn stress(format: Format, reply: &StressReply) -> Vec<u8> {
-    let columns: Vec<(&str, &Vec<Option<f64>>)> = Field::ALL
-        .into_iter()
-        .filter_map(|field| {
-            let column = match field {
-                Field::Pressure => &reply.pressure,
-                Field::Shear => &reply.shear,
-                Field::Slip => &reply.slip,
-                Field::Displacement => &reply.displacement,
-            };
-            column.as_ref().map(|column| (field.name(), column))
-        })
-        .collect();
-    let names: Vec<&str> = std::iter::once("radius").chain(columns.iter().map(|(name, _)| *name)).collect();
-    let rows = reply.radius.iter().enumerate().map(|(index, radius)| {
-        let values = columns.iter().map(|(_, column)| json!(column.get(index).copied().flatten()));
-        std::iter::once(json!(radius)).chain(values).collect()
-    });
-    table(format, &names, rows)
-}
-
-/// A page of a history as a flat table: the states with their numbers and times.
-#[must_use]
-pub fn history(format: Format, page: &HistoryPage) -> Vec<u8> {
-    const NAMES: [&str; 12] = [
-        "sequence",
-        "at",
-        "displacement",
-        "force",
-        "indentation",
-        "normal_force",
-        "contact_radius",
-        "stick_radius",
-        "regime",
-        "dissipated_energy",
-        "elastic_energy",
-        "memory_depth",
-    ];
-    let rows = page.items.iter().map(|item| {
-        let state = &item.state;
-        vec![
-            json!(item.sequence),
-            json!(item.at),
-            json!(state.displacement),
-            json!(state.force),
-            json!(state.indentation),
-            json!(state.normal_force),
-            json!(state.contact_radius),
-            json!(state.stick_radius),
-            json!(state.regime),
-            json!(state.dissipated_energy),
-            json!(state.elastic_energy),
-            json!(state.memory_depth),
-        ]
-    });
-    table(format, &NAMES, rows)
-}
-
-/// Rows under names. No name and no text in a table has a comma or a quote in it.
-fn table(format: Format, names: &[&str], rows: impl Iterator<Item = Vec<Value>>) -> Vec<u8> {
-    let mut text = match format {
-        Format::Csv => names.join(",") + "\n",
-        Format::Rows => "[".to_owned(),
-        Format::Columns | Format::Ndjson => String::new(),
-    };
-    let separator = if format == Format::Rows { "," } else { "\n" };
-    for (index, row) in rows.enumerate() {
-        if index > 0 {
-            text.push_str(separator);
-        }
-        for (column, (name, value)) in names.iter().zip(&row).enumerate() {
-            let comma = if column > 0 { "," } else { "" };
-            // Writing to a string cannot fail.
-            let _ = match (format, value) {
-                (Format::Csv, Value::Null) => write!(text, "{comma}"),
-                (Format::Csv, Value::String(value)) => write!(text, "{comma}{value}"),
-                (Format::Csv, value) => write!(text, "{comma}{value}"),
-                (_, value) if column == 0 => write!(text, "{{\"{name}\":{value}"),
-                (_, value) => write!(text, ",\"{name}\":{value}"),
-            };
-        }
-        if format != Format::Csv {
-            text.push('}');
-        }
-    }
-    if format == Format::Rows {
-        text.push(']');
-    } else if !text.is_empty() && !text.ends_with('\n') {
-        text.push('\n');
-    }
-    text.into_bytes()
 }

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 use std::time::Duration;
 
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use tower_http::cors::CorsLayer;
 
 use super::access::METHODS;
@@ -20,33 +20,51 @@ const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
 );
 
+/// Which pages may embed a reply.
+const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+
 /// What every reply has.
 const COMMON: [(HeaderName, HeaderValue); 4] = [
     (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
     (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
     (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
-    (HeaderName::from_static("cross-origin-resource-policy"), HeaderValue::from_static("same-origin")),
+    (RESOURCE_POLICY, HeaderValue::from_static("same-origin")),
 ];
 
-/// Writes the headers of a reply; `page` if it is of the page to try the service, which is no secret and may be kept.
-pub fn protect(headers: &mut HeaderMap, page: bool) {
+/// Writes the headers of a reply to a request by `method`; `page` if it is of the page to try the service, which is no secret
+/// and may be kept.
+pub fn protect(headers: &mut HeaderMap, method: &Method, page: bool) {
     headers.reserve(COMMON.len() + 3);
     headers.extend(COMMON);
     headers.insert(header::CONTENT_SECURITY_POLICY, if page { PAGE_POLICY } else { POLICY });
+    if headers.get(header::CONTENT_TYPE).is_some_and(|kind| kind.as_bytes().starts_with(b"image/")) {
+        // A dashboard elsewhere may show a plot. Its scripts see nothing of it but its size.
+        headers.insert(RESOURCE_POLICY, HeaderValue::from_static("cross-origin"));
+    }
     if !page {
-        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        // What has a version may be kept by the browser that got it, and be shown again once the server has said that it is
+        // the present one.
+        let versioned = matches!(*method, Method::GET | Method::HEAD) && headers.contains_key(header::ETAG);
+        let keeping = if versioned { "private, no-cache" } else { "no-store" };
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static(keeping));
     }
 }
 
 /// Answers the questions of browsers on behalf of pages of these origins.
 pub fn cross_origin(origins: &[HeaderValue]) -> CorsLayer {
     let sent = ["idempotency-key", "last-event-id"].map(HeaderName::from_static);
-    let sent = sent.into_iter().chain([header::AUTHORIZATION, header::CONTENT_TYPE, header::IF_MATCH, REQUEST_ID]);
+    let sent = sent.into_iter().chain([
+        header::AUTHORIZATION,
+        header::CONTENT_TYPE,
+        header::IF_MATCH,
+        header::IF_NONE_MATCH,
+        REQUEST_ID,
+    ]);
     CorsLayer::new()
         .allow_origin(origins.to_vec())
         .allow_methods(METHODS)
         .allow_headers(sent.collect::<Vec<_>>())
-        .expose_headers([header::ETAG, header::LOCATION, header::RETRY_AFTER, REQUEST_ID])
+        .expose_headers([header::ETAG, header::LINK, header::LOCATION, header::RETRY_AFTER, REQUEST_ID])
         .max_age(REMEMBERED)
 }
 

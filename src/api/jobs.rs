@@ -16,8 +16,8 @@ use super::format::Format;
 use super::limits::KEEP_ALIVE;
 use super::problem::Problem;
 use super::query::Params;
+use super::sheet::Table;
 use super::sweep::{TableQuery, table};
-use super::table::Table;
 use super::{App, reply};
 
 /// The job in the path.
@@ -47,7 +47,7 @@ pub async fn get(Own(app): Own, JobId(id): JobId, params: Params) -> Result<Resp
     responses((status = 200, description = "The table", body = SweepReply))
 )]
 pub async fn result(Own(app): Own, JobId(id): JobId, headers: HeaderMap, params: Params) -> Result<Response, Problem> {
-    let format = Format::chosen(params.table()?, &headers)?;
+    let format = Format::chosen_of(params.table()?, &headers, &Format::TABLES)?;
     let held = app.pool.reserve(app.jobs.size(id).await?).await?;
     let (draft, rows) = app.jobs.result(id).await?;
     Ok(reply::holding(table(Table::new(&draft, rows), format), held))

@@ -17,14 +17,17 @@ mod metrics;
 mod moves;
 mod observe;
 mod openapi;
+mod plots;
 pub mod problem;
 mod protocols;
 mod query;
+mod reads;
 mod reply;
 mod serve;
+pub mod sheet;
 mod simulate;
 mod sweep;
-pub mod table;
+mod table;
 mod traffic;
 
 use std::sync::Arc;
@@ -104,8 +107,9 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(moves::apply))
         .routes(routes!(moves::path))
         .routes(routes!(moves::relax))
-        .routes(routes!(contacts::stress))
-        .routes(routes!(contacts::history))
+        .routes(routes!(reads::stress))
+        .routes(routes!(reads::history))
+        .routes(routes!(reads::hysteresis))
         .routes(routes!(events::events))
         .routes(routes!(meta::openapi))
         .routes(routes!(meta::problem))

@@ -58,7 +58,7 @@ pub async fn observe(State(traffic): State<Arc<Traffic>>, mut request: Request, 
         response = dressed(response, problem, &id);
     }
     let page = route.is_some_and(|route| route.starts_with("/docs"));
-    headers::protect(response.headers_mut(), page);
+    headers::protect(response.headers_mut(), &method, page);
     if let Ok(value) = HeaderValue::from_str(&id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }

@@ -271,6 +271,7 @@ fn write_parameters(document: &mut Value) {
         for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
             let limit = match parameter["name"].as_str() {
                 Some("limit") => Limit::Count(*server::PAGE.start(), *server::PAGE.end()),
+                Some("points_per_move") => Limit::Count(*limits::LOOP_POINTS.start(), *limits::LOOP_POINTS.end()),
                 Some("points") => Limit::Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end()),
                 Some("Idempotency-Key") => Limit::Length(server::KEY_LENGTH),
                 _ => continue,
@@ -323,7 +324,7 @@ fn write_formats(document: &mut Value) {
         return;
     };
     for (path, operations) in paths {
-        let versioned = path.ends_with("/stress") || path.ends_with("/history");
+        let versioned = ["/stress", "/history", "/loop"].iter().any(|end| path.ends_with(end));
         let table = versioned || path == "/sweep" || path == "/jobs/{id}/result";
         if !table && path != "/contacts/{id}" {
             continue;
@@ -334,7 +335,8 @@ fn write_formats(document: &mut Value) {
                 json!({"description": "The client has this version already, as its If-None-Match says"});
         }
         if table {
-            let names = Format::ALL.map(Format::name);
+            let formats = if versioned { &Format::ALL[..] } else { &Format::TABLES[..] };
+            let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
             for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
                 if parameter["name"] == "format" {
                     parameter["schema"]["enum"] = json!(names);
@@ -342,8 +344,11 @@ fn write_formats(document: &mut Value) {
             }
             let content = &mut operation["responses"]["200"]["content"];
             content[format::ROWS] = json!({"schema": {"type": "array", "items": {"type": "object"}}});
-            for media_type in [format::CSV, format::NDJSON] {
-                content[media_type] = json!({"schema": {"type": "string"}});
+            for format in formats.iter().skip(2) {
+                let binary = matches!(format, Format::Arrow | Format::Png);
+                let schema =
+                    if binary { json!({"type": "string", "format": "binary"}) } else { json!({"type": "string"}) };
+                content[format.media_type()] = json!({"schema": schema});
             }
             operation["responses"]["406"] = refusal("Accept admits none of the formats");
         }

@@ -3,14 +3,19 @@
 use std::str::FromStr;
 
 use axum::extract::{FromRequestParts, Query};
+use axum::http::HeaderMap;
 use axum::http::request::Parts;
 
+use crate::wire::limits as wire_limits;
 use crate::wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
 
 use super::App;
 use super::format::Format;
 use super::limits;
 use super::problem::Problem;
+
+/// Radii of a plot whose client does not say.
+const PLOTTED: usize = 1_000;
 
 /// The parameters of a request, and what is wrong with them so far.
 pub struct Params {
@@ -97,13 +102,31 @@ impl Params {
     /// # Errors
     /// A [`Problem`] with every fault of the parameters.
     pub fn table(mut self) -> Result<Option<Format>, Problem> {
-        let format = self.format();
+        let format = self.format_of(&Format::TABLES);
         self.finish(Some(format))
     }
 
+    /// As [`Params::history`], and how many points of a loop a move is given.
+    ///
+    /// # Errors
+    /// A [`Problem`] with every fault of the parameters.
+    pub fn hysteresis(mut self) -> Result<(Option<u64>, usize, usize, Option<Format>), Problem> {
+        let (after, limit) = self.bounds("the number of a move");
+        let points = self.number("points_per_move", "a whole number, not negative").unwrap_or(1);
+        self.faults.count(At::Root.member("points_per_move"), points, &wire_limits::LOOP_POINTS);
+        let format = self.format();
+        self.finish(Some((after, limit, points, format)))
+    }
+
     fn format(&mut self) -> Option<Format> {
-        let named = |text: &str| Format::ALL.into_iter().find(|format| format.name() == text);
-        self.take("format", "one of `columns`, `rows`, `csv`, `ndjson`", named)
+        self.format_of(&Format::ALL)
+    }
+
+    fn format_of(&mut self, formats: &[Format]) -> Option<Format> {
+        let named = |text: &str| formats.iter().copied().find(|format| format.name() == text);
+        let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+        let expected = format!("one of `{}`", names.join("`, `"));
+        self.take("format", &expected, named)
     }
 
     fn bounds<T: FromStr>(&mut self, expected: &str) -> (Option<T>, usize) {
@@ -113,13 +136,13 @@ impl Params {
         (after, limit)
     }
 
-    /// Which stresses are asked for, whether their extrema are, and the format if it is named.
+    /// Which stresses are asked for, whether their extrema are, and the format if it is named. A plot needs no radii.
     ///
     /// # Errors
     /// A [`Problem`] with every fault of the parameters.
-    pub fn stress(mut self) -> Result<(Sampling, bool, Option<Format>), Problem> {
+    pub fn stress(mut self, headers: &HeaderMap) -> Result<(Sampling, bool, Option<Format>), Problem> {
         let field = |name: &str| Field::ALL.into_iter().find(|field| field.name() == name);
-        let points = self.number("points", "a whole number, not negative");
+        let mut points = self.number("points", "a whole number, not negative");
         let radii = self.take("radii", "numbers with commas between them", |text| {
             text.split(',').map(|number| number.trim().parse().ok()).collect()
         });
@@ -130,6 +153,14 @@ impl Params {
         );
         let residual = self.number("residual", "true or false").unwrap_or(false);
         let format = self.format();
+        if Format::chosen(format, headers).is_ok_and(Format::is_plot) {
+            if fields.is_some() {
+                self.faults.add(At::Root.member("fields"), "a plot always shows pressure and shear: leave this out");
+            }
+            if radii.is_none() {
+                points = points.or(Some(PLOTTED));
+            }
+        }
         if !self.faults.is_empty() {
             return self.finish(None);
         }

@@ -19,7 +19,7 @@ use super::format::Format;
 use super::openapi::IdempotencyKey;
 use super::problem::Problem;
 use super::query::Params;
-use super::table::Table;
+use super::sheet::Table;
 use super::{jobs, reply};
 
 /// Bytes of a number of a table, computed and put together.
@@ -66,7 +66,7 @@ pub async fn sweep(
     command: Command<SweepRequest>,
 ) -> Result<Response, Problem> {
     let (named, events) = (params.table()?, wants_events(&headers));
-    let format = if events { Format::Columns } else { Format::chosen(named, &headers)? };
+    let format = if events { Format::Columns } else { Format::chosen_of(named, &headers, &Format::TABLES)? };
     let Command { body: draft, key, mut held } = command;
     let wanted = draft.request.job;
     let preferred = prefers_job(&headers);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use stickslip::api::Problem;
 use stickslip::api::format::Format;
-use stickslip::api::table::Table;
+use stickslip::api::sheet::Table;
 use stickslip::simulation::{Rows, Stop, Sweep as Plan, Workers};
 use stickslip::wire::{self, SweepRequest};
 
@@ -35,6 +35,7 @@ enum Written {
     Rows,
     Csv,
     Ndjson,
+    Arrow,
 }
 
 impl Sweep {
@@ -62,6 +63,7 @@ impl Sweep {
             Written::Rows => Format::Rows,
             Written::Csv => Format::Csv,
             Written::Ndjson => Format::Ndjson,
+            Written::Arrow => Format::Arrow,
         };
         let mut out = io::BufWriter::new(io::stdout().lock());
         let mut pieces = Table::new(plan.draft(), rows).pieces(format);

@@ -31,7 +31,7 @@
 //!
 //! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
 //! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `extrema`, `surface`, `accuracy`: what is
-//! asked of it. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
+//! asked of it. `waypoint`: where a move is on its way. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
 //! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
 
 mod accuracy;
@@ -53,6 +53,7 @@ pub mod springs;
 mod state;
 mod surface;
 mod traction;
+mod waypoint;
 
 pub use accuracy::Estimate;
 pub use contact::Contact;

@@ -25,6 +25,7 @@ mod read;
 mod relax;
 mod replay;
 mod snapshot;
+mod trace;
 
 use std::sync::Arc;
 

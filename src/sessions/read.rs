@@ -2,10 +2,12 @@
 
 use uuid::Uuid;
 
-use crate::simulation::{self, Reservation, cost, stresses};
+use crate::mechanics::Contact;
+use crate::simulation::cost::{self, Nanoseconds};
+use crate::simulation::{self, Reservation, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
-use super::{SessionError, Sessions, written};
+use super::{SessionError, Sessions};
 
 impl Sessions {
     /// A session with its state.
@@ -26,31 +28,30 @@ impl Sessions {
         })
     }
 
-    /// The stresses of a session as `write` puts them down, in so many bytes a radius beyond JSON's columns at the most, with
-    /// the sequence that they belong to, and the memory that they take.
+    /// What `write` makes of the stresses of a session, its contact and its sequence, in `more` bytes beyond JSON's columns at the
+    /// most sequence, and the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
-    pub async fn stress(
+    pub async fn stress<T: Send + 'static>(
         &self,
         id: Uuid,
         sampling: Sampling,
         residual: bool,
-        more: usize,
-        write: impl FnOnce(&StressReply) -> Option<Vec<u8>> + Send + 'static,
-    ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
+        (more, longer): (usize, Nanoseconds),
+        write: impl FnOnce(&StressReply, &Contact, u64) -> T + Send + 'static,
+    ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence, held) = {
             let mut guard = self.lock(id).await?;
             let live = self.present(&mut guard).await?;
             let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
-            let bytes = bytes + more * sampling.length();
-            let held = self.common.pool.reserve(bytes).await?;
+            let held = self.common.pool.reserve(bytes + more).await?;
             (live.contact.clone(), live.session.sequence, held)
         };
         let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
-        let cost = cost::on(contact.profile(), cost, residual);
+        let cost = cost::on(contact.profile(), cost, residual).saturating_add(longer);
         let work = move || {
             let stress = stresses(&contact, &sampling, &stop)?;
             let reply = StressReply {
@@ -61,7 +62,7 @@ impl Sessions {
                 displacement: stress.displacement,
                 residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
             };
-            write(&reply).map_or_else(|| written(&reply), Ok)
+            Ok::<_, SessionError>(write(&reply, &contact, sequence))
         };
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
     }

@@ -27,6 +27,8 @@ pub const SEED: RangeInclusive<u64> = 0..=(1 << 53) - 1;
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
 /// Radii of a stress request that lists them.
 pub const STRESS_RADII: RangeInclusive<usize> = 1..=10_000;
+/// Points of a hysteresis loop that one move is given.
+pub const LOOP_POINTS: RangeInclusive<usize> = 1..=100;
 /// Radii at which the search for extrema looks at the springs.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver

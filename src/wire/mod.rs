@@ -28,6 +28,7 @@ mod slope;
 pub mod stress;
 mod strict;
 pub mod sweep;
+pub mod trace;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{At, Fault, Faults};
@@ -47,3 +48,4 @@ pub use session::{
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
 pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};
+pub use trace::LoopPage;

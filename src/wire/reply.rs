@@ -65,6 +65,19 @@ pub enum Regime {
     Separated,
 }
 
+impl Regime {
+    /// Its name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Regime::Stick => "stick",
+            Regime::PartialSlip => "partial_slip",
+            Regime::GrossSlip => "gross_slip",
+            Regime::Separated => "separated",
+        }
+    }
+}
+
 /// The shear stress that a contact carries, in its extrema.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Residual {

@@ -1,0 +1,197 @@
+//! Drawing a plot, on whatever takes lines and letters.
+
+use std::error::Error;
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::{Axis, Band, Colour, Panel, Plot, thousandfold};
+
+/// Pixels of a plot. Twice what is shown on a page, so that curves and letters are smooth there.
+pub(super) const SIZE: (u32, u32) = (1520, 1000);
+/// Pixels of the margin left of the axes: the labels of all panels begin at one line.
+const LEFT: u32 = 132;
+/// The part of the height that is kept free above and below curves.
+const MARGIN: f64 = 0.05;
+/// The same where there is a legend.
+const HEADROOM: f64 = 0.24;
+
+/// What is smaller is nought on any axis.
+const LEAST: f64 = 1e-200;
+
+/// What values are divided by, and the label.
+struct Scale {
+    unit: f64,
+    label: String,
+}
+
+impl Colour {
+    fn rgb(self) -> RGBColor {
+        match self {
+            Colour::Blue => RGBColor(0, 90, 181),
+            Colour::Red => RGBColor(220, 50, 32),
+            Colour::Grey => RGBColor(110, 110, 110),
+        }
+    }
+}
+
+/// The plot as an SVG document.
+pub(super) fn svg(plot: &Plot) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+    draw(plot, &area)?;
+    drop(area);
+    Ok(text.into_bytes())
+}
+
+/// The plot as rows of pixels of three bytes.
+pub(super) fn pixels(plot: &Plot) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut pixels = vec![0; 3 * SIZE.0 as usize * SIZE.1 as usize];
+    let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
+    draw(plot, &area)?;
+    drop(area);
+    Ok(pixels)
+}
+
+fn draw<DB: DrawingBackend>(plot: &Plot, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
+where
+    DB::ErrorType: 'static,
+{
+    super::ready();
+    area.fill(&WHITE)?;
+    let titled = area.margin(16, 0, 0, 0).titled(&plot.title, ("sans-serif", 30))?;
+    let ends = plot.bands.iter().flat_map(|band| [band.from, band.to]);
+    let across =
+        plot.panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
+    let extent = extent(across.chain(ends));
+    let scale = scale(&plot.x, &extent);
+    let last = plot.panels.len().saturating_sub(1);
+    for (index, (part, panel)) in
+        titled.split_evenly((plot.panels.len().max(1), 1)).iter().zip(&plot.panels).enumerate()
+    {
+        let bands: &[Band] = if index == 0 { &plot.bands } else { &[] };
+        one(part, panel, bands, &extent, &scale, index == last)?;
+    }
+    area.present()?;
+    Ok(())
+}
+
+fn one<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    panel: &Panel,
+    bands: &[Band],
+    across: &Range<f64>,
+    x: &Scale,
+    lowest: bool,
+) -> Result<(), Box<dyn Error>>
+where
+    DB::ErrorType: 'static,
+{
+    let values = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+    let tall = extent(values);
+    let y = scale(&panel.y, &tall);
+    let span = (tall.end - tall.start) / y.unit;
+    let legend = !bands.is_empty() || panel.curves.iter().any(|curve| !curve.silent);
+    let above = if legend { HEADROOM } else { MARGIN };
+    let (low, high) = (tall.start / y.unit - MARGIN * span, tall.end / y.unit + above * span);
+    let mut axes = ChartBuilder::on(area)
+        .margin_left(20)
+        .margin_right(36)
+        .margin_top(12)
+        .x_label_area_size(if lowest { 84 } else { 20 })
+        .y_label_area_size(LEFT)
+        .build_cartesian_2d(across.start / x.unit..across.end / x.unit, low..high)?;
+    for band in bands {
+        let corners = [(band.from / x.unit, low), (band.to / x.unit, high)];
+        let shade = band.colour.rgb().mix(0.10);
+        axes.draw_series([Rectangle::new(corners, shade.filled())])?
+            .label(band.name)
+            .legend(move |(x, y)| Rectangle::new([(x, y - 12), (x + 28, y + 12)], shade.filled()));
+    }
+    let mut mesh = axes.configure_mesh();
+    mesh.y_desc(&y.label)
+        .x_labels(if lowest { 10 } else { 0 })
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
+        .label_style(("sans-serif", 24))
+        .axis_desc_style(("sans-serif", 28))
+        .light_line_style(TRANSPARENT);
+    if lowest {
+        mesh.x_desc(&x.label);
+    }
+    mesh.draw()?;
+    for curve in &panel.curves {
+        let style = curve.colour.rgb().stroke_width(4);
+        let mut named = curve.silent;
+        for stretch in
+            curve.points.split(|point| !shown(&point.0) || !shown(&point.1)).filter(|stretch| !stretch.is_empty())
+        {
+            let points = stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
+            let drawn = if stretch.len() > 1 {
+                axes.draw_series(LineSeries::new(points, style))?
+            } else {
+                axes.draw_series(points.map(|point| Circle::new(point, 7, curve.colour.rgb().filled())))?
+            };
+            if !std::mem::replace(&mut named, true) {
+                drawn
+                    .label(curve.name)
+                    .legend(move |(x, y)| Rectangle::new([(x, y - 3), (x + 28, y + 3)], style.filled()));
+            }
+        }
+    }
+    if !legend {
+        return Ok(());
+    }
+    axes.configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .legend_area_size(40)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(("sans-serif", 24))
+        .draw()?;
+    Ok(())
+}
+
+/// From the least of the values to the largest; if there is but one or none, with something around it.
+fn extent(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values.filter(shown) {
+        (low, high) = (low.min(value), high.max(value));
+    }
+    if low > high {
+        return 0.0..1.0;
+    }
+    // What differs in its last digits alone would have labels that are all the same.
+    let largest = low.abs().max(high.abs());
+    let pad = if largest > LEAST { 0.1 * largest } else { 1.0 };
+    if high - low > LEAST.max(1e-9 * largest) { low..high } else { low - pad..high + pad }
+}
+
+/// Whether a value is on the paper: beyond any physics, sums of two would be infinite.
+fn shown(value: &f64) -> bool {
+    value.abs() < 1e250
+}
+
+fn scale(axis: &Axis, extent: &Range<f64>) -> Scale {
+    match axis.unit {
+        None => Scale { unit: 1.0, label: axis.name.to_owned() },
+        Some(unit) => {
+            let (divisor, prefix) = thousandfold(extent.start.abs().max(extent.end.abs()));
+            Scale { unit: divisor, label: format!("{} / {prefix}{unit}", axis.name) }
+        }
+    }
+}
+
+/// A tick's label: a few digits, without a sign on nought.
+fn tick(value: &f64) -> String {
+    let size = value.abs();
+    if size < 1e-12 {
+        "0".to_owned()
+    } else if (1e-3..1e7).contains(&size) {
+        let rounded = format!("{value:.6}");
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{value:.2e}")
+    }
+}

@@ -1,0 +1,119 @@
+//! The way between recorded states, made again in small steps beside the session, which does not move.
+
+use uuid::Uuid;
+
+use crate::mechanics::Contact;
+use crate::simulation::{Failure, Stop, cost};
+use crate::store::Record;
+use crate::wire::{HistoryItem, LoopPage, limits};
+
+use super::{SessionError, Sessions};
+
+/// Moves that are fetched from the store at a time.
+const PAGE: usize = 10_000;
+/// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
+const POINT: usize = 512;
+/// Bytes of a piece of memory; a move leaves one, as a guess.
+const PIECE: usize = 96;
+/// Where the number of points is asked for.
+const POINTS: &str = "/points_per_move";
+
+impl Sessions {
+    /// The loop through moves of the past, so many points a move; `past` are those moves, and the first comes after the move
+    /// `after`.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
+    /// [`SessionError::Failure`] if it takes too long.
+    pub async fn trace(
+        &self,
+        id: Uuid,
+        after: u64,
+        past: &[HistoryItem],
+        points: usize,
+    ) -> Result<LoopPage, SessionError> {
+        let mut page = LoopPage::after(after);
+        let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
+            past.iter().for_each(|item| page.push_end(item.sequence, &item.state));
+            return Ok(page);
+        };
+        let (stop, _guard) = self.common.pool.deadline();
+        let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
+        let _held = self.common.pool.reserve(2 * PIECE * pieces).await?;
+        let snapshot = self.common.store.snapshot(id).await;
+        let virgin = {
+            let mut guard = self.lock(id).await?;
+            self.present(&mut guard).await?.contact.anew()
+        };
+        let (mut contact, mut at) = self.newest(snapshot, virgin, after).await?;
+        while at < last {
+            let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
+            let records = self.common.store.history(id, at, most).await.map_err(|error| self.refused(id, error))?;
+            let Some(end) = records.last().filter(|_| records[0].sequence == at + 1).map(|record| record.sequence)
+            else {
+                return Err(SessionError::Broken(format!("move {} of contact {id} is missing", at + 1)));
+            };
+            let drawn = records.iter().filter(|record| record.sequence > after).count();
+            let curved = records.iter().filter(|record| record.step.is_curved()).count();
+            let steps = records.len() + drawn * points;
+            let price = cost::estimated_cost(steps, curved * points, contact.memory_depth(), 0, false);
+            let price = cost::on(contact.profile(), price, false);
+            let stop = stop.clone();
+            let work = move || {
+                for record in &records {
+                    let wanted = if record.sequence > after { points } else { 1 };
+                    along(&mut contact, record, wanted, &stop, &mut page)?;
+                    if record.sequence > after {
+                        page.push_end(record.sequence, &record.state);
+                    }
+                }
+                Ok::<_, SessionError>((contact, page))
+            };
+            (contact, page) = self.common.pool.run(price, work).await??;
+            at = end;
+        }
+        Ok(page)
+    }
+
+    /// Bytes that a loop of so many points takes.
+    #[must_use]
+    pub fn bytes_of_trace(points: usize) -> usize {
+        points * POINT
+    }
+}
+
+/// Makes a move of the past, and before it notes the points on its way.
+fn along(
+    contact: &mut Contact,
+    record: &Record,
+    points: usize,
+    stop: &Stop,
+    page: &mut LoopPage,
+) -> Result<(), SessionError> {
+    let check = || {
+        stop.check().map_err(|failure| match failure {
+            Failure::TooLong { allowed, .. } => Failure::TooLong { pointer: POINTS.to_owned(), allowed },
+            other => other,
+        })
+    };
+    let go_on = || stop.check().is_ok();
+    let step = record.step.step();
+    // The copy goes in small steps; the contact itself makes the move as it was made, to the last bit.
+    let mut copy = (points > 1).then(|| contact.clone());
+    for index in 1..points {
+        check()?;
+        let part = index as f64 / points as f64;
+        // A target on the way may be one that nobody can ask for, such as a force of 1e-300 N; then there is no point.
+        if let Some(copy) = &mut copy
+            && copy.apply_while(&contact.waypoint(&step, part), record.tolerance, &go_on).is_ok()
+        {
+            let state = copy.state();
+            page.push(record.sequence, part, state.displacement, state.force);
+        }
+    }
+    check()?;
+    contact.apply_while(&step, record.tolerance, &go_on).map_err(|error| match check() {
+        Err(failure) => failure.into(),
+        Ok(()) => SessionError::Broken(format!("a stored move cannot be made again: {error}")),
+    })
+}
