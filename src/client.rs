@@ -24,9 +24,9 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::wire::{
-    CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply,
-    PathRequest, ProblemDocument, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
-    StressRequest,
+    ContactDefinition, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply, MoveRequest,
+    NewSession, PathReply, PathRequest, ProblemDocument, SessionPage, SessionReply, SimulateReply, SimulateRequest,
+    StateEvent, StressReply, StressRequest,
 };
 
 /// A handle on a service; clones share its connections.
@@ -135,6 +135,14 @@ impl Client {
     /// [`Error`], as for every call.
     pub async fn contact(&self, id: Uuid) -> Result<SessionReply, Error> {
         json(self.call(Method::GET, &format!("/contacts/{id}"))).await
+    }
+
+    /// `GET /contacts/{id}/definition`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn definition(&self, id: Uuid) -> Result<ContactDefinition, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}/definition"))).await
     }
 
     /// `POST /contacts/{id}/move`.

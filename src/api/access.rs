@@ -35,12 +35,13 @@ pub enum Need {
 use Need::{Key, Nothing};
 
 /// What each route needs. A route that is not here needs the highest role there is.
-const NEEDS: [(&str, &str, Need); 18] = [
+const NEEDS: [(&str, &str, Need); 21] = [
     ("POST", "/simulate", Key(Role::Read)),
     ("GET", "/contacts", Key(Role::Read)),
     ("POST", "/contacts", Key(Role::Write)),
     ("GET", "/contacts/{id}", Key(Role::Read)),
     ("DELETE", "/contacts/{id}", Key(Role::Write)),
+    ("GET", "/contacts/{id}/definition", Key(Role::Read)),
     ("POST", "/contacts/{id}/move", Key(Role::Write)),
     ("POST", "/contacts/{id}/path", Key(Role::Write)),
     ("POST", "/contacts/{id}/fork", Key(Role::Write)),
@@ -52,6 +53,8 @@ const NEEDS: [(&str, &str, Need); 18] = [
     ("GET", "/readyz", Nothing),
     ("GET", "/openapi.json", Nothing),
     ("GET", "/problems/{code}", Nothing),
+    ("GET", "/", Nothing),
+    ("GET", super::page::FOLDER, Nothing),
     ("GET", "/docs", Nothing),
     ("GET", "/docs/{*rest}", Nothing),
 ];

@@ -20,6 +20,12 @@ const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
 );
 
+/// The page to look at does the same, and needs no style within its elements. It draws a plot that is to be saved from memory.
+const LOOK_POLICY: HeaderValue = HeaderValue::from_static(
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; \
+     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+);
+
 /// What every reply has.
 const COMMON: [(HeaderName, HeaderValue); 4] = [
     (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
@@ -28,12 +34,28 @@ const COMMON: [(HeaderName, HeaderValue); 4] = [
     (HeaderName::from_static("cross-origin-resource-policy"), HeaderValue::from_static("same-origin")),
 ];
 
-/// Writes the headers of a reply; `page` if it is of the page to try the service, which is no secret and may be kept.
-pub fn protect(headers: &mut HeaderMap, page: bool) {
+/// What a reply belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Data, which may be a secret.
+    Data,
+    /// The page to try the service, which is no secret and may be kept.
+    Docs,
+    /// The page to look at, likewise.
+    Page,
+}
+
+/// Writes the headers of a reply.
+pub fn protect(headers: &mut HeaderMap, kind: Kind) {
     headers.reserve(COMMON.len() + 2);
     headers.extend(COMMON);
-    headers.insert(header::CONTENT_SECURITY_POLICY, if page { PAGE_POLICY } else { POLICY });
-    if !page {
+    let policy = match kind {
+        Kind::Data => POLICY,
+        Kind::Docs => PAGE_POLICY,
+        Kind::Page => LOOK_POLICY,
+    };
+    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    if kind == Kind::Data {
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     }
 }

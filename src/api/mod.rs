@@ -15,6 +15,7 @@ mod metrics;
 mod moves;
 mod observe;
 mod openapi;
+mod page;
 pub mod problem;
 mod query;
 mod reply;
@@ -61,7 +62,7 @@ fn router(app: App, traffic: Arc<traffic::Traffic>) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
-    dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here), access, traffic)
+    dressed(api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here), access, traffic)
 }
 
 /// The answer to requests that do not come as far as [`router`].
@@ -88,6 +89,7 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(simulate::simulate))
         .routes(routes!(contacts::create, contacts::list))
         .routes(routes!(contacts::get, contacts::delete))
+        .routes(routes!(contacts::definition))
         .routes(routes!(contacts::fork))
         .routes(routes!(moves::apply))
         .routes(routes!(moves::path))

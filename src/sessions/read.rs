@@ -1,10 +1,13 @@
 //! Looking at sessions. A read changes nothing, and waits for no more than the move under way.
 
+use std::sync::Arc;
+
 use uuid::Uuid;
 
 use crate::simulation::{self, Reservation, cost, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
+use super::live::table_points;
 use super::{SessionError, Sessions, written};
 
 impl Sessions {
@@ -24,6 +27,21 @@ impl Sessions {
             created_at: live.session.created_at,
             updated_at: live.session.updated_at,
         })
+    }
+
+    /// The definition of a session as it came, as JSON, and the memory that it takes.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
+    pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
+        let definition = {
+            let mut guard = self.lock(id).await?;
+            Arc::clone(&self.present(&mut guard).await?.session.definition)
+        };
+        let points = table_points(&definition.profile);
+        let held = self.common.pool.reserve(points * cost::WRITTEN_POINT_BYTES).await?;
+        let work = move || written(&*definition);
+        Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
     /// The stresses of a session as `write` puts them down, in so many bytes a radius beyond JSON's columns at the most, with
