@@ -1,5 +1,7 @@
 // Calls of the public API: the key, problem documents, and the stream of events.
 
+import { pause } from "./dom.js";
+
 const KEY = "stickslip-key";
 let asking = null;
 
@@ -114,8 +116,3 @@ async function* events(body) {
     }
   }
 }
-
-const pause = (time, signal) => new Promise((resolve) => {
-  const timer = setTimeout(resolve, time);
-  signal?.addEventListener("abort", () => { clearTimeout(timer); resolve(); }, { once: true });
-});

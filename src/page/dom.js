@@ -13,6 +13,22 @@ export function el(name, attributes = {}, ...children) {
   return element;
 }
 
+/** An element of a drawing. */
+export function svg(name, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
+/** A text whose `_x` are indices, as children of an element. */
+export const words = (text) => text.split(/(_\w+)/).map((part) => (part.startsWith("_") ? el("sub", {}, part.slice(1)) : part));
+
+/** The same as children of a text in a drawing. */
+export function drawnWords(text) {
+  return text.split(/_(\w+)/).map((part, index) => (index % 2 ? svg("tspan", { class: "index", dy: 4 }, part) : svg("tspan", index ? { dy: -4 } : {}, part)));
+}
+
 let silence;
 
 /** Shows a message for a while. */
@@ -30,14 +46,18 @@ export function latest(work) {
   let busy = false;
   let next = null;
   return async function ask(...args) {
-    if (busy) { next = args; return; }
+    next = args;
+    if (busy) return;
     busy = true;
     try {
-      for (next = args; next;) {
+      let failure = null;
+      while (next) {
         const now = next;
         next = null;
-        await work(...now);
+        failure = null;
+        try { await work(...now); } catch (error) { failure = error; }
       }
+      if (failure) throw failure;
     } finally { busy = false; }
   };
 }
@@ -47,6 +67,12 @@ export function settled(work, time) {
   let timer;
   return (...args) => { clearTimeout(timer); timer = setTimeout(work, time, ...args); };
 }
+
+/** Waits for so many ms, or until `signal`. */
+export const pause = (time, signal) => new Promise((resolve) => {
+  const timer = setTimeout(resolve, time);
+  signal?.addEventListener("abort", () => { clearTimeout(timer); resolve(); }, { once: true });
+});
 
 /** Hands a text over as a file. */
 export function save(name, type, text) {

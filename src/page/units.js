@@ -21,14 +21,16 @@ export function plain(value, digits = 4) {
 /** A value with its unit: `160.2 nm`. */
 export function shown(value, unit, digits = 4) {
   if (value === null || value === undefined) return "∞";
+  if (!unit) return plain(value, digits);
   const scale = scaled(value, unit);
   return `${plain(value / scale.factor, digits)} ${scale.unit}`.trim();
 }
 
-/** What is written in a field: a number, or the text itself for the service to refuse. */
-export function written(text) {
-  const trimmed = text.trim().replace("−", "-");
+/** What is written in a field of so many powers of ten: a number in SI, or the text itself for the service to refuse. */
+export function written(text, power = 0) {
+  const trimmed = text.trim().replace("−", "-").replace(",", ".");
   if (trimmed === "") return undefined;
-  const number = Number(trimmed);
-  return Number.isFinite(number) ? number : trimmed;
+  const parts = trimmed.match(/^([+-]?(?:\d+\.?\d*|\.\d+))(?:e([+-]?\d+))?$/i);
+  // The power goes to the digits, so that 10 mm are 0.01 m to the last bit.
+  return parts ? Number(`${parts[1]}e${Number(parts[2] ?? 0) + power}`) : trimmed;
 }
