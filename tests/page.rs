@@ -10,7 +10,8 @@ use std::time::Duration;
 use browser::Browser;
 use common::{Binary, create};
 use reqwest::header;
-use serde_json::Value;
+use serde_json::{Value, json};
+use stickslip::access::{Role, new_key};
 use stickslip::client::Options;
 use stickslip::wire::{CreateRequest, Move, MoveRequest, NewSession};
 use tempfile::tempdir;
@@ -217,6 +218,13 @@ async fn what_is_on_screen_can_be_taken_away() {
     browser.save_in(folder.path()).await;
     browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
     browser.until("document.querySelectorAll('#plot-loop .line').length === 2").await;
+    // A part of a plot is shown by itself, and all of it again.
+    let ticks = "[...document.querySelectorAll('#plot-loop .grid text')].map((text) => text.textContent).join()";
+    let all = browser.value(ticks).await;
+    browser.drag("#plot-loop svg", 0.6, 0.7).await;
+    browser.until(&format!("{ticks} !== {all}")).await;
+    browser.press("#plot-loop svg", "0").await;
+    browser.until(&format!("{ticks} === {all}")).await;
     for (entry, name) in [(4, "loop.png"), (5, "loop.svg"), (6, "loop.csv")] {
         browser.click(&format!("#plot-loop .menu button:nth-of-type({entry})")).await;
         let file = saved(&folder.path().join(name)).await;
@@ -242,6 +250,74 @@ async fn what_is_on_screen_can_be_taken_away() {
     assert_eq!(reply.json::<Value>().await.unwrap()["sequence"], 3);
     browser.picture("code").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn every_shape_can_be_made() {
+    let server = Binary::start(&[]);
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/new", server.address)).await.unwrap();
+    browser.until("document.querySelector('form select') !== null").await;
+    let types = browser.value("[...document.querySelector('form select').options].map((option) => option.value)").await;
+    let types: Vec<String> = serde_json::from_value(types).unwrap();
+    let document = server.client.openapi().await.unwrap();
+    assert_eq!(types.len(), document["components"]["schemas"]["Profile"]["oneOf"].as_array().unwrap().len());
+    for kind in types {
+        browser.value("location.assign('#/new') ?? null").await;
+        browser.until("document.querySelector('#create') !== null").await;
+        let choose = format!(
+            "(() => {{ const choice = document.querySelector('form select'); choice.value = '{kind}'; \
+             choice.dispatchEvent(new Event('change', {{ bubbles: true }})); return null; }})()"
+        );
+        browser.value(&choose).await;
+        if kind == "tabulated" {
+            browser.write("form textarea", "# µm\n0;0\n100;0,5\n200 2.0\n300, 4.5").await;
+        }
+        browser.click("#create").await;
+        browser.until("location.hash.startsWith('#/contacts/') && document.querySelector('.badge.on') !== null").await;
+        let hash = browser.value("location.hash").await;
+        let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
+        let made = serde_json::to_value(server.client.definition(id).await.unwrap()).unwrap();
+        assert_eq!(made["profile"]["type"], kind.as_str());
+        if kind == "tabulated" {
+            assert_eq!(made["profile"]["r"], json!([0.0, 1e-4, 2e-4, 3e-4]));
+            assert_eq!(made["profile"]["z"], json!([0.0, 5e-7, 2e-6, 4.5e-6]));
+        }
+    }
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
+    let new = new_key("page", &[Role::Write], "").unwrap();
+    let server = Binary::start(&["--keys", &new.entry]);
+    let http = reqwest::Client::new();
+    for label in ["Steel ball", "Rubber foot"] {
+        let mut body = common::ball();
+        body["label"] = json!(label);
+        let call = http.post(format!("{}/contacts", server.address)).bearer_auth(&new.key).json(&body);
+        assert_eq!(call.send().await.unwrap().status(), 201);
+    }
+    let browser = Browser::start(400, 850, true).await;
+    browser.page.goto(&server.address).await.unwrap();
+    browser.until("document.querySelector('#key').open").await;
+    browser.write("#key input", &new.key).await;
+    browser.click("#key .primary").await;
+    let rows = "[...document.querySelectorAll('.list strong')].map((name) => name.innerText).join()";
+    browser.until(&format!("{rows} === 'Rubber foot,Steel ball'")).await;
+    browser.write("#search", "steel").await;
+    browser.until(&format!("{rows} === 'Steel ball'")).await;
+    browser.click(".list a").await;
+    browser.until("document.querySelector('.badge.on') !== null").await;
+    // The key stays in this tab, and out of what is copied.
+    browser.click(".copying button").await;
+    let commands = browser.value("document.querySelector('#code textarea').value").await;
+    let commands = commands.as_str().unwrap();
+    assert!(commands.contains("Bearer $STICKSLIP_KEY") && !commands.contains(&new.key), "{commands}");
+    assert_eq!(browser.value("JSON.stringify(localStorage) + document.cookie").await, "{}");
+    browser.stayed_quiet_and_at(&server.address, &["status of 401"]).await;
     browser.close().await;
 }
 

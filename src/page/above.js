@@ -43,7 +43,7 @@ export function colour(value) {
 
 function disc(plot, { stress, state, friction, history }) {
   const a = state.contact_radius;
-  if (!(a > 0)) return [svg("text", { x: (plot.box.left + plot.box.right) / 2, y: (plot.box.top + plot.box.bottom) / 2, "text-anchor": "middle" }, "The bodies are apart.")];
+  if (!(a > 0)) return [svg("text", { x: (plot.box.left + plot.box.right) / 2, y: (plot.box.top + plot.box.bottom) / 2, "text-anchor": "middle" }, "There is no area of contact.")];
   const finite = stress.pressure.filter((value) => value !== null);
   const mean = state.normal_force / (Math.PI * a * a);
   const full = friction * Math.min(Math.max(...finite), 4 * mean) || 1;

@@ -26,7 +26,8 @@ export class Chart {
     pointing(this);
   }
 
-  /** Shows data: `series`, and if wanted `bands` along x, `levels` of y, `marks`, a `range`, a `layer` below, a `table`. */
+  /** Shows data: `series`, and if wanted `bands` along x, `levels` of y, `marks`, a `range`, a `layer` below, a
+   *  `table`, and words for when there are no values. */
   draw(data) {
     this.data = data;
     this.redraw();
@@ -73,6 +74,9 @@ export class Chart {
     this.svg.replaceChildren(svg("defs", {}, svg("clipPath", { id: this.clip }, svg("rect", size))),
       svg("rect", { class: "field", ...size }), this.bands(), this.grid(), inside, svg("rect", { class: "frame", ...size }), this.cursor);
     this.data.layer?.(this, inside);
+    if (this.data.empty && !this.visible().some((series) => series.points.some((point) => point[1] !== null))) {
+      inside.append(svg("text", { class: "small", x: (box.left + box.right) / 2, y: (box.top + box.bottom) / 2, "text-anchor": "middle" }, this.data.empty));
+    }
     for (const level of this.data.levels ?? []) inside.append(this.level(level));
     for (const series of this.visible()) inside.append(...this.line(series));
     for (const mark of this.data.marks ?? []) {
@@ -124,7 +128,7 @@ export class Chart {
       svg("text", { x: y > 0 ? this.box.left + 6 : this.box.right - 6, y: at + (y > 0 ? 15 : -6), "text-anchor": y > 0 ? "start" : "end" }, ...drawnWords(label ?? "")));
   }
 
-  line({ points, kind, dots, line = true }) {
+  line({ name, points, kind, dots, label, line = true }) {
     const places = points.map(([x, y]) => (y === null || this.y.log && y <= 0 ? null : [this.x.at(x), this.y.at(y)]));
     const drawn = [];
     if (line) {
@@ -137,6 +141,11 @@ export class Chart {
       drawn.push(svg("path", { class: `line ${kind}`, d: path.join("") }));
     }
     if (dots) for (const place of places) if (place) drawn.push(svg("circle", { class: `dot ${kind}`, cx: place[0], cy: place[1], r: 3 }));
+    const last = places.findLast(Boolean);
+    if (label && last) {
+      const late = last[0] > (this.box.left + this.box.right) / 2;
+      drawn.push(svg("text", { class: "small", x: last[0] + (late ? -8 : 8), y: last[1] + 4, "text-anchor": late ? "end" : "start" }, name));
+    }
     return drawn;
   }
 

@@ -8,7 +8,7 @@ export function knob({ name, label, unit, limits, value, send }) {
   const box = el("input", { type: "text", inputmode: "decimal", id: `box-${name}`, autocomplete: "off", "aria-describedby": `fault-${name}` });
   const sign = el("span", { class: "unit" });
   const fault = el("p", { class: "fault", id: `fault-${name}`, role: "alert" });
-  const form = el("form", { class: "knob", onsubmit: (event) => { event.preventDefault(); enter(); } },
+  const form = el("form", { class: "knob", onsubmit: (event) => event.preventDefault() },
     el("label", { for: `box-${name}` }, words(label)), el("div", { class: "value" }, box, sign), slider, fault);
   let ends = [-1, 1];
   let scale = { factor: 1, unit };

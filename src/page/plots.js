@@ -8,7 +8,7 @@ export function plots() {
   const loop = new Chart({ name: "loop", title: "Hysteresis loop", mode: "nearest", x: { label: "Displacement U", unit: "m" }, y: { label: "Force F", unit: "N" } });
   const stress = new Chart({ name: "stress", title: "Stress under the contact", x: { label: "Radius r", unit: "m" }, y: { label: "Stress", unit: "Pa" } });
   const seen = above();
-  const work = new Chart({ name: "work", title: "Friction work and stored energy", x: { label: "Move" }, y: { label: "Energy", unit: "J" } });
+  const work = new Chart({ name: "work", title: "Friction work and stored energy", x: { label: "Move" }, y: { label: "Energy", unit: "J" }, note: "The work done against friction only grows; what is stored comes back when the contact is let go." });
 
   loop.more = ([, , sequence]) => [sequence ? `move ${sequence}` : "start"];
   loop.onhover = (hit) => work.point(hit && beside(work, hit.datum[2]));
@@ -56,7 +56,7 @@ function looped({ path, state, friction, history }) {
       { name: "the way so far", kind: "past", points: path },
       { name: "since the last turn", kind: "now", points: path.slice(Math.max(0, turn - 1)), hover: false },
     ],
-    levels: [{ y: limit, label: "+μ F_N: all slips", fit: true }, { y: -limit, label: "−μ F_N", fit: true }],
+    levels: limit > 0 ? [{ y: limit, label: "+μ F_N: all slips", fit: true }, { y: -limit, label: "−μ F_N", fit: true }] : [],
     marks: [{ x: state.displacement, y: state.force, class: state.regime }],
     table: () => ({
       columns: ["sequence", "displacement_m", "force_n", "normal_force_n", "indentation_m", "stick_radius_m", "contact_radius_m", "regime", "friction_work_j", "elastic_energy_j"],

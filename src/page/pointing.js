@@ -93,7 +93,7 @@ function found(chart, [left, top]) {
 function at(chart, series, index) {
   const point = series.points[index];
   chart.index = index;
-  const lines = [`${chart.x.label} ${chart.reading(chart.x, point[0])}`, `${chart.y.label} ${chart.reading(chart.y, point[1])}`, ...(chart.more?.(point) ?? [])];
+  const lines = [`${chart.x.label} ${chart.reading(chart.x, point[0])}`, `${chart.y.label} ${chart.reading(chart.y, point[1])}`, ...(chart.more?.(point, series) ?? [])];
   return { x: point[0], y: point[1], dots: [point], lines, datum: point };
 }
 

@@ -60,7 +60,15 @@ function decades(from, to, count) {
     for (const digit of narrow ? [1, 2, 5] : [1]) found.push(digit * 10 ** power);
   }
   const inside = found.filter((value) => value >= from * 0.999 && value <= to * 1.001);
-  return inside.map((value) => [value, value >= 1e-3 && value < 1e5 ? plain(value) : `1e${Math.round(Math.log10(value))}`.replace("-", "−")]);
+  return inside.map((value) => [value, value >= 1e-3 && value < 1e5 ? plain(value) : powers(value)]);
+}
+
+/** A value as a power of ten with raised digits. */
+function powers(value) {
+  const power = Math.floor(Math.log10(value) + 1e-9);
+  const digit = Math.round(value / 10 ** power);
+  const raised = String(power).replace(/./g, (sign) => (sign === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[sign]));
+  return `${digit === 1 ? "" : `${digit} · `}10${raised}`;
 }
 
 /** The range of some values, with a margin. */
@@ -69,7 +77,10 @@ export function around(values, log) {
   if (!finite.length) return log ? [0.1, 10] : [-1, 1];
   const low = finite.reduce((least, value) => Math.min(least, value));
   const high = finite.reduce((most, value) => Math.max(most, value));
-  if (log) return [low / 1.4, high * 1.4];
+  if (log) {
+    const margin = Math.max(1.4, (high / low) ** 0.06);
+    return [low / margin, high * margin];
+  }
   const margin = (high - low) * 0.06 || Math.abs(high) * 0.5 || 1;
   return [low - margin, high + margin];
 }

@@ -4,7 +4,8 @@ import { plain, shown } from "./units.js";
 
 const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Apart" };
 
-function sentence({ regime, stick_radius: c, contact_radius: a }) {
+function sentence({ regime, stick_radius: c, contact_radius: a }, moved) {
+  if (!moved) return "Nothing has moved yet: pull the slider, and watch the ring that slips grow from the edge.";
   if (regime === "stick") return "The last move slipped nowhere: the whole contact went along.";
   if (regime === "gross_slip") return "The last move slipped everywhere: the whole contact slid, and the past is wiped out.";
   if (regime === "separated") return "The bodies do not touch, and nothing is remembered.";
@@ -12,13 +13,13 @@ function sentence({ regime, stick_radius: c, contact_radius: a }) {
 }
 
 /** Lines about a state. */
-export function story(state, { friction }) {
+export function story(state, { friction, history, first }) {
   const limit = friction * state.normal_force;
   const use = limit > 0 ? Math.min(1, Math.abs(state.force) / limit) : 0;
   const pair = (name, value) => el("div", {}, el("dt", {}, words(name)), el("dd", {}, value));
   return [
     el("p", { class: `regime ${state.regime}` }, NAMES[state.regime]),
-    el("p", {}, sentence(state)),
+    el("p", {}, sentence(state, history.length > 0 || first.sequence > 0)),
     el("p", { class: "meter" }, el("meter", { min: 0, max: 1, value: use, "aria-label": "Share of the friction limit" }), el("span", {}, words(`${plain(100 * use, 3)} % of the friction limit μ F_N`))),
     el("dl", { class: "figures" },
       pair("Displacement U", `${shown(state.displacement, "m")}`), pair("Force F", `${shown(state.force, "N")}`),
