@@ -148,11 +148,20 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
     assert_eq!((&grounds[0], &grounds[1]), (&grounds[3], &grounds[2]));
     assert_ne!(grounds[0], grounds[1]);
 
+    // As many turning points are marked as there are pieces beyond the two that a virgin contact has once it moves; passing one
+    // wipes out what came after it.
+    for (part, turns) in [(-0.4, 3), (-0.8, 1)] {
+        moved(&server, &session, &[part]).await;
+        let depth = server.client.contact(session.id).await.unwrap().state.memory_depth;
+        assert_eq!(depth, turns + 2);
+        browser.until(&format!("document.querySelectorAll('#plot-loop .turn').length === {turns}")).await;
+    }
+
     // By keyboard: a slider moves the contact, and a plot reads its values.
     browser.press("#slide-displacement", "\u{e014}").await;
     browser.until("document.querySelector('.badge.on') !== null").await;
     let mut sequence = 0;
-    while sequence < 6 {
+    while sequence < 8 {
         sequence = server.client.contact(session.id).await.unwrap().sequence;
         tokio::time::sleep(Duration::from_millis(20)).await;
     }

@@ -26,8 +26,8 @@ export class Chart {
     pointing(this);
   }
 
-  /** Shows data: `series`, and if wanted `bands` along x, `levels` of y, `marks`, a `range`, a `layer` below, a
-   *  `table`, and words for when there are no values. */
+  /** Shows data: `series`, and if wanted `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a `layer` below,
+   *  a `table`, and words for when there are no values. */
   draw(data) {
     this.data = data;
     this.redraw();
@@ -48,10 +48,9 @@ export class Chart {
   ranges() {
     if (this.view) return this.view;
     const points = this.visible().flatMap((series) => series.points);
-    const levels = (this.data.levels ?? []).filter((level) => level.fit).map((level) => level.y);
-    const own = this.data.range ?? {};
-    const x = own.x ?? around(points.map((point) => point[0]), this.x.log);
-    const y = own.y ?? around(points.map((point) => point[1]).filter((value) => value !== null).concat(levels), this.y.log);
+    const { range: own = {}, least = {} } = this.data;
+    const x = own.x ?? around(points.map((point) => point[0]).concat(least.x ?? []), this.x.log);
+    const y = own.y ?? around(points.map((point) => point[1]).filter((value) => value !== null).concat(least.y ?? []), this.y.log);
     const cap = this.data.cap ?? Infinity;
     return { x, y: [Math.max(y[0], -cap), Math.min(y[1], cap)] };
   }

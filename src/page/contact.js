@@ -27,7 +27,8 @@ export async function contact(main, id, signal) {
     first: begin ? history.shift() : { sequence: 0, state: virgin }, whole: begin === 0, stress: null, path: [],
   };
   const ratio = about.friction * figures.e_star / figures.g_star;
-  about.reach = (state) => 1.5 * (ratio * Math.max(state.indentation, figures.indentation) || 1e-7);
+  about.slip = (state) => ratio * Math.max(0, state.indentation);
+  about.reach = (state) => 1.5 * (Math.max(about.slip(state), figures.gross_slip_displacement) || 1e-7);
   about.move = latest((body) => call("POST", `/contacts/${id}/move`, body, signal));
 
   const view = layout(about, session);
@@ -112,9 +113,9 @@ function layout(about, session) {
       ...(last ? [{ method: "POST", path: `/contacts/${id}/move`, body: last }] : [])];
   };
   const side = el("aside", { class: "side" }, told,
-    el("section", { class: "card", "aria-label": "Move it" }, el("h2", {}, "Move it"), ...knobs.map((one) => one.element),
+    el("section", { class: "card hands", "aria-label": "Move it" }, el("h2", {}, "Move it"), ...knobs.map((one) => one.element),
       el("div", { class: "row" }, jump("← slip", () => -about.reach(about.state) / 1.5), jump("U = 0", () => 0), jump("slip →", () => about.reach(about.state) / 1.5))),
-    el("details", { class: "card" }, el("summary", {}, "Figures at the preload"), el("dl", { class: "figures" }, listed(figures))));
+    el("details", { class: "card preload" }, el("summary", {}, "Figures at the preload"), el("dl", { class: "figures" }, listed(figures))));
   const element = el("div", { class: "contact" },
     el("div", { class: "head" }, el("h1", {}, session.label ?? "Unnamed contact"), live, el("span", { class: "faint" }, id), copying(calls),
       el("button", { type: "button", class: "quiet", onclick: fork }, "Fork"), el("button", { type: "button", class: "quiet danger", onclick: remove }, "Delete")),

@@ -24,6 +24,6 @@ export function story(state, { friction, history, first }) {
     el("dl", { class: "figures" },
       pair("Displacement U", `${shown(state.displacement, "m")}`), pair("Force F", `${shown(state.force, "N")}`),
       pair("Load F_N", `${shown(state.normal_force, "N")}`), pair("Contact radius a", `${shown(state.contact_radius, "m")}`),
-      pair("Friction work W", `${shown(state.dissipated_energy, "J")}`), pair("Memory", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"} of the past`)),
+      pair("Friction work W", `${shown(state.dissipated_energy, "J")}`), pair("Memory of the past", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`)),
   ];
 }
