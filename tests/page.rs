@@ -183,7 +183,7 @@ async fn a_guided_run_takes_the_stress_out_and_tells_how_much() {
     browser.write("#reversals", "4").await;
     browser.click("#run").await;
     let told = "document.querySelector('#run-told').innerText";
-    browser.until(&format!("{told}.startsWith('Reversal')")).await;
+    browser.until(&format!("{told}.startsWith('Move')")).await;
     // One reversal leaves sqrt(1/2) of mu p_max, and more of them (2 - sqrt(3/2)) / sqrt(N_R).
     let left = 100.0 * (2.0 - 1.5_f64.sqrt()) / 2.0;
     let before = 100.0 * 0.5_f64.sqrt();

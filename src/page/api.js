@@ -63,6 +63,14 @@ export async function call(method, path, body, signal) {
   }
 }
 
+let paths = null;
+
+/** Whether the service has an endpoint. */
+export async function offered(path) {
+  paths ??= call("GET", "/openapi.json").then((document) => document.paths, () => ({}));
+  return path in await paths;
+}
+
 /** All pages of a list, or as many items as `most`. */
 export async function pages(path, most, after) {
   const items = [];

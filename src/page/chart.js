@@ -17,7 +17,7 @@ export class Chart {
     this.data = { series: [] };
     this.view = null;
     this.hidden = new Set();
-    this.svg = svg("svg", { class: "chart", tabindex: 0, role: "img", "aria-label": `${title}. Arrow keys read values, plus and minus zoom, 0 shows all.` });
+    this.svg = svg("svg", { class: "chart", tabindex: 0, role: "application", "aria-roledescription": "plot", "aria-label": `${title}. Arrow keys read values, plus and minus zoom, 0 shows all.` });
     this.legend = el("div", { class: "legend" });
     this.said = el("output", { class: "said", "aria-live": "polite" });
     this.note = el("p", { class: "note" }, words(note ?? ""));
@@ -81,6 +81,7 @@ export class Chart {
     for (const mark of this.data.marks ?? []) {
       inside.append(svg("circle", { class: `mark ${mark.class ?? ""}`, cx: this.x.at(mark.x), cy: this.y.at(mark.y), r: mark.size ?? 6 }));
     }
+    if (this.data.note) this.note.textContent = this.data.note;
     this.keys();
     this.point(this.pointed);
   }

@@ -32,9 +32,14 @@ export async function contact(main, id, signal) {
   about.move = latest((body) => call("POST", `/contacts/${id}/move`, body, signal));
 
   const view = layout(about, session);
+  // However many moves come, there is one drawing a frame.
+  let frame = null;
   const redraw = () => {
-    view.plots.draw(about);
-    view.show(about.state);
+    frame ??= requestAnimationFrame(() => {
+      frame = null;
+      view.plots.draw(about);
+      view.show(about.state);
+    });
   };
   const look = latest(async () => {
     const stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal);

@@ -4,9 +4,11 @@ import { Chart } from "./chart.js";
 import { remembered } from "./memory.js";
 import { shown } from "./units.js";
 
+const TURNS = "Rings mark the turning points that the contact remembers. Going past one wipes it out, and its loop closes.";
+
 /** The plots, and a function that draws them from what is known of a contact. */
 export function plots() {
-  const loop = new Chart({ name: "loop", title: "Hysteresis loop", mode: "nearest", x: { label: "Displacement U", unit: "m" }, y: { label: "Force F", unit: "N" }, note: "Rings mark the turning points that the contact remembers. Going past one wipes it out, and its loop closes." });
+  const loop = new Chart({ name: "loop", title: "Hysteresis loop", mode: "nearest", x: { label: "Displacement U", unit: "m" }, y: { label: "Force F", unit: "N" } });
   const stress = new Chart({ name: "stress", title: "Stress under the contact", x: { label: "Radius r", unit: "m" }, y: { label: "Stress", unit: "Pa" }, note: "Where τ touches its bound the surfaces slip; where they stick, what earlier moves left stays frozen in." });
   const seen = above();
   const work = new Chart({ name: "work", title: "Friction work and stored energy", x: { label: "Move" }, y: { label: "Energy", unit: "J" }, note: "The work done against friction only grows; what is stored comes back when the contact is let go." });
@@ -47,7 +49,7 @@ function under(chart, radius) {
 }
 
 /** The loop: all of it, what came since the last reversal, and where it is now. */
-function looped({ path, state, friction, first, history, slip }) {
+function looped({ path, state, friction, first, history, slip, whole }) {
   let turn = path.length - 1;
   const way = (index) => Math.sign(path[index][0] - path[index - 1][0]);
   while (turn > 1 && (way(turn) === 0 || way(turn - 1) === 0 || way(turn) === way(turn - 1))) turn -= 1;
@@ -57,6 +59,7 @@ function looped({ path, state, friction, first, history, slip }) {
       { name: "the way so far", kind: "past", points: path },
       { name: "since the last turn", kind: "now", points: path.slice(Math.max(0, turn - 1)), hover: false },
     ],
+    note: whole ? TURNS : "Of this long past the last moves are drawn, straight from state to state.",
     least: limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {},
     levels: limit > 0 ? [{ y: limit, label: "+μ F_N: all slips" }, { y: -limit, label: "−μ F_N" }] : [],
     marks: [...remembered(first, history, slip(state)).map((turn) => ({ x: turn.displacement, y: turn.force, class: "turn", size: 4.5 })), { x: state.displacement, y: state.force, class: state.regime }],
@@ -97,7 +100,7 @@ function stressed({ stress, state, friction }) {
 function worked({ first, history, figures }) {
   const all = [first, ...history];
   return {
-    least: { x: [0, 5], y: [0, figures.gross_slip_force * figures.gross_slip_displacement / 2] },
+    least: { x: [first.sequence, first.sequence + 5], y: [0, figures.gross_slip_force * figures.gross_slip_displacement / 2] },
     series: [
       { name: "friction work", kind: "work", points: all.map(({ sequence, state }) => [sequence, state.dissipated_energy]) },
       { name: "stored", kind: "stored", points: all.map(({ sequence, state }) => [sequence, state.elastic_energy]) },

@@ -37,7 +37,10 @@ export class Axis {
     const count = Math.max(2, Math.floor(Math.abs(this.end - this.start) / apart));
     if (this.log) return decades(this.from, this.to, count);
     const { factor } = this.scale;
-    const step = rounded((this.to - this.from) / factor / count);
+    const span = (this.to - this.from) / factor;
+    const wide = rounded(span / count);
+    // Fewer than three hardly tell a scale.
+    const step = span < 3 * wide ? rounded(0.4 * wide) : wide;
     const first = Math.ceil(this.from / factor / step - 1e-9);
     const last = Math.floor(this.to / factor / step + 1e-9);
     const numbers = Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => (first + index) * step);

@@ -1,5 +1,5 @@
 // What a contact like this one would do: the stress that remains against the number of reversals, and what solvers cost.
-import { call } from "./api.js";
+import { call, offered } from "./api.js";
 import { Chart } from "./chart.js";
 import { copying } from "./code.js";
 import { el, notice, words } from "./dom.js";
@@ -8,19 +8,12 @@ import { anew, PROTOCOLS } from "./run.js";
 const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
 // A logarithmic axis has no place for an error of nought.
 const LEAST = 1e-17;
-let paths = null;
 
 /** The cards below a contact. */
 export function studies(about) {
   const element = el("div", { class: "studies" }, residual(about));
   offered("/accuracy").then((is) => { if (is) element.append(accuracy(about)); });
   return element;
-}
-
-/** Whether the service has an endpoint. */
-async function offered(path) {
-  paths ??= call("GET", "/openapi.json").then((document) => document.paths, () => ({}));
-  return path in await paths;
 }
 
 /** A card with a button that computes a plot. */
