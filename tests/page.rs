@@ -157,6 +157,15 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
         browser.until(&format!("document.querySelectorAll('#plot-loop .turn').length === {turns}")).await;
     }
 
+    // What is under the pointer is read and marked, in the plot from above too.
+    browser.hover("#plot-stress svg", 0.3).await;
+    let off = "(() => { const plot = document.querySelector('#plot-stress svg').getBoundingClientRect(); \
+               const mark = document.querySelector('#plot-stress .cursor line').getBoundingClientRect(); \
+               return Math.abs(mark.left - plot.left - 0.3 * plot.width); })()";
+    browser.until("document.querySelector('#plot-above .cursor .ring') !== null").await;
+    let off = browser.value(off).await.as_f64().unwrap();
+    assert!(off < 2.0, "marked {off} pixels beside the pointer");
+
     // By keyboard: a slider moves the contact, and a plot reads its values.
     browser.press("#slide-displacement", "\u{e014}").await;
     browser.until("document.querySelector('.badge.on') !== null").await;

@@ -21,13 +21,17 @@ export const hasKey = () => sessionStorage.getItem(KEY) !== null;
 function askForKey() {
   asking ??= new Promise((resolve) => {
     const dialog = document.getElementById("key");
-    dialog.addEventListener("close", () => {
-      const given = dialog.returnValue === "use" ? dialog.querySelector("input").value.trim() : "";
-      if (given) sessionStorage.setItem(KEY, given);
-      dialog.querySelector("form").reset();
-      asking = null;
-      resolve(given !== "");
-    }, { once: true });
+    dialog.addEventListener(
+      "close",
+      () => {
+        const given = dialog.returnValue === "use" ? dialog.querySelector("input").value.trim() : "";
+        if (given) sessionStorage.setItem(KEY, given);
+        dialog.querySelector("form").reset();
+        asking = null;
+        resolve(given !== "");
+      },
+      { once: true },
+    );
     dialog.returnValue = "";
     dialog.showModal();
   });
@@ -43,7 +47,7 @@ async function send(method, path, { body, headers = {}, signal } = {}) {
     const text = body === undefined ? undefined : JSON.stringify(body);
     const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" });
     if (response.ok) return response;
-    if (response.status === 401 && await askForKey()) continue;
+    if (response.status === 401 && (await askForKey())) continue;
     const problem = await response.json().catch(() => ({}));
     throw new Refusal(response.status, problem);
   }
@@ -67,8 +71,11 @@ let paths = null;
 
 /** Whether the service has an endpoint. */
 export async function offered(path) {
-  paths ??= call("GET", "/openapi.json").then((document) => document.paths, () => ({}));
-  return path in await paths;
+  paths ??= call("GET", "/openapi.json").then(
+    (document) => document.paths,
+    () => ({}),
+  );
+  return path in (await paths);
 }
 
 /** All pages of a list, or as many items as `most`. */
@@ -118,8 +125,15 @@ async function* events(body) {
     const blocks = buffer.split(/\r?\n\r?\n/);
     buffer = blocks.pop();
     for (const block of blocks) {
-      const fields = block.split(/\r?\n/).map((line) => line.match(/^(\w+): ?(.*)$/)).filter(Boolean);
-      const named = (name) => fields.filter((field) => field[1] === name).map((field) => field[2]).join("\n");
+      const fields = block
+        .split(/\r?\n/)
+        .map((line) => line.match(/^(\w+): ?(.*)$/))
+        .filter(Boolean);
+      const named = (name) =>
+        fields
+          .filter((field) => field[1] === name)
+          .map((field) => field[2])
+          .join("\n");
       if (named("data")) yield { event: named("event"), data: JSON.parse(named("data")) };
     }
   }

@@ -8,18 +8,20 @@ const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /** Calls `{ method, path, body }` for a shell. */
 export function curl(calls) {
-  const key = hasKey() ? " -H \"authorization: Bearer $STICKSLIP_KEY\"" : "";
-  return calls.map(({ method, path, body }) => {
-    const verb = method === "GET" || body !== undefined && method === "POST" ? "" : ` -X ${method}`;
-    const data = body === undefined ? "" : ` \\\n  -H 'content-type: application/json' -d ${quoted(JSON.stringify(body))}`;
-    return `curl -s${verb}${key} ${quoted(base() + path)}${data}`;
-  }).join("\n\n");
+  const key = hasKey() ? ' -H "authorization: Bearer $STICKSLIP_KEY"' : "";
+  return calls
+    .map(({ method, path, body }) => {
+      const verb = method === "GET" || (body !== undefined && method === "POST") ? "" : ` -X ${method}`;
+      const data = body === undefined ? "" : ` \\\n  -H 'content-type: application/json' -d ${quoted(JSON.stringify(body))}`;
+      return `curl -s${verb}${key} ${quoted(base() + path)}${data}`;
+    })
+    .join("\n\n");
 }
 
 /** The same for Python. */
 export function python(calls) {
   const head = ["import os", "import requests", "", `base = ${JSON.stringify(base())}`, "session = requests.Session()"];
-  if (hasKey()) head.push("session.headers[\"authorization\"] = \"Bearer \" + os.environ[\"STICKSLIP_KEY\"]");
+  if (hasKey()) head.push('session.headers["authorization"] = "Bearer " + os.environ["STICKSLIP_KEY"]');
   else head.splice(0, 1);
   const blocks = calls.map(({ method, path, body }) => {
     const data = body === undefined ? "" : `, json=${literal(body)}`;
@@ -41,7 +43,8 @@ function literal(value) {
 
 /** Buttons that show the calls of what is on screen, ready to be copied. */
 export function copying(calls) {
-  const button = (name, write) => el("button", { type: "button", class: "quiet", onclick: () => show(name, write(calls())) }, `Copy as ${name}`);
+  const button = (name, write) =>
+    el("button", { type: "button", class: "quiet", onclick: () => show(name, write(calls())) }, `Copy as ${name}`);
   return el("span", { class: "row copying" }, button("curl", curl), button("Python", python));
 }
 
@@ -57,5 +60,7 @@ async function show(name, text) {
   try {
     await navigator.clipboard.writeText(text);
     notice(`Copied for ${name}.`);
-  } catch { notice("Press Ctrl+C to copy."); }
+  } catch {
+    notice("Press Ctrl+C to copy.");
+  }
 }

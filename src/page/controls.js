@@ -4,12 +4,31 @@ import { scaled, written } from "./units.js";
 
 /** A slider with a box. `limits` gives its ends for a state, `send` a new value in SI. */
 export function knob({ name, label, unit, limits, value, send }) {
-  const slider = el("input", { type: "range", id: `slide-${name}`, min: -1000, max: 1000, step: 1, "aria-label": `${label}, slider` });
-  const box = el("input", { type: "text", inputmode: "decimal", id: `box-${name}`, autocomplete: "off", "aria-describedby": `fault-${name}` });
+  const slider = el("input", {
+    type: "range",
+    id: `slide-${name}`,
+    min: -1000,
+    max: 1000,
+    step: 1,
+    "aria-label": `${label}, slider`,
+  });
+  const box = el("input", {
+    type: "text",
+    inputmode: "decimal",
+    id: `box-${name}`,
+    autocomplete: "off",
+    "aria-describedby": `fault-${name}`,
+  });
   const sign = el("span", { class: "unit" });
   const fault = el("p", { class: "fault", id: `fault-${name}`, role: "alert" });
-  const form = el("form", { class: "knob", onsubmit: (event) => event.preventDefault() },
-    el("label", { for: `box-${name}` }, words(label)), el("div", { class: "value" }, box, sign), slider, fault);
+  const form = el(
+    "form",
+    { class: "knob", onsubmit: (event) => event.preventDefault() },
+    el("label", { for: `box-${name}` }, words(label)),
+    el("div", { class: "value" }, box, sign),
+    slider,
+    fault,
+  );
   let ends = [-1, 1];
   let scale = { factor: 1, unit };
   let held = false;
@@ -32,9 +51,15 @@ export function knob({ name, label, unit, limits, value, send }) {
     const amount = written(box.value, power);
     if (amount !== undefined) give(amount);
   };
-  const slid = () => ends[0] + (Number(slider.value) - Number(slider.min)) / (slider.max - slider.min) * (ends[1] - ends[0]);
-  slider.addEventListener("pointerdown", () => { held = true; });
-  for (const end of ["pointerup", "pointercancel", "change", "blur"]) slider.addEventListener(end, () => { held = false; });
+  const slid = () =>
+    ends[0] + ((Number(slider.value) - Number(slider.min)) / (slider.max - slider.min)) * (ends[1] - ends[0]);
+  slider.addEventListener("pointerdown", () => {
+    held = true;
+  });
+  for (const end of ["pointerup", "pointercancel", "change", "blur"])
+    slider.addEventListener(end, () => {
+      held = false;
+    });
   slider.addEventListener("input", () => {
     const amount = slid();
     box.value = display(amount);
@@ -49,7 +74,7 @@ export function knob({ name, label, unit, limits, value, send }) {
       ends = limits(state);
       scale = scaled(Math.max(Math.abs(ends[0]), Math.abs(ends[1])), unit);
       sign.textContent = scale.unit;
-      slider.value = Math.round((value(state) - ends[0]) / (ends[1] - ends[0]) * 2000 - 1000);
+      slider.value = Math.round(((value(state) - ends[0]) / (ends[1] - ends[0])) * 2000 - 1000);
     }
     if (!held && document.activeElement !== box) box.value = display(value(state));
     slider.setAttribute("aria-valuetext", `${display(value(state))} ${scale.unit}`);

@@ -22,11 +22,16 @@ export function svg(name, attributes, ...children) {
 }
 
 /** A text whose `_x` are indices, as children of an element. */
-export const words = (text) => text.split(/(_\w+)/).map((part) => (part.startsWith("_") ? el("sub", {}, part.slice(1)) : part));
+export const words = (text) =>
+  text.split(/(_\w+)/).map((part) => (part.startsWith("_") ? el("sub", {}, part.slice(1)) : part));
 
 /** The same as children of a text in a drawing. */
 export function drawnWords(text) {
-  return text.split(/_(\w+)/).map((part, index) => (index % 2 ? svg("tspan", { class: "index", dy: 4 }, part) : svg("tspan", index ? { dy: -4 } : {}, part)));
+  return text
+    .split(/_(\w+)/)
+    .map((part, index) =>
+      index % 2 ? svg("tspan", { class: "index", dy: 4 }, part) : svg("tspan", index ? { dy: -4 } : {}, part),
+    );
 }
 
 let silence;
@@ -38,7 +43,9 @@ export function notice(text, fault = false) {
   box.classList.toggle("fault", fault);
   box.hidden = false;
   clearTimeout(silence);
-  silence = setTimeout(() => { box.hidden = true; }, 6000);
+  silence = setTimeout(() => {
+    box.hidden = true;
+  }, 6000);
 }
 
 /** Runs `work` again and again when asked, never twice at a time; of requests meanwhile the last counts. */
@@ -55,24 +62,41 @@ export function latest(work) {
         const now = next;
         next = null;
         failure = null;
-        try { await work(...now); } catch (error) { failure = error; }
+        try {
+          await work(...now);
+        } catch (error) {
+          failure = error;
+        }
       }
       if (failure) throw failure;
-    } finally { busy = false; }
+    } finally {
+      busy = false;
+    }
   };
 }
 
 /** Calls `work` once nothing has been asked for `time` ms. */
 export function settled(work, time) {
   let timer;
-  return (...args) => { clearTimeout(timer); timer = setTimeout(work, time, ...args); };
+  return (...args) => {
+    clearTimeout(timer);
+    timer = setTimeout(work, time, ...args);
+  };
 }
 
 /** Waits for so many ms, or until `signal`. */
-export const pause = (time, signal) => new Promise((resolve) => {
-  const timer = setTimeout(resolve, time);
-  signal?.addEventListener("abort", () => { clearTimeout(timer); resolve(); }, { once: true });
-});
+export const pause = (time, signal) =>
+  new Promise((resolve) => {
+    const timer = setTimeout(resolve, time);
+    signal?.addEventListener(
+      "abort",
+      () => {
+        clearTimeout(timer);
+        resolve();
+      },
+      { once: true },
+    );
+  });
 
 /** Hands a text over as a file. */
 export function save(name, type, text) {

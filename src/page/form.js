@@ -12,22 +12,45 @@ export function create(main, signal) {
   const form = new Fields();
   const ready = {};
   const ask = settled(() => derive(), 200);
-  const changed = () => { if (ready.now) ask(); };
+  const changed = () => {
+    if (ready.now) ask();
+  };
 
-  const label = new TextField(form, () => "/label", "Label (may be left out)", el("input", { type: "text", maxlength: 200, autocomplete: "off" }));
+  const label = new TextField(
+    form,
+    () => "/label",
+    "Label (may be left out)",
+    el("input", { type: "text", maxlength: 200, autocomplete: "off" }),
+  );
   const profile = shape(form, () => "/profile", changed);
   const material = materials(form, changed);
   const friction = new NumberField(form, () => "/friction", { label: "Coefficient of friction μ", value: "0.3" });
   const preload = preloads(form, changed);
-  const definition = () => ({ profile: profile.value(), material: material.value(), friction: friction.value, preload: preload.value() });
+  const definition = () => ({
+    profile: profile.value(),
+    material: material.value(),
+    friction: friction.value,
+    preload: preload.value(),
+  });
   const body = () => ({ ...(label.value ? { label: label.value } : {}), ...definition() });
 
   const figures = el("dl", { class: "figures" });
   const warnings = el("ul", { class: "warnings" });
-  const derived = el("section", { class: "card derived", "aria-live": "polite", "aria-label": "What follows" }, el("h2", {}, "What follows"), figures, warnings);
+  const derived = el(
+    "section",
+    { class: "card derived", "aria-live": "polite", "aria-label": "What follows" },
+    el("h2", {}, "What follows"),
+    figures,
+    warnings,
+  );
   const derive = latest(async () => {
     try {
-      const reply = await call("POST", "/simulate", { contact: definition(), path: { displacement: [0] }, steps: "last" }, signal);
+      const reply = await call(
+        "POST",
+        "/simulate",
+        { contact: definition(), path: { displacement: [0] }, steps: "last" },
+        signal,
+      );
       form.clear();
       derived.classList.remove("stale");
       figures.replaceChildren(...listed(reply.contact));
@@ -49,12 +72,30 @@ export function create(main, signal) {
       notice(error.message, true);
     }
   };
-  main.replaceChildren(el("div", { class: "head" }, el("h1", {}, "New contact"), copying(() => [{ method: "POST", path: "/contacts", body: body() }])),
-    el("form", { class: "create", onsubmit: submit, oninput: changed, onchange: changed },
+  main.replaceChildren(
+    el(
+      "div",
+      { class: "head" },
+      el("h1", {}, "New contact"),
+      copying(() => [{ method: "POST", path: "/contacts", body: body() }]),
+    ),
+    el(
+      "form",
+      { class: "create", onsubmit: submit, oninput: changed, onchange: changed },
       el("section", { class: "card" }, el("h2", {}, "Shape"), profile.element),
       el("section", { class: "card" }, el("h2", {}, "Bodies"), material.element, friction.element),
-      el("section", { class: "card" }, el("h2", {}, "Load"), preload.element, label.element, form.rest, el("button", { class: "primary", id: "create" }, "Create")),
-      derived));
+      el(
+        "section",
+        { class: "card" },
+        el("h2", {}, "Load"),
+        preload.element,
+        label.element,
+        form.rest,
+        el("button", { class: "primary", id: "create" }, "Create"),
+      ),
+      derived,
+    ),
+  );
   ready.now = true;
   derive();
 }
@@ -75,13 +116,26 @@ export function listed(figures) {
 }
 
 function body(form, at, title) {
-  const modulus = new NumberField(form, () => `${at}/youngs_modulus`, { label: "Young’s modulus E", units: MODULUS, unit: "GPa", value: "210" });
+  const modulus = new NumberField(form, () => `${at}/youngs_modulus`, {
+    label: "Young’s modulus E",
+    units: MODULUS,
+    unit: "GPa",
+    value: "210",
+  });
   const ratio = new NumberField(form, () => `${at}/poisson_ratio`, { label: "Poisson’s ratio ν", value: "0.3" });
-  const known = el("select", { "aria-label": `${title}: a known material`, onchange: ({ target }) => {
-    if (!target.value) return;
-    [modulus.control.value, ratio.control.value] = MATERIALS[target.value];
-    modulus.choice.value = "9";
-  } }, el("option", { value: "" }, "Known material …"), Object.keys(MATERIALS).map((name) => el("option", { value: name }, name)));
+  const known = el(
+    "select",
+    {
+      "aria-label": `${title}: a known material`,
+      onchange: ({ target }) => {
+        if (!target.value) return;
+        [modulus.control.value, ratio.control.value] = MATERIALS[target.value];
+        modulus.choice.value = "9";
+      },
+    },
+    el("option", { value: "" }, "Known material …"),
+    Object.keys(MATERIALS).map((name) => el("option", { value: name }, name)),
+  );
   const element = el("fieldset", {}, el("legend", {}, title), known, modulus.element, ratio.element);
   return { element, value: () => ({ youngs_modulus: modulus.value, poisson_ratio: ratio.value }) };
 }
@@ -93,7 +147,15 @@ function materials(form, changed) {
   let read;
   const fill = () => {
     if (choice.value === "effective") {
-      const star = ["e_star", "g_star"].map((name, index) => [name, new NumberField(form, () => `/material/effective/${name}`, { label: ["Reduced modulus E*", "Reduced shear modulus G*"][index], units: MODULUS, unit: "GPa", value: ["231", "190"][index] })]);
+      const star = ["e_star", "g_star"].map((name, index) => [
+        name,
+        new NumberField(form, () => `/material/effective/${name}`, {
+          label: ["Reduced modulus E*", "Reduced shear modulus G*"][index],
+          units: MODULUS,
+          unit: "GPa",
+          value: ["231", "190"][index],
+        }),
+      ]);
       fields.replaceChildren(...star.map(([, field]) => field.element));
       read = () => ({ effective: Object.fromEntries(star.map(([name, field]) => [name, field.value])) });
     } else {
@@ -110,7 +172,13 @@ function materials(form, changed) {
 }
 
 function preloads(form, changed) {
-  const choice = new Choice(form, () => "/preload", "Preload by", { normal_force: "normal force", indentation: "indentation", contact_radius: "contact radius" }, "normal_force");
+  const choice = new Choice(
+    form,
+    () => "/preload",
+    "Preload by",
+    { normal_force: "normal force", indentation: "indentation", contact_radius: "contact radius" },
+    "normal_force",
+  );
   const place = el("div", {});
   let field;
   const fill = () => {

@@ -21,7 +21,12 @@ async function route(event) {
     else if (location.hash === "#/new") create(view, signal);
     else await list(view);
   } catch (error) {
-    if (!signal.aborted) view.replaceChildren(el("h1", {}, "That did not work"), el("p", { role: "alert" }, error.message), el("p", {}, el("a", { href: "#/" }, "To the list of contacts")));
+    if (!signal.aborted)
+      view.replaceChildren(
+        el("h1", {}, "That did not work"),
+        el("p", { role: "alert" }, error.message),
+        el("p", {}, el("a", { href: "#/" }, "To the list of contacts")),
+      );
   }
   if (event) main.focus();
 }

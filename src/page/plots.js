@@ -8,10 +8,28 @@ const TURNS = "Rings mark the turning points that the contact remembers. Going p
 
 /** The plots, and a function that draws them from what is known of a contact. */
 export function plots() {
-  const loop = new Chart({ name: "loop", title: "Hysteresis loop", mode: "nearest", x: { label: "Displacement U", unit: "m" }, y: { label: "Force F", unit: "N" } });
-  const stress = new Chart({ name: "stress", title: "Stress under the contact", x: { label: "Radius r", unit: "m" }, y: { label: "Stress", unit: "Pa" }, note: "Where τ touches its bound the surfaces slip; where they stick, what earlier moves left stays frozen in." });
+  const loop = new Chart({
+    name: "loop",
+    title: "Hysteresis loop",
+    mode: "nearest",
+    x: { label: "Displacement U", unit: "m" },
+    y: { label: "Force F", unit: "N" },
+  });
+  const stress = new Chart({
+    name: "stress",
+    title: "Stress under the contact",
+    x: { label: "Radius r", unit: "m" },
+    y: { label: "Stress", unit: "Pa" },
+    note: "Where τ touches its bound the surfaces slip; where they stick, what earlier moves left stays frozen in.",
+  });
   const seen = above();
-  const work = new Chart({ name: "work", title: "Friction work and stored energy", x: { label: "Move" }, y: { label: "Energy", unit: "J" }, note: "The work done against friction only grows; what is stored comes back when the contact is let go." });
+  const work = new Chart({
+    name: "work",
+    title: "Friction work and stored energy",
+    x: { label: "Move" },
+    y: { label: "Energy", unit: "J" },
+    note: "The work done against friction only grows; what is stored comes back when the contact is let go.",
+  });
 
   loop.more = ([, , sequence]) => [sequence ? `move ${sequence}` : "start"];
   loop.onhover = (hit) => work.point(hit && beside(work, hit.datum[2]));
@@ -32,7 +50,10 @@ export function plots() {
 
 /** The place of a move in the plot of work. */
 function beside(chart, sequence) {
-  const dots = chart.visible().map((series) => series.points.find((point) => point[0] === sequence)).filter(Boolean);
+  const dots = chart
+    .visible()
+    .map((series) => series.points.find((point) => point[0] === sequence))
+    .filter(Boolean);
   return dots.length ? { x: sequence, dots, lines: [`move ${sequence}`, ...dots.map((dot) => shown(dot[1], "J"))] } : null;
 }
 
@@ -43,8 +64,12 @@ function nearest(chart, sequence) {
 }
 
 function under(chart, radius) {
-  const dots = chart.visible().filter((series) => series.hover !== false)
-    .map(({ points }) => points.reduce((best, point) => (Math.abs(point[0] - radius) < Math.abs(best[0] - radius) ? point : best)));
+  const dots = chart
+    .visible()
+    .filter((series) => series.hover !== false)
+    .map(({ points }) =>
+      points.reduce((best, point) => (Math.abs(point[0] - radius) < Math.abs(best[0] - radius) ? point : best)),
+    );
   return { x: radius, dots, lines: [] };
 }
 
@@ -61,11 +86,47 @@ function looped({ path, state, friction, first, history, slip, whole }) {
     ],
     note: whole ? TURNS : "Of this long past the last moves are drawn, straight from state to state.",
     least: limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {},
-    levels: limit > 0 ? [{ y: limit, label: "+μ F_N: all slips" }, { y: -limit, label: "−μ F_N" }] : [],
-    marks: [...remembered(first, history, slip(state)).map((turn) => ({ x: turn.displacement, y: turn.force, class: "turn", size: 4.5 })), { x: state.displacement, y: state.force, class: state.regime }],
+    levels:
+      limit > 0
+        ? [
+            { y: limit, label: "+μ F_N: all slips" },
+            { y: -limit, label: "−μ F_N" },
+          ]
+        : [],
+    marks: [
+      ...remembered(first, history, slip(state)).map((turn) => ({
+        x: turn.displacement,
+        y: turn.force,
+        class: "turn",
+        size: 4.5,
+      })),
+      { x: state.displacement, y: state.force, class: state.regime },
+    ],
     table: () => ({
-      columns: ["sequence", "displacement_m", "force_n", "normal_force_n", "indentation_m", "stick_radius_m", "contact_radius_m", "regime", "friction_work_j", "elastic_energy_j"],
-      rows: history.map(({ sequence, state: s }) => [sequence, s.displacement, s.force, s.normal_force, s.indentation, s.stick_radius, s.contact_radius, s.regime, s.dissipated_energy, s.elastic_energy]),
+      columns: [
+        "sequence",
+        "displacement_m",
+        "force_n",
+        "normal_force_n",
+        "indentation_m",
+        "stick_radius_m",
+        "contact_radius_m",
+        "regime",
+        "friction_work_j",
+        "elastic_energy_j",
+      ],
+      rows: history.map(({ sequence, state: s }) => [
+        sequence,
+        s.displacement,
+        s.force,
+        s.normal_force,
+        s.indentation,
+        s.stick_radius,
+        s.contact_radius,
+        s.regime,
+        s.dissipated_energy,
+        s.elastic_energy,
+      ]),
     }),
   };
 }
@@ -86,7 +147,13 @@ function stressed({ stress, state, friction }) {
       { name: "bound ±μ p", kind: "bound", points: scale(-friction), hover: false, legend: false },
       { name: "pressure p", kind: "pressure", points: scale(1) },
     ],
-    bands: a > 0 ? [{ from: 0, to: state.stick_radius, kind: "stick", label: "stick" }, { from: state.stick_radius, to: a, kind: "slip", label: "slip" }] : [],
+    bands:
+      a > 0
+        ? [
+            { from: 0, to: state.stick_radius, kind: "stick", label: "stick" },
+            { from: state.stick_radius, to: a, kind: "slip", label: "slip" },
+          ]
+        : [],
     range: { x: [0, (a || 1) * 1.04] },
     // What is infinite at an edge would leave nothing to see of the rest.
     cap: 1.1 * most,
@@ -100,7 +167,10 @@ function stressed({ stress, state, friction }) {
 function worked({ first, history, figures }) {
   const all = [first, ...history];
   return {
-    least: { x: [first.sequence, first.sequence + 5], y: [0, figures.gross_slip_force * figures.gross_slip_displacement / 2] },
+    least: {
+      x: [first.sequence, first.sequence + 5],
+      y: [0, (figures.gross_slip_force * figures.gross_slip_displacement) / 2],
+    },
     series: [
       { name: "friction work", kind: "work", points: all.map(({ sequence, state }) => [sequence, state.dissipated_energy]) },
       { name: "stored", kind: "stored", points: all.map(({ sequence, state }) => [sequence, state.elastic_energy]) },

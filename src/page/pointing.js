@@ -29,20 +29,32 @@ export function pointing(chart) {
     if (start && drawn(start, now)) zoomTo(chart, start, now);
     start = null;
   });
-  root.addEventListener("pointercancel", () => { start = null; });
-  root.addEventListener("pointerleave", () => { if (!start) tell(null); });
+  root.addEventListener("pointercancel", () => {
+    start = null;
+  });
+  root.addEventListener("pointerleave", () => {
+    if (!start) tell(null);
+  });
   root.addEventListener("dblclick", () => chart.reset());
   root.addEventListener("blur", () => tell(null));
   root.addEventListener("keydown", (event) => {
     const steps = { ArrowRight: 1, ArrowLeft: -1, PageDown: 20, PageUp: -20, Home: -1e9, End: 1e9 };
-    const acts = { "+": () => chart.zoom(0.6), "-": () => chart.zoom(1 / 0.6), 0: () => chart.reset(), Escape: () => tell(null) };
+    const acts = {
+      "+": () => chart.zoom(0.6),
+      "-": () => chart.zoom(1 / 0.6),
+      0: () => chart.reset(),
+      Escape: () => tell(null),
+    };
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key in steps) tell(stepped(chart, steps[event.key]));
     else if (event.key in acts) acts[event.key]();
     else return;
     event.preventDefault();
   });
-  chart.reset = () => { chart.view = null; chart.redraw(); };
+  chart.reset = () => {
+    chart.view = null;
+    chart.redraw();
+  };
   chart.zoom = (by) => {
     const { x, y } = chart;
     const kept = (axis) => {
@@ -93,19 +105,31 @@ function found(chart, [left, top]) {
 function at(chart, series, index) {
   const point = series.points[index];
   chart.index = index;
-  const lines = [`${chart.x.label} ${chart.reading(chart.x, point[0])}`, `${chart.y.label} ${chart.reading(chart.y, point[1])}`, ...(chart.more?.(point, series) ?? [])];
+  const lines = [
+    `${chart.x.label} ${chart.reading(chart.x, point[0])}`,
+    `${chart.y.label} ${chart.reading(chart.y, point[1])}`,
+    ...(chart.more?.(point, series) ?? []),
+  ];
   return { x: point[0], y: point[1], dots: [point], lines, datum: point };
 }
 
 function along(chart, series, x) {
   const near = series.map(({ name, points }) => {
-    const index = points.reduce((best, point, index) => (Math.abs(point[0] - x) < Math.abs(points[best][0] - x) ? index : best), 0);
+    const index = points.reduce(
+      (best, point, index) => (Math.abs(point[0] - x) < Math.abs(points[best][0] - x) ? index : best),
+      0,
+    );
     return { name, index, point: points[index] };
   });
   chart.index = near[0].index;
   const first = near[0].point;
   const lines = near.map(({ name, point }) => `${name} ${chart.reading(chart.y, point[1])}`);
-  return { x: first[0], dots: near.map(({ point }) => point), lines: [`${chart.x.label} ${chart.reading(chart.x, first[0])}`, ...lines], datum: first };
+  return {
+    x: first[0],
+    dots: near.map(({ point }) => point),
+    lines: [`${chart.x.label} ${chart.reading(chart.x, first[0])}`, ...lines],
+    datum: first,
+  };
 }
 
 function stepped(chart, by) {
@@ -113,9 +137,16 @@ function stepped(chart, by) {
   if (!series) return null;
   const now = chart.pointed || Math.abs(by) > 1e6 ? (chart.index ?? 0) + by : 0;
   const index = Math.min(Math.max(now, 0), series.points.length - 1);
-  if (chart.read) { chart.index = index; return chart.read(series.points[index][0], 0); }
+  if (chart.read) {
+    chart.index = index;
+    return chart.read(series.points[index][0], 0);
+  }
   if (chart.mode !== "x") return at(chart, series, index);
-  const hit = along(chart, chart.visible().filter((one) => one.points.length && one.hover !== false), series.points[index][0]);
+  const hit = along(
+    chart,
+    chart.visible().filter((one) => one.points.length && one.hover !== false),
+    series.points[index][0],
+  );
   chart.index = index;
   return hit;
 }

@@ -35,7 +35,10 @@ export async function curved(definition, first, history, counts, signal) {
     const tangential = move.force !== undefined ? "force" : "displacement";
     const normal = move.normal_force !== undefined ? "normal_force" : "indentation";
     // At constant indentation a move by force goes through the same states as one by displacement.
-    const named = tangential === "force" && normal === "indentation" && from.indentation === state.indentation ? "displacement" : tangential;
+    const named =
+      tangential === "force" && normal === "indentation" && from.indentation === state.indentation
+        ? "displacement"
+        : tangential;
     for (let piece = 1; piece <= counts[index]; piece += 1) {
       const part = piece / counts[index];
       const between = (name) => (piece === counts[index] ? state[name] : from[name] + part * (state[name] - from[name]));
@@ -44,5 +47,8 @@ export async function curved(definition, first, history, counts, signal) {
     }
   }
   const { steps } = await call("POST", "/simulate", { contact: definition, path: { moves } }, signal);
-  return [[first.state.displacement, first.state.force, first.sequence], ...steps.map((step, index) => [step.displacement, step.force, owners[index]])];
+  return [
+    [first.state.displacement, first.state.force, first.sequence],
+    ...steps.map((step, index) => [step.displacement, step.force, owners[index]]),
+  ];
 }

@@ -2,24 +2,59 @@
 import { el, notice, save } from "./dom.js";
 
 // What a drawing needs to look the same without the page's style sheet.
-const LOOKS = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "opacity", "font-family", "font-size", "font-weight", "stop-color"];
+const LOOKS = [
+  "fill",
+  "fill-opacity",
+  "stroke",
+  "stroke-width",
+  "stroke-dasharray",
+  "stroke-opacity",
+  "opacity",
+  "font-family",
+  "font-size",
+  "font-weight",
+  "stop-color",
+];
 
 /** A menu for a chart. */
 export function menu(chart) {
-  const entry = (text, act) => el("button", { type: "button", onclick: (event) => {
-    event.currentTarget.closest("details").open = false;
-    act();
-  } }, text);
-  return el("details", { class: "menu", onkeydown: (event) => {
-    if (event.key !== "Escape") return;
-    event.currentTarget.open = false;
-    event.currentTarget.firstElementChild.focus();
-  }, onfocusout: (event) => {
-    if (!event.currentTarget.contains(event.relatedTarget)) event.currentTarget.open = false;
-  } }, el("summary", { "aria-label": `Zoom or save: ${chart.title}`, title: "Zoom or save" }, "⋯"), el("div", {},
-    entry("Zoom in", () => chart.zoom(0.6)), entry("Zoom out", () => chart.zoom(1 / 0.6)), entry("Show all", () => chart.reset()),
-    entry("Save PNG", () => image(chart)), entry("Save SVG", () => save(`${chart.name}.svg`, "image/svg+xml", drawing(chart))),
-    entry("Save CSV", () => save(`${chart.name}.csv`, "text/csv", table(chart)))));
+  const entry = (text, act) =>
+    el(
+      "button",
+      {
+        type: "button",
+        onclick: (event) => {
+          event.currentTarget.closest("details").open = false;
+          act();
+        },
+      },
+      text,
+    );
+  return el(
+    "details",
+    {
+      class: "menu",
+      onkeydown: (event) => {
+        if (event.key !== "Escape") return;
+        event.currentTarget.open = false;
+        event.currentTarget.firstElementChild.focus();
+      },
+      onfocusout: (event) => {
+        if (!event.currentTarget.contains(event.relatedTarget)) event.currentTarget.open = false;
+      },
+    },
+    el("summary", { "aria-label": `Zoom or save: ${chart.title}`, title: "Zoom or save" }, "⋯"),
+    el(
+      "div",
+      {},
+      entry("Zoom in", () => chart.zoom(0.6)),
+      entry("Zoom out", () => chart.zoom(1 / 0.6)),
+      entry("Show all", () => chart.reset()),
+      entry("Save PNG", () => image(chart)),
+      entry("Save SVG", () => save(`${chart.name}.svg`, "image/svg+xml", drawing(chart))),
+      entry("Save CSV", () => save(`${chart.name}.csv`, "text/csv", table(chart))),
+    ),
+  );
 }
 
 /** The plot as a text of its own. */
@@ -66,6 +101,6 @@ export function table(chart) {
     columns: ["series", `${chart.x.label} ${chart.x.unit}`.trim(), `${chart.y.label} ${chart.y.unit}`.trim()],
     rows: chart.data.series.flatMap(({ name, points }) => points.map(([x, y]) => [name, x, y])),
   };
-  const cell = (value) => (/[",\n]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : value ?? "");
+  const cell = (value) => (/[",\n]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : (value ?? ""));
   return `${[columns, ...rows].map((row) => row.map(cell).join(",")).join("\n")}\n`;
 }

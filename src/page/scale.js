@@ -20,7 +20,7 @@ export class Axis {
 
   at(value) {
     const [from, to, place] = this.log ? [this.from, this.to, value].map(Math.log10) : [this.from, this.to, value];
-    return this.start + (place - from) / (to - from) * (this.end - this.start);
+    return this.start + ((place - from) / (to - from)) * (this.end - this.start);
   }
 
   back(pixel) {

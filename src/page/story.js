@@ -9,7 +9,7 @@ function sentence({ regime, stick_radius: c, contact_radius: a }, moved) {
   if (regime === "stick") return "The last move slipped nowhere: the whole contact went along.";
   if (regime === "gross_slip") return "The last move slipped everywhere: the whole contact slid, and the past is wiped out.";
   if (regime === "separated") return "The bodies do not touch, and nothing is remembered.";
-  return `Inside r = ${shown(c, "m", 3)} (${plain(100 * c / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
+  return `Inside r = ${shown(c, "m", 3)} (${plain((100 * c) / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
 }
 
 /** Lines about a state. */
@@ -20,10 +20,21 @@ export function story(state, { friction, history, first }) {
   return [
     el("p", { class: `regime ${state.regime}` }, NAMES[state.regime]),
     el("p", {}, sentence(state, history.length > 0 || first.sequence > 0)),
-    el("p", { class: "meter" }, el("meter", { min: 0, max: 1, value: use, "aria-label": "Share of the friction limit" }), el("span", {}, words(`${plain(100 * use, 3)} % of the friction limit μ F_N`))),
-    el("dl", { class: "figures" },
-      pair("Displacement U", `${shown(state.displacement, "m")}`), pair("Force F", `${shown(state.force, "N")}`),
-      pair("Load F_N", `${shown(state.normal_force, "N")}`), pair("Contact radius a", `${shown(state.contact_radius, "m")}`),
-      pair("Friction work W", `${shown(state.dissipated_energy, "J")}`), pair("Memory of the past", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`)),
+    el(
+      "p",
+      { class: "meter" },
+      el("meter", { min: 0, max: 1, value: use, "aria-label": "Share of the friction limit" }),
+      el("span", {}, words(`${plain(100 * use, 3)} % of the friction limit μ F_N`)),
+    ),
+    el(
+      "dl",
+      { class: "figures" },
+      pair("Displacement U", `${shown(state.displacement, "m")}`),
+      pair("Force F", `${shown(state.force, "N")}`),
+      pair("Load F_N", `${shown(state.normal_force, "N")}`),
+      pair("Contact radius a", `${shown(state.contact_radius, "m")}`),
+      pair("Friction work W", `${shown(state.dissipated_energy, "J")}`),
+      pair("Memory of the past", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
+    ),
   ];
 }

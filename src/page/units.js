@@ -1,6 +1,17 @@
 // Numbers with their units, as people read them.
 
-const PREFIXES = [[1e12, "T"], [1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"], [1e-12, "p"], [1e-15, "f"]];
+const PREFIXES = [
+  [1e12, "T"],
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+  [1e-9, "n"],
+  [1e-12, "p"],
+  [1e-15, "f"],
+];
 
 /** The unit with the prefix that suits a value: how much it is, and its name. */
 export function scaled(value, unit) {
@@ -14,7 +25,10 @@ export function plain(value, digits = 4) {
   if (value === null || value === undefined) return "∞";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  const text = size < 1e-3 || size >= 1e6 ? value.toExponential(digits - 1).replace(/\.?0*e\+?/, " × 10^") : String(Number(value.toPrecision(digits)));
+  const text =
+    size < 1e-3 || size >= 1e6
+      ? value.toExponential(digits - 1).replace(/\.?0*e\+?/, " × 10^")
+      : String(Number(value.toPrecision(digits)));
   return text.replace(/-/g, "−");
 }
 

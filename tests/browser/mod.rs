@@ -135,19 +135,30 @@ impl Browser {
         field.send_keys(text).await.unwrap();
     }
 
-    /// Presses the mouse on an element, moves it by so many pixels in small steps, and lets go.
-    pub async fn drag(&self, css: &str, from: f64, to: f64) {
+    /// Where the parts of an element across its width are, at half its height, for the mouse; the element is brought into view.
+    async fn across(&self, css: &str) -> impl Fn(f64) -> PointerAction {
         let element = self.find(css).await;
         let argument = serde_json::to_value(&element).unwrap();
         self.page.execute("arguments[0].scrollIntoView({block: 'center'})", vec![argument]).await.unwrap();
         let (_, _, width, _) = element.rectangle().await.unwrap();
         // Counted from the middle of the element.
-        let at = |part: f64| PointerAction::MoveToElement {
+        move |part: f64| PointerAction::MoveToElement {
             element: element.clone(),
             duration: Some(Duration::from_millis(10)),
             x: (part - 0.5) * width,
             y: 0.0,
-        };
+        }
+    }
+
+    /// Moves the mouse to a part of the width of an element.
+    pub async fn hover(&self, css: &str, part: f64) {
+        let at = self.across(css).await;
+        self.page.perform_actions(MouseActions::new("mouse".to_owned()).then(at(part))).await.unwrap();
+    }
+
+    /// Presses the mouse on an element, moves it across its width in small steps, and lets go.
+    pub async fn drag(&self, css: &str, from: f64, to: f64) {
+        let at = self.across(css).await;
         let mut mouse = MouseActions::new("mouse".to_owned())
             .then(at(from))
             .then(PointerAction::Down { button: MOUSE_BUTTON_LEFT });
