@@ -255,6 +255,9 @@ async fn what_is_on_screen_can_be_taken_away() {
             _ => assert_eq!(text.lines().count(), 3, "{text}"),
         }
     }
+    browser.click("#plot-above .menu button:nth-of-type(5)").await;
+    let drawing = String::from_utf8(saved(&folder.path().join("above.svg")).await).unwrap();
+    assert!(drawing.contains("<stop") && drawing.contains("rgb(") && !drawing.contains("oklab("));
     // The commands are those of this contact, and they work.
     browser.click(".copying button").await;
     let commands = browser.value("document.querySelector('#code textarea').value").await;

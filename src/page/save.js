@@ -5,6 +5,7 @@ import { el, notice, save } from "./dom.js";
 const LOOKS = [
   "fill",
   "fill-opacity",
+  "fill-rule",
   "stroke",
   "stroke-width",
   "stroke-dasharray",
@@ -13,7 +14,6 @@ const LOOKS = [
   "font-family",
   "font-size",
   "font-weight",
-  "stop-color",
 ];
 
 /** A menu for a chart. */
@@ -63,7 +63,8 @@ export function drawing(chart) {
   const [here, there] = [chart.svg, copy].map((root) => [root, ...root.querySelectorAll("*")]);
   for (const [index, element] of here.entries()) {
     const look = getComputedStyle(element);
-    for (const name of LOOKS) there[index].setAttribute(name, look.getPropertyValue(name));
+    for (const name of element.localName === "stop" ? ["stop-color"] : LOOKS)
+      there[index].setAttribute(name, plainColour(look.getPropertyValue(name)));
     there[index].removeAttribute("class");
   }
   const { width, height } = chart.svg.viewBox.baseVal;
@@ -76,6 +77,15 @@ export function drawing(chart) {
   ground.setAttribute("fill", getComputedStyle(chart.element).backgroundColor);
   copy.prepend(ground);
   return new XMLSerializer().serializeToString(copy);
+}
+
+/** Mixed colours as red, green and blue, which every program knows; anything else as it is. */
+function plainColour(value) {
+  if (!/^(oklab|oklch|color)\(/.test(value)) return value;
+  const pencil = el("canvas", { width: 1, height: 1 }).getContext("2d");
+  pencil.fillStyle = value;
+  pencil.fillRect(0, 0, 1, 1);
+  return `rgb(${[...pencil.getImageData(0, 0, 1, 1).data.slice(0, 3)].join(", ")})`;
 }
 
 async function image(chart) {
