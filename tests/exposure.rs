@@ -120,6 +120,7 @@ async fn every_reply_says_what_browsers_must_not_do_with_it() {
         assert!(policy.starts_with("default-src 'none';") && policy.contains("frame-ancestors 'none'"), "{policy}");
         assert_eq!(policy.contains("script-src 'self';"), page, "{path}");
         assert!(!policy.contains("unsafe-eval") && !policy.contains("script-src 'self' 'unsafe-inline'"));
+        assert!(!own || !policy.contains("unsafe"), "{policy}");
         // No origin is let in that nobody has named.
         assert!(headers.keys().all(|name| !name.as_str().starts_with("access-control")), "{path}");
     }

@@ -275,7 +275,7 @@ async fn what_is_on_screen_can_be_taken_away() {
 }
 
 #[tokio::test]
-async fn every_shape_can_be_made() {
+async fn every_shape_body_and_preload_can_be_chosen() {
     let server = Binary::start(&[]);
     let browser = Browser::start(1280, 900, false).await;
     browser.page.goto(&format!("{}/#/new", server.address)).await.unwrap();
@@ -284,15 +284,18 @@ async fn every_shape_can_be_made() {
     let types: Vec<String> = serde_json::from_value(types).unwrap();
     let document = server.client.openapi().await.unwrap();
     assert_eq!(types.len(), document["components"]["schemas"]["Profile"]["oneOf"].as_array().unwrap().len());
-    for kind in types {
+    let shapes = types.iter().map(|kind| ("Shape of the indenter", kind.as_str(), "/profile/type", json!(kind)));
+    let bodies = [
+        ("Elasticity", "two", "/material/bodies/1/poisson_ratio", json!(0.3)),
+        ("Elasticity", "effective", "/material/effective/e_star", json!(2.31e11)),
+        ("Preload by", "indentation", "/preload/indentation", json!(1e-6)),
+        ("Preload by", "contact_radius", "/preload/contact_radius", json!(1e-4)),
+    ];
+    for (label, value, pointer, expected) in shapes.chain(bodies) {
         browser.value("location.assign('#/new') ?? null").await;
         browser.until("document.querySelector('#create') !== null").await;
-        let choose = format!(
-            "(() => {{ const choice = document.querySelector('form select'); choice.value = '{kind}'; \
-             choice.dispatchEvent(new Event('change', {{ bubbles: true }})); return null; }})()"
-        );
-        browser.value(&choose).await;
-        if kind == "tabulated" {
+        browser.choose(label, value).await;
+        if value == "tabulated" {
             browser.write("form textarea", "# µm\n0;0\n100;0,5\n200 2.0\n300, 4.5").await;
         }
         browser.click("#create").await;
@@ -300,13 +303,14 @@ async fn every_shape_can_be_made() {
         let hash = browser.value("location.hash").await;
         let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
         let made = serde_json::to_value(server.client.definition(id).await.unwrap()).unwrap();
-        assert_eq!(made["profile"]["type"], kind.as_str());
-        if kind == "tabulated" {
+        assert_eq!(made.pointer(pointer), Some(&expected), "{value}");
+        if value == "tabulated" {
             assert_eq!(made["profile"]["r"], json!([0.0, 1e-4, 2e-4, 3e-4]));
             assert_eq!(made["profile"]["z"], json!([0.0, 5e-7, 2e-6, 4.5e-6]));
         }
     }
-    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    // A table that is not whole yet is refused, and the browser itself says so.
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
     browser.close().await;
 }
 

@@ -1,9 +1,10 @@
 // The form that makes a contact, and shows what follows from it as one types.
 import { call } from "./api.js";
+import { materials, preloads } from "./bodies.js";
+import { Chart } from "./chart.js";
 import { copying } from "./code.js";
 import { el, latest, notice, settled, words } from "./dom.js";
-import { Choice, Fields, NumberField, TextField } from "./field.js";
-import { MATERIALS, MODULUS, PRELOADS } from "./profiles.js";
+import { Fields, NumberField, TextField } from "./field.js";
 import { shape } from "./shape.js";
 import { plain, shown } from "./units.js";
 
@@ -34,13 +35,21 @@ export function create(main, signal) {
   });
   const body = () => ({ ...(label.value ? { label: label.value } : {}), ...definition() });
 
-  const figures = el("dl", { class: "figures" });
+  const figures = el("dl", { class: "figures", "aria-live": "polite" });
+  const chart = new Chart({
+    name: "preload",
+    title: "Pressure at the preload",
+    height: 220,
+    x: { label: "Radius r", unit: "m" },
+    y: { label: "Stress", unit: "Pa" },
+  });
   const warnings = el("ul", { class: "warnings" });
   const derived = el(
     "section",
-    { class: "card derived", "aria-live": "polite", "aria-label": "What follows" },
+    { class: "card derived", "aria-label": "What follows" },
     el("h2", {}, "What follows"),
     figures,
+    chart.element,
     warnings,
   );
   const derive = latest(async () => {
@@ -48,12 +57,13 @@ export function create(main, signal) {
       const reply = await call(
         "POST",
         "/simulate",
-        { contact: definition(), path: { displacement: [0] }, steps: "last" },
+        { contact: definition(), path: { displacement: [0] }, steps: "last", stress: { points: 200, fields: ["pressure"] } },
         signal,
       );
       form.clear();
       derived.classList.remove("stale");
       figures.replaceChildren(...listed(reply.contact));
+      chart.draw(pressed(reply, Number(friction.value)));
       warnings.replaceChildren(...reply.warnings.map((warning) => el("li", {}, warning.message)));
     } catch (error) {
       if (signal.aborted) return;
@@ -115,78 +125,17 @@ export function listed(figures) {
   ];
 }
 
-function body(form, at, title) {
-  const modulus = new NumberField(form, () => `${at}/youngs_modulus`, {
-    label: "Young’s modulus E",
-    units: MODULUS,
-    unit: "GPa",
-    value: "210",
-  });
-  const ratio = new NumberField(form, () => `${at}/poisson_ratio`, { label: "Poisson’s ratio ν", value: "0.3" });
-  const known = el(
-    "select",
-    {
-      "aria-label": `${title}: a known material`,
-      onchange: ({ target }) => {
-        if (!target.value) return;
-        [modulus.control.value, ratio.control.value] = MATERIALS[target.value];
-        modulus.choice.value = "9";
-      },
-    },
-    el("option", { value: "" }, "Known material …"),
-    Object.keys(MATERIALS).map((name) => el("option", { value: name }, name)),
-  );
-  const element = el("fieldset", {}, el("legend", {}, title), known, modulus.element, ratio.element);
-  return { element, value: () => ({ youngs_modulus: modulus.value, poisson_ratio: ratio.value }) };
-}
-
-function materials(form, changed) {
-  const kinds = { rigid: "One elastic body on a rigid one", two: "Two elastic bodies", effective: "Reduced moduli" };
-  const choice = new Choice(form, () => "/material", "Elasticity", kinds, "rigid");
-  const fields = el("div", { class: "fields" });
-  let read;
-  const fill = () => {
-    if (choice.value === "effective") {
-      const star = ["e_star", "g_star"].map((name, index) => [
-        name,
-        new NumberField(form, () => `/material/effective/${name}`, {
-          label: ["Reduced modulus E*", "Reduced shear modulus G*"][index],
-          units: MODULUS,
-          unit: "GPa",
-          value: ["231", "190"][index],
-        }),
-      ]);
-      fields.replaceChildren(...star.map(([, field]) => field.element));
-      read = () => ({ effective: Object.fromEntries(star.map(([name, field]) => [name, field.value])) });
-    } else {
-      const first = body(form, "/material/bodies/0", "First body");
-      const second = choice.value === "two" ? body(form, "/material/bodies/1", "Second body") : null;
-      fields.replaceChildren(first.element, ...(second ? [second.element] : []));
-      read = () => ({ bodies: [first.value(), second ? second.value() : "rigid"] });
-    }
-    changed();
+/** The pressure, and what friction can bear. */
+function pressed({ contact: figures, stress: { radius, pressure } }, coefficient) {
+  const mean = figures.normal_force / (Math.PI * figures.contact_radius ** 2);
+  const points = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
+  return {
+    series: [
+      { name: "pressure p", kind: "pressure", points: points(1) },
+      { name: "bound μ p", kind: "bound", points: points(coefficient) },
+    ],
+    least: { y: [0] },
+    cap: figures.max_pressure === null ? 4 * mean : undefined,
+    empty: "There is no area of contact.",
   };
-  choice.control.addEventListener("change", fill);
-  fill();
-  return { element: el("div", {}, choice.element, fields), value: () => read() };
-}
-
-function preloads(form, changed) {
-  const choice = new Choice(
-    form,
-    () => "/preload",
-    "Preload by",
-    { normal_force: "normal force", indentation: "indentation", contact_radius: "contact radius" },
-    "normal_force",
-  );
-  const place = el("div", {});
-  let field;
-  const fill = () => {
-    field = new NumberField(form, () => `/preload/${choice.value}`, PRELOADS[choice.value]);
-    place.replaceChildren(field.element);
-    changed();
-  };
-  choice.control.addEventListener("change", fill);
-  fill();
-  return { element: el("div", {}, choice.element, place), value: () => ({ [choice.value]: field.value }) };
 }

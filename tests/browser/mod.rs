@@ -28,7 +28,11 @@ pub struct Browser {
 impl Browser {
     /// Starts one with a window of so many pixels.
     pub async fn start(width: u32, height: u32, dark: bool) -> Browser {
-        let mut driver = Command::new("chromedriver").arg("--port=0").stdout(Stdio::piped()).spawn().unwrap();
+        let mut driver = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("./check installs chromium and chromedriver");
         let stdout = driver.stdout.take().unwrap();
         let port = tokio::task::spawn_blocking(move || {
             let mut lines = BufReader::new(stdout).lines().map_while(Result::ok);
@@ -171,6 +175,14 @@ impl Browser {
     /// Ends it.
     pub async fn close(self) {
         self.page.clone().close().await.unwrap();
+    }
+
+    /// Chooses an entry of the list below a label.
+    pub async fn choose(&self, label: &str, value: &str) {
+        let script = "const label = [...document.querySelectorAll('label')].find((one) => one.innerText === arguments[0]); \
+                      const list = document.getElementById(label.htmlFor); list.value = arguments[1]; \
+                      list.dispatchEvent(new Event('change', { bubbles: true }));";
+        self.page.execute(script, vec![json!(label), json!(value)]).await.unwrap();
     }
 
     /// Clicks on an element, wherever on the page it is.
