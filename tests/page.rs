@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Duration;
 
-use browser::Browser;
+use browser::{Browser, PATIENCE};
 use common::{Binary, create};
 use reqwest::header;
 use serde_json::{Value, json};
@@ -15,6 +15,7 @@ use stickslip::access::{Role, new_key};
 use stickslip::client::Options;
 use stickslip::wire::{CreateRequest, Move, MoveRequest, NewSession};
 use tempfile::tempdir;
+use tokio::time::{sleep, timeout};
 
 /// The steel ball of the examples, with a name.
 async fn ball(server: &Binary) -> NewSession {
@@ -83,9 +84,17 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     );
     browser.until(&turned).await;
     let id = server.client.contacts(None, None).await.unwrap().items[0].id;
-    let state = server.client.contact(id).await.unwrap().state;
-    let shown = format!("Math.abs(Number(document.querySelector('#box-force').value) - {:e}) < 1e-4", state.force);
-    browser.until(&shown).await;
+    // The last places of the slider may still be on their way.
+    let agree = async {
+        loop {
+            let force = server.client.contact(id).await.unwrap().state.force;
+            let shown = browser.value("Number(document.querySelector('#box-force').value)").await;
+            if (shown.as_f64().unwrap() - force).abs() < 1e-4 {
+                break;
+            }
+        }
+    };
+    timeout(PATIENCE, agree).await.expect("the page shows what the server has");
     browser.picture("turned").await;
 
     // The past is still there after a reload.
@@ -169,11 +178,12 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
     // By keyboard: a slider moves the contact, and a plot reads its values.
     browser.press("#slide-displacement", "\u{e014}").await;
     browser.until("document.querySelector('.badge.on') !== null").await;
-    let mut sequence = 0;
-    while sequence < 8 {
-        sequence = server.client.contact(session.id).await.unwrap().sequence;
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
+    let arrived = async {
+        while server.client.contact(session.id).await.unwrap().sequence < 8 {
+            sleep(Duration::from_millis(20)).await;
+        }
+    };
+    timeout(PATIENCE, arrived).await.expect("the slider moves the contact");
     browser.press("#plot-stress svg", "\u{e011}").await;
     let centre = browser.value("document.querySelector('#plot-stress .said').textContent").await;
     let p_max = 3.0 * 10.0 / (2.0 * PI * session.contact.contact_radius.powi(2));
@@ -221,7 +231,7 @@ async fn saved(path: &Path) -> Vec<u8> {
         {
             return bytes;
         }
-        tokio::time::sleep(Duration::from_millis(50)).await;
+        sleep(Duration::from_millis(50)).await;
     }
     panic!("{} has not been saved", path.display());
 }

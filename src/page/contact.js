@@ -73,11 +73,13 @@ export async function contact(main, id, signal) {
   const excuse = (error) => {
     if (!signal.aborted) notice(error.message, true);
   };
-  const later = settled(() => bend().catch(excuse), 120);
+  // A way that the service cannot compute in small steps stays straight.
+  const bent = () => bend().catch((error) => error.status === 422 || excuse(error));
+  const later = settled(bent, 120);
   about.path = straight(about.first, history);
   redraw();
   look().catch(excuse);
-  bend().catch(excuse);
+  bent();
 
   const take = (event) => {
     if (event.sequence <= (history.at(-1)?.sequence ?? about.first.sequence)) return;

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 /// The variable that names a folder for screenshots.
 const SCREENSHOTS: &str = "PAGE_SCREENSHOTS";
 /// How long something may take to appear; against hanging alone.
-const PATIENCE: Duration = Duration::from_secs(30);
+pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A browser; it ends when it is dropped.
 pub struct Browser {
