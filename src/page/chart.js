@@ -127,7 +127,7 @@ export class Chart {
     }
     if (this.data.note) this.note.textContent = this.data.note;
     keys(this);
-    this.point(this.pointed);
+    this.refresh();
   }
 
   /** A range of x with the same scale as that of y. */

@@ -5,6 +5,7 @@ import { svg } from "./dom.js";
 export function pointing(chart) {
   const { svg: root } = chart;
   let start = null;
+  let over = null;
   const place = (event) => {
     const area = root.getBoundingClientRect();
     return [event.clientX - area.left, event.clientY - area.top];
@@ -15,9 +16,9 @@ export function pointing(chart) {
   };
   root.addEventListener("pointermove", (event) => {
     if (!chart.box) return;
-    const now = place(event);
-    if (start && drawn(start, now)) return box(chart, start, now);
-    tell(found(chart, now));
+    over = place(event);
+    if (start && drawn(start, over)) return box(chart, start, over);
+    tell(found(chart, over));
   });
   root.addEventListener("pointerdown", (event) => {
     if (event.pointerType !== "mouse" || event.button !== 0 || !chart.box) return;
@@ -33,8 +34,11 @@ export function pointing(chart) {
     start = null;
   });
   root.addEventListener("pointerleave", () => {
+    over = null;
     if (!start) tell(null);
   });
+  // What is under a pointer that rests may have changed.
+  chart.refresh = () => (over && !start ? tell(found(chart, over)) : chart.point(chart.pointed));
   root.addEventListener("dblclick", () => chart.reset());
   root.addEventListener("blur", () => tell(null));
   root.addEventListener("keydown", (event) => {
