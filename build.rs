@@ -1,13 +1,47 @@
-//! Tells the program which compiler made it.
+//! Tells the program which compiler made it, and packs the files of the page.
 
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+/// Where they are.
+const PAGE: &str = "src/page";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed={PAGE}");
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let said = Command::new(compiler).arg("--version").output();
     let version = said.ok().and_then(|output| String::from_utf8(output.stdout).ok());
     // "rustc 1.95.0 (…)": the number alone.
     let number = version.as_deref().and_then(|line| line.split_whitespace().nth(1)).unwrap_or("unknown");
     println!("cargo::rustc-env=BUILD_COMPILER={number}");
+
+    let out = std::env::var_os("OUT_DIR").expect("Cargo names the folder for what is built");
+    let out = Path::new(&out);
+    let files = fs::read_dir(PAGE).expect("the files of the page are there");
+    let mut paths: Vec<PathBuf> =
+        files.map(|entry| entry.expect("the folder of the page can be read").path()).collect();
+    paths.sort();
+    let mut list = String::from("[");
+    for path in paths {
+        let plain = path.canonicalize().expect("a file of the page is there");
+        let name = plain.file_name().and_then(OsStr::to_str).expect("the files of the page have plain names");
+        let packed = out.join(format!("{name}.gz"));
+        pack(&packed, &fs::read(&plain).expect("a file of the page can be read"));
+        let (plain, packed) = (format!("include_bytes!({plain:?})"), format!("include_bytes!({packed:?})"));
+        list.push_str(&format!("Asset {{ name: {name:?}, plain: {plain}, packed: {packed} }},\n"));
+    }
+    list.push(']');
+    fs::write(out.join("page.in"), list).expect("the folder can be written");
+}
+
+fn pack(to: &Path, bytes: &[u8]) {
+    let mut encoder = GzEncoder::new(File::create(to).expect("the folder can be written"), Compression::best());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("a file of the page can be packed");
 }

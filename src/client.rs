@@ -24,9 +24,10 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::wire::{
-    AccuracyReply, AccuracyRequest, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage, MoveReply,
-    MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest, RelaxReply,
-    RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest,
+    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage,
+    MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest,
+    RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
+    StressRequest,
 };
 
 /// A handle on a service; clones share its connections.
@@ -143,6 +144,14 @@ impl Client {
     /// [`Error`], as for every call.
     pub async fn contact(&self, id: Uuid) -> Result<SessionReply, Error> {
         json(self.call(Method::GET, &format!("/contacts/{id}"))).await
+    }
+
+    /// `GET /contacts/{id}/definition`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn definition(&self, id: Uuid) -> Result<ContactDefinition, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}/definition"))).await
     }
 
     /// `POST /contacts/{id}/move`.

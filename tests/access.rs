@@ -29,6 +29,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("GET", "/contacts", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
     ("DELETE", "/contacts/{id}", "", 204, &["write"]),
+    ("GET", "/contacts/{id}/definition", "", 200, &["read", "write"]),
     ("POST", "/contacts/{id}/fork", "", 201, &["write"]),
     ("POST", "/contacts/{id}/move", "move", 200, &["write"]),
     ("POST", "/contacts/{id}/path", "path", 200, &["write"]),

@@ -48,6 +48,7 @@ const NEEDS: &[(&str, &str, Need)] = &[
     ("POST", "/contacts", Key(Role::Write)),
     ("GET", "/contacts/{id}", Key(Role::Read)),
     ("DELETE", "/contacts/{id}", Key(Role::Write)),
+    ("GET", "/contacts/{id}/definition", Key(Role::Read)),
     ("POST", "/contacts/{id}/move", Key(Role::Write)),
     ("POST", "/contacts/{id}/path", Key(Role::Write)),
     ("POST", "/contacts/{id}/relax", Key(Role::Write)),
@@ -61,6 +62,8 @@ const NEEDS: &[(&str, &str, Need)] = &[
     ("GET", "/readyz", Nothing),
     ("GET", "/openapi.json", Nothing),
     ("GET", "/problems/{code}", Nothing),
+    ("GET", "/", Nothing),
+    ("GET", super::page::FOLDER, Nothing),
     ("GET", "/docs", Nothing),
     ("GET", "/docs/{*rest}", Nothing),
 ];

@@ -5,7 +5,7 @@ use axum::response::Response;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use crate::wire::{CreateRequest, ForkRequest, NewSession, SessionPage, SessionReply};
+use crate::wire::{ContactDefinition, CreateRequest, ForkRequest, NewSession, SessionPage, SessionReply};
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected, OptionalCommand};
@@ -89,6 +89,20 @@ pub async fn delete(
 ) -> Result<StatusCode, Problem> {
     app.sessions.delete(id, expected).await?;
     Ok(StatusCode::NO_CONTENT)
+}
+
+/// Read the definition of a contact
+///
+/// As it came: with another preload, or another path, it serves as the `contact` of a simulation. A fork has that of its
+/// original.
+#[utoipa::path(
+    get, path = "/contacts/{id}/definition", tag = "contacts", params(ContactPath),
+    responses((status = 200, description = "Profile, material, friction and preload", body = ContactDefinition))
+)]
+pub async fn definition(Own(app): Own, ContactId(id): ContactId, params: Params) -> Result<Response, Problem> {
+    params.none()?;
+    let (body, held) = app.sessions.definition(id).await?;
+    Ok(reply::holding(reply::json(body), held))
 }
 
 /// Fork a contact

@@ -22,6 +22,11 @@ const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
 
 /// Which pages may embed a reply.
 const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+/// The page to look at does the same, and needs no style within its elements. It draws a plot that is to be saved from memory.
+const LOOK_POLICY: HeaderValue = HeaderValue::from_static(
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; \
+     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+);
 
 /// What every reply has.
 const COMMON: [(HeaderName, HeaderValue); 4] = [
@@ -31,17 +36,32 @@ const COMMON: [(HeaderName, HeaderValue); 4] = [
     (RESOURCE_POLICY, HeaderValue::from_static("same-origin")),
 ];
 
-/// Writes the headers of a reply to a request by `method`; `page` if it is of the page to try the service, which is no secret
-/// and may be kept.
-pub fn protect(headers: &mut HeaderMap, method: &Method, page: bool) {
+/// What a reply belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Data, which may be a secret.
+    Data,
+    /// The page to try the service, which is no secret and may be kept.
+    Docs,
+    /// The page to look at, likewise.
+    Page,
+}
+
+/// Writes the headers of a reply to a request by `method`.
+pub fn protect(headers: &mut HeaderMap, method: &Method, kind: Kind) {
     headers.reserve(COMMON.len() + 3);
     headers.extend(COMMON);
-    headers.insert(header::CONTENT_SECURITY_POLICY, if page { PAGE_POLICY } else { POLICY });
-    if headers.get(header::CONTENT_TYPE).is_some_and(|kind| kind.as_bytes().starts_with(b"image/")) {
-        // A dashboard elsewhere may show a plot. Its scripts see nothing of it but its size.
-        headers.insert(RESOURCE_POLICY, HeaderValue::from_static("cross-origin"));
-    }
-    if !page {
+    let policy = match kind {
+        Kind::Data => POLICY,
+        Kind::Docs => PAGE_POLICY,
+        Kind::Page => LOOK_POLICY,
+    };
+    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    if kind == Kind::Data {
+        if headers.get(header::CONTENT_TYPE).is_some_and(|kind| kind.as_bytes().starts_with(b"image/")) {
+            // A dashboard elsewhere may show a plot. Its scripts see nothing of it but its size.
+            headers.insert(RESOURCE_POLICY, HeaderValue::from_static("cross-origin"));
+        }
         // What has a version may be kept by the browser that got it, and be shown again once the server has said that it is
         // the present one.
         let versioned = matches!(*method, Method::GET | Method::HEAD) && headers.contains_key(header::ETAG);

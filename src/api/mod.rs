@@ -17,6 +17,7 @@ mod metrics;
 mod moves;
 mod observe;
 mod openapi;
+mod page;
 mod plots;
 pub mod problem;
 mod protocols;
@@ -71,7 +72,7 @@ fn router(app: App, traffic: Arc<traffic::Traffic>) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
-    dressed(api.with_state(app).merge(docs).fallback(meta::nothing_here), access, traffic)
+    dressed(api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here), access, traffic)
 }
 
 /// The answer to requests that do not come as far as [`router`].
@@ -103,6 +104,7 @@ fn described() -> OpenApiRouter<App> {
         .routes(routes!(jobs::events))
         .routes(routes!(contacts::create, contacts::list))
         .routes(routes!(contacts::get, contacts::delete))
+        .routes(routes!(contacts::definition))
         .routes(routes!(contacts::fork))
         .routes(routes!(moves::apply))
         .routes(routes!(moves::path))

@@ -14,7 +14,7 @@ use uuid::Uuid;
 
 use super::problem::{Kind, MEDIA_TYPE, Problem};
 use super::traffic::{ABANDONED, Endpoint, Traffic};
-use super::{headers, limits, meta, metrics};
+use super::{headers, limits, meta, metrics, page};
 
 /// The header that carries a request's identifier, both ways.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
@@ -57,8 +57,12 @@ pub async fn observe(State(traffic): State<Arc<Traffic>>, mut request: Request, 
     if let Some(problem) = problem {
         response = dressed(response, problem, &id);
     }
-    let page = route.is_some_and(|route| route.starts_with("/docs"));
-    headers::protect(response.headers_mut(), &method, page);
+    let kind = match route {
+        Some("/" | page::FOLDER) => headers::Kind::Page,
+        Some(route) if route.starts_with("/docs") => headers::Kind::Docs,
+        _ => headers::Kind::Data,
+    };
+    headers::protect(response.headers_mut(), &method, kind);
     if let Ok(value) = HeaderValue::from_str(&id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }

@@ -73,12 +73,14 @@ impl Live {
 }
 
 fn definition_bytes(definition: &ContactDefinition) -> usize {
-    fn table_points(profile: &Profile) -> usize {
-        match profile {
-            Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
-            Profile::Sum(SumProfile { parts }) => parts.iter().map(table_points).sum(),
-            _ => 0,
-        }
-    }
     table_points(&definition.profile) * TABLE_POINT
+}
+
+/// Points of all tables of a profile.
+pub(super) fn table_points(profile: &Profile) -> usize {
+    match profile {
+        Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
+        Profile::Sum(SumProfile { parts }) => parts.iter().map(table_points).sum(),
+        _ => 0,
+    }
 }

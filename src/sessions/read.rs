@@ -1,5 +1,7 @@
 //! Looking at sessions. A read changes nothing, and waits for no more than the move under way.
 
+use std::sync::Arc;
+
 use uuid::Uuid;
 
 use crate::mechanics::Contact;
@@ -7,7 +9,8 @@ use crate::simulation::cost::{self, Nanoseconds};
 use crate::simulation::{self, Reservation, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
-use super::{SessionError, Sessions};
+use super::live::table_points;
+use super::{SessionError, Sessions, written};
 
 impl Sessions {
     /// A session with its state.
@@ -28,8 +31,23 @@ impl Sessions {
         })
     }
 
-    /// What `write` makes of the stresses of a session, its contact and its sequence, in `more` bytes beyond JSON's columns at the
-    /// most sequence, and the memory that it takes.
+    /// The definition of a session as it came, as JSON, and the memory that it takes.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
+    pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
+        let definition = {
+            let mut guard = self.lock(id).await?;
+            Arc::clone(&self.present(&mut guard).await?.session.definition)
+        };
+        let points = table_points(&definition.profile);
+        let held = self.common.pool.reserve(points * cost::WRITTEN_POINT_BYTES).await?;
+        let work = move || written(&*definition);
+        Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
+    }
+
+    /// What `write` makes of the stresses of a session, of its contact and its sequence, in `more` bytes beyond JSON's columns at
+    /// the most and in so much `longer` time; with the sequence, and the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.

@@ -54,6 +54,8 @@ const RECORD_BYTES: usize = 512;
 const RADIUS_BYTES: usize = 320;
 /// One point of a table.
 const POINT_BYTES: usize = 1_280;
+/// One point of a table written as JSON, in a text that grows by doubling.
+pub const WRITTEN_POINT_BYTES: usize = 128;
 /// One spring.
 const SPRING_BYTES: usize = 64;
 
@@ -68,6 +70,12 @@ pub fn estimated_cost(moves: usize, curved: usize, depth: usize, radii: usize, r
         .saturating_add(curved as u64 * CURVED)
         .saturating_add(radii * RADIUS)
         .saturating_add((radii + searched).saturating_mul(pieces * PIECE))
+}
+
+/// What it costs to write a table of so many points as JSON.
+#[must_use]
+pub fn writing_table(points: usize) -> Nanoseconds {
+    points as u64 * RADIUS
 }
 
 /// What costs so much on a sphere costs this much on another shape; the search for extrema goes from knot to knot there, and

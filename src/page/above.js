@@ -1,0 +1,145 @@
+// The contact seen from above: the shear stress as colour, so that the rings of the past show, and the ring that slips.
+import { Chart } from "./chart.js";
+import { svg } from "./dom.js";
+import { shown } from "./units.js";
+
+const STOPS = 160;
+
+/** The plot. */
+export function above() {
+  const chart = new Chart({
+    name: "above",
+    title: "The contact from above",
+    mode: "radius",
+    square: true,
+    height: 340,
+    x: { label: "x, along the motion", unit: "m" },
+    y: { label: "y", unit: "m" },
+    note: "Colour is the shear stress on the contact, green along the push and purple against it; in the striped ring the last move slipped.",
+  });
+  let stress = null;
+  let radius = 0;
+  chart.at = (r, x, y) => {
+    if (!stress || r > radius) return null;
+    const index = stress.radius.reduce(
+      (best, value, index) => (Math.abs(value - r) < Math.abs(stress.radius[best] - r) ? index : best),
+      0,
+    );
+    const value = (name, unit) => shown(stress[name][index], unit);
+    return {
+      x,
+      y,
+      ring: r,
+      lines: [
+        `radius ${shown(r, "m")}`,
+        `shear τ ${value("shear", "Pa")}`,
+        `pressure p ${value("pressure", "Pa")}`,
+        `slip ${value("slip", "m")}`,
+      ],
+    };
+  };
+  chart.read = (x, y) => chart.at(Math.hypot(x, y), x, y);
+  chart.show = (about) => {
+    stress = about.stress;
+    radius = about.state.contact_radius;
+    const half = (radius || 1e-6) * 1.12;
+    const points = stress.radius.map((r, index) => [r, stress.shear[index]]);
+    chart.draw({
+      series: [{ name: "shear stress τ", points, kind: "none", line: false }],
+      range: { x: [-half, half], y: [-half, half] },
+      layer: (plot, group) => group.append(...disc(plot, about)),
+      table: () => ({
+        columns: ["radius_m", "shear_pa", "slip_m"],
+        rows: points.map(([r, tau], index) => [r, tau, stress.slip[index]]),
+      }),
+    });
+  };
+  return chart;
+}
+
+/** The colour of a stress between −1 and 1; small ones show too. */
+export function colour(value) {
+  const part = Math.round(100 * Math.min(1, Math.abs(value)) ** 0.6);
+  return `color-mix(in oklab, var(${value < 0 ? "--minus" : "--plus"}) ${part}%, var(--none))`;
+}
+
+function disc(plot, { stress, state, friction, history }) {
+  const a = state.contact_radius;
+  if (!(a > 0))
+    return [
+      svg(
+        "text",
+        { x: (plot.box.left + plot.box.right) / 2, y: (plot.box.top + plot.box.bottom) / 2, "text-anchor": "middle" },
+        "There is no area of contact.",
+      ),
+    ];
+  const finite = stress.pressure.filter((value) => value !== null);
+  const mean = state.normal_force / (Math.PI * a * a);
+  const full = friction * Math.min(Math.max(...finite), 4 * mean) || 1;
+  const [cx, cy] = [plot.x.at(0), plot.y.at(0)];
+  const size = (radius) => Math.abs(plot.x.at(radius) - cx);
+  const every = Math.max(1, Math.floor(stress.radius.length / STOPS));
+  const stops = stress.radius.map((r, index) => [r / a, stress.shear[index]]).filter((_, index) => index % every === 0);
+  const id = `${plot.clip}-rings`;
+  const gradient = svg(
+    "radialGradient",
+    { id, gradientUnits: "userSpaceOnUse", cx, cy, r: size(a) },
+    ...stops.map(([offset, tau]) => svg("stop", { offset, "stop-color": colour((tau ?? full) / full) })),
+  );
+  const drawn = [svg("defs", {}, gradient), svg("circle", { cx, cy, r: size(a), fill: `url(#${id})`, class: "disc" })];
+  const c = state.stick_radius;
+  if (c < a) {
+    const stripes = `${plot.clip}-stripes`;
+    drawn.push(
+      svg(
+        "defs",
+        {},
+        svg(
+          "pattern",
+          { id: stripes, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+          svg("line", { class: "stripe", y2: 6 }),
+        ),
+      ),
+      svg("path", { class: "slipping", fill: `url(#${stripes})`, d: ring(cx, cy, size(a), size(c)) }),
+    );
+    if (c > 0) drawn.push(svg("circle", { class: "front", cx, cy, r: size(c) }));
+  }
+  drawn.push(...scale(plot, full), ...arrow(plot, history));
+  return drawn;
+}
+
+/** The area between two circles. */
+function ring(x, y, outer, inner) {
+  const circle = (r) => `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0Z`;
+  return circle(outer) + (inner > 0 ? circle(inner) : "");
+}
+
+/** What the colours mean. */
+function scale(plot, full) {
+  const { left, bottom } = plot.box;
+  const [x, y, width] = [left + 8, bottom - 14, 90];
+  const id = `${plot.clip}-scale`;
+  const stops = Array.from({ length: 21 }, (_, index) =>
+    svg("stop", { offset: index / 20, "stop-color": colour(index / 10 - 1) }),
+  );
+  const text = (at, anchor, words) => svg("text", { class: "small", x: at, y: y - 4, "text-anchor": anchor }, words);
+  return [
+    svg("defs", {}, svg("linearGradient", { id }, ...stops)),
+    svg("rect", { x, y, width, height: 8, fill: `url(#${id})` }),
+    text(x, "start", `τ = ∓${shown(full, "Pa", 2)}`),
+  ];
+}
+
+/** Where the indenter went last. */
+function arrow(plot, history) {
+  const last = history.at(-1)?.state.displacement ?? 0;
+  const before = history.at(-2)?.state.displacement ?? 0;
+  if (last === before) return [];
+  const { right, top } = plot.box;
+  const sign = Math.sign(last - before);
+  const [x, y] = [right - 12 - (sign > 0 ? 0 : 46), top + 16];
+  return [
+    svg("path", { class: "arrow", d: `M${x - sign * 46},${y}H${x}m${-sign * 8},-5l${sign * 8},5l${-sign * 8},5` }),
+    svg("text", { class: "small", x: right - 12, y: y + 18, "text-anchor": "end" }, "last move"),
+  ];
+}

@@ -1,0 +1,140 @@
+// Calls of the public API: the key, problem documents, and the stream of events.
+
+import { pause } from "./dom.js";
+
+const KEY = "stickslip-key";
+let asking = null;
+
+/** A refusal, with its problem document. */
+export class Refusal extends Error {
+  constructor(status, problem) {
+    super(problem.detail || problem.title || `The service answered ${status}`);
+    this.status = status;
+    this.code = problem.code;
+    this.errors = problem.errors || [];
+  }
+}
+
+export const hasKey = () => sessionStorage.getItem(KEY) !== null;
+
+/** Asks for a key; whoever asks meanwhile waits for the same answer. */
+function askForKey() {
+  asking ??= new Promise((resolve) => {
+    const dialog = document.getElementById("key");
+    dialog.addEventListener(
+      "close",
+      () => {
+        const given = dialog.returnValue === "use" ? dialog.querySelector("input").value.trim() : "";
+        if (given) sessionStorage.setItem(KEY, given);
+        dialog.querySelector("form").reset();
+        asking = null;
+        resolve(given !== "");
+      },
+      { once: true },
+    );
+    dialog.returnValue = "";
+    dialog.showModal();
+  });
+  return asking;
+}
+
+async function send(method, path, { body, headers = {}, signal } = {}) {
+  for (;;) {
+    const key = sessionStorage.getItem(KEY);
+    const all = { ...headers };
+    if (key) all.authorization = `Bearer ${key}`;
+    if (body !== undefined) all["content-type"] = "application/json";
+    const text = body === undefined ? undefined : JSON.stringify(body);
+    const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" });
+    if (response.ok) return response;
+    if (response.status === 401 && (await askForKey())) continue;
+    const problem = await response.json().catch(() => ({}));
+    throw new Refusal(response.status, problem);
+  }
+}
+
+/** One call; the JSON of its reply. Work that is refused for want of room is tried again a few times. */
+export async function call(method, path, body, signal) {
+  for (let attempt = 0; ; attempt += 1) {
+    try {
+      const response = await send(method, path, { body, signal });
+      return response.status === 204 ? null : await response.json();
+    } catch (error) {
+      const full = error.status === 503 || error.status === 429;
+      if (!full || attempt === 3) throw error;
+      await pause(1000 * (attempt + 1), signal);
+    }
+  }
+}
+
+let paths = null;
+
+/** Whether the service has an endpoint. */
+export async function offered(path) {
+  paths ??= call("GET", "/openapi.json").then(
+    (document) => document.paths,
+    () => ({}),
+  );
+  return path in (await paths);
+}
+
+/** All pages of a list, or as many items as `most`. */
+export async function pages(path, most, after) {
+  const items = [];
+  do {
+    const page = await call("GET", `${path}?limit=1000${after ? `&after=${after}` : ""}`);
+    items.push(...page.items);
+    after = page.next;
+  } while (after !== null && items.length < most);
+  return items;
+}
+
+/** Follows a contact until `signal` or the end: `take` gets each state, `report` what becomes of the connection. */
+export async function follow(id, last, take, report, signal) {
+  for (let wait = 500; !signal.aborted; wait = Math.min(2 * wait, 15000)) {
+    try {
+      const headers = { accept: "text/event-stream", "last-event-id": String(last) };
+      const response = await send("GET", `/contacts/${id}/events`, { headers, signal });
+      report("live");
+      for await (const { event, data } of events(response.body)) {
+        wait = 500;
+        if (event === "end" && data.reason !== "stopping") return report(data.reason);
+        if (event === "state") {
+          last = data.sequence;
+          take(data);
+        }
+      }
+    } catch (error) {
+      if (signal.aborted) return;
+      if (error.status === 404) return report("deleted");
+      if (error.status === 401 || error.status === 403) return report("refused");
+    }
+    report("waiting");
+    await pause(wait, signal);
+  }
+}
+
+/** The events of a stream; comments and what has no data are passed over. */
+async function* events(body) {
+  const reader = body.pipeThrough(new TextDecoderStream()).getReader();
+  let buffer = "";
+  for (;;) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    buffer += value;
+    const blocks = buffer.split(/\r?\n\r?\n/);
+    buffer = blocks.pop();
+    for (const block of blocks) {
+      const fields = block
+        .split(/\r?\n/)
+        .map((line) => line.match(/^(\w+): ?(.*)$/))
+        .filter(Boolean);
+      const named = (name) =>
+        fields
+          .filter((field) => field[1] === name)
+          .map((field) => field[2])
+          .join("\n");
+      if (named("data")) yield { event: named("event"), data: JSON.parse(named("data")) };
+    }
+  }
+}

@@ -1,0 +1,82 @@
+// The parts of the form that say which bodies touch, and how they are pressed together.
+import { el } from "./dom.js";
+import { Choice, NumberField } from "./field.js";
+import { MATERIALS, MODULUS, PRELOADS } from "./profiles.js";
+
+function body(form, at, title) {
+  const modulus = new NumberField(form, () => `${at}/youngs_modulus`, {
+    label: "Young’s modulus E",
+    units: MODULUS,
+    unit: "GPa",
+    value: "210",
+  });
+  const ratio = new NumberField(form, () => `${at}/poisson_ratio`, { label: "Poisson’s ratio ν", value: "0.3" });
+  const known = el(
+    "select",
+    {
+      "aria-label": `${title}: a known material`,
+      onchange: ({ target }) => {
+        if (!target.value) return;
+        [modulus.control.value, ratio.control.value] = MATERIALS[target.value];
+        modulus.choice.value = "9";
+      },
+    },
+    el("option", { value: "" }, "Known material …"),
+    Object.keys(MATERIALS).map((name) => el("option", { value: name }, name)),
+  );
+  const element = el("fieldset", {}, el("legend", {}, title), known, modulus.element, ratio.element);
+  return { element, value: () => ({ youngs_modulus: modulus.value, poisson_ratio: ratio.value }) };
+}
+
+/** Which bodies touch. */
+export function materials(form, changed) {
+  const kinds = { rigid: "Elastic on rigid", two: "Two elastic bodies", effective: "Reduced moduli" };
+  const choice = new Choice(form, () => "/material", "Elasticity", kinds, "rigid");
+  const fields = el("div", { class: "fields" });
+  let read;
+  const fill = () => {
+    if (choice.value === "effective") {
+      const star = ["e_star", "g_star"].map((name, index) => [
+        name,
+        new NumberField(form, () => `/material/effective/${name}`, {
+          label: ["Reduced modulus E*", "Reduced shear modulus G*"][index],
+          units: MODULUS,
+          unit: "GPa",
+          value: ["231", "190"][index],
+        }),
+      ]);
+      fields.replaceChildren(...star.map(([, field]) => field.element));
+      read = () => ({ effective: Object.fromEntries(star.map(([name, field]) => [name, field.value])) });
+    } else {
+      const first = body(form, "/material/bodies/0", "First body");
+      const second = choice.value === "two" ? body(form, "/material/bodies/1", "Second body") : null;
+      fields.replaceChildren(first.element, ...(second ? [second.element] : []));
+      read = () => ({ bodies: [first.value(), second ? second.value() : "rigid"] });
+    }
+    changed();
+  };
+  choice.control.addEventListener("change", fill);
+  fill();
+  return { element: el("div", {}, choice.element, fields), value: () => read() };
+}
+
+/** How they are pressed together. */
+export function preloads(form, changed) {
+  const choice = new Choice(
+    form,
+    () => "/preload",
+    "Preload by",
+    { normal_force: "normal force", indentation: "indentation", contact_radius: "contact radius" },
+    "normal_force",
+  );
+  const place = el("div", {});
+  let field;
+  const fill = () => {
+    field = new NumberField(form, () => `/preload/${choice.value}`, PRELOADS[choice.value]);
+    place.replaceChildren(field.element);
+    changed();
+  };
+  choice.control.addEventListener("change", fill);
+  fill();
+  return { element: el("div", {}, choice.element, place), value: () => ({ [choice.value]: field.value }) };
+}

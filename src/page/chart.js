@@ -1,0 +1,150 @@
+// Lines over two axes, as SVG: with values under the pointer, zoom, the keyboard, and a menu to save.
+import { keys, point } from "./cursor.js";
+import { el, svg, words } from "./dom.js";
+import { bands, grid, level, line } from "./parts.js";
+import { pointing } from "./pointing.js";
+import { menu } from "./save.js";
+import { Axis, around } from "./scale.js";
+import { shown } from "./units.js";
+
+const PAD = { left: 62, right: 14, top: 12, bottom: 46 };
+let count = 0;
+
+/** A plot. `draw` gives it something to show; `onhover` tells where the pointer is. */
+export class Chart {
+  /** `mode`: whether the pointer looks for the nearest value of `x`, the `nearest` point, or what the owner `reads`. */
+  constructor({ name, title, x, y, mode = "x", square = false, height = 300, note }) {
+    Object.assign(this, { name, title, mode, square, height, x: new Axis(x), y: new Axis(y) });
+    this.clip = `clip-${(count += 1)}`;
+    this.data = { series: [] };
+    this.view = null;
+    this.hidden = new Set();
+    this.svg = svg("svg", {
+      class: "chart",
+      tabindex: 0,
+      role: "application",
+      "aria-roledescription": "plot",
+      "aria-label": `${title}. Arrow keys read values, plus and minus zoom, 0 shows all.`,
+    });
+    this.legend = el("div", { class: "legend" });
+    this.said = el("output", { class: "said", "aria-live": "polite" });
+    this.note = el("p", { class: "note" }, words(note ?? ""));
+    this.element = el(
+      "figure",
+      { class: "plot", id: `plot-${name}` },
+      el("figcaption", {}, el("h3", {}, words(title)), menu(this)),
+      this.legend,
+      this.svg,
+      this.said,
+      this.note,
+    );
+    new ResizeObserver(() => this.redraw()).observe(this.element);
+    pointing(this);
+  }
+
+  /** Shows data: `series`, and if wanted `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
+   *  `layer` below, a `table`, and words for when it is `empty`. */
+  draw(data) {
+    this.data = data;
+    this.redraw();
+  }
+
+  redraw() {
+    this.frame ??= requestAnimationFrame(() => {
+      this.frame = null;
+      this.render();
+    });
+  }
+
+  /** The series that are not switched off. */
+  visible() {
+    return this.data.series.filter((series) => !this.hidden.has(series.name));
+  }
+
+  ranges() {
+    if (this.view) return this.view;
+    const points = this.visible().flatMap((series) => series.points);
+    const { range: own = {}, least = {} } = this.data;
+    const x = own.x ?? around(points.map((point) => point[0]).concat(least.x ?? []), this.x.log);
+    const y =
+      own.y ??
+      around(
+        points
+          .map((point) => point[1])
+          .filter((value) => value !== null)
+          .concat(least.y ?? []),
+        this.y.log,
+      );
+    const cap = this.data.cap ?? Infinity;
+    return { x, y: [Math.max(y[0], -cap), Math.min(y[1], cap)] };
+  }
+
+  render() {
+    const { width } = this.svg.getBoundingClientRect();
+    if (!width) return;
+    const height = this.square ? Math.min(this.height, width) : this.height;
+    const ranges = this.ranges();
+    this.box = { left: PAD.left, right: width - PAD.right, top: PAD.top, bottom: height - PAD.bottom };
+    const box = this.box;
+    if (this.square) ranges.x = this.evened(ranges);
+    this.x.fit(ranges.x, box.left, box.right);
+    this.y.fit(ranges.y, box.bottom, box.top);
+    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.svg.setAttribute("height", height);
+    const inside = svg("g", { "clip-path": `url(#${this.clip})` });
+    const size = { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top };
+    this.cursor = svg("g", { class: "cursor" });
+    this.svg.replaceChildren(
+      svg("defs", {}, svg("clipPath", { id: this.clip }, svg("rect", size))),
+      svg("rect", { class: "field", ...size }),
+      bands(this),
+      grid(this),
+      inside,
+      svg("rect", { class: "frame", ...size }),
+      this.cursor,
+    );
+    this.data.layer?.(this, inside);
+    if (this.data.empty && !this.visible().some((series) => series.points.some((point) => point[1] !== null))) {
+      inside.append(
+        svg(
+          "text",
+          { class: "small", x: (box.left + box.right) / 2, y: (box.top + box.bottom) / 2, "text-anchor": "middle" },
+          this.data.empty,
+        ),
+      );
+    }
+    for (const one of this.data.levels ?? []) inside.append(level(this, one));
+    for (const series of this.visible()) inside.append(...line(this, series));
+    for (const mark of this.data.marks ?? []) {
+      inside.append(
+        svg("circle", {
+          class: `mark ${mark.class ?? ""}`,
+          cx: this.x.at(mark.x),
+          cy: this.y.at(mark.y),
+          r: mark.size ?? 6,
+        }),
+      );
+    }
+    if (this.data.note) this.note.textContent = this.data.note;
+    keys(this);
+    this.refresh();
+  }
+
+  /** A range of x with the same scale as that of y. */
+  evened({ x, y }) {
+    const { left, right, top, bottom } = this.box;
+    const half = (((y[1] - y[0]) / (bottom - top)) * (right - left)) / 2;
+    const middle = (x[0] + x[1]) / 2;
+    return [middle - half, middle + half];
+  }
+
+  /** Marks a place, with lines of text beside it: `{ x, y, dots, lines, ring }`, or nothing. */
+  point(hit) {
+    point(this, hit);
+  }
+
+  /** A value of an axis as people read it. */
+  reading(axis, value) {
+    return shown(value, axis.unit);
+  }
+}

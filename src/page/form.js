@@ -1,0 +1,141 @@
+// The form that makes a contact, and shows what follows from it as one types.
+import { call } from "./api.js";
+import { materials, preloads } from "./bodies.js";
+import { Chart } from "./chart.js";
+import { copying } from "./code.js";
+import { el, latest, notice, settled, words } from "./dom.js";
+import { Fields, NumberField, TextField } from "./field.js";
+import { shape } from "./shape.js";
+import { plain, shown } from "./units.js";
+
+/** Shows the form in `main`. */
+export function create(main, signal) {
+  const form = new Fields();
+  const ready = {};
+  const ask = settled(() => derive(), 200);
+  const changed = () => {
+    if (ready.now) ask();
+  };
+
+  const label = new TextField(
+    form,
+    () => "/label",
+    "Label (may be left out)",
+    el("input", { type: "text", maxlength: 200, autocomplete: "off" }),
+  );
+  const profile = shape(form, () => "/profile", changed);
+  const material = materials(form, changed);
+  const friction = new NumberField(form, () => "/friction", { label: "Coefficient of friction μ", value: "0.3" });
+  const preload = preloads(form, changed);
+  const definition = () => ({
+    profile: profile.value(),
+    material: material.value(),
+    friction: friction.value,
+    preload: preload.value(),
+  });
+  const body = () => ({ ...(label.value ? { label: label.value } : {}), ...definition() });
+
+  const figures = el("dl", { class: "figures", "aria-live": "polite" });
+  const chart = new Chart({
+    name: "preload",
+    title: "Pressure at the preload",
+    height: 220,
+    x: { label: "Radius r", unit: "m" },
+    y: { label: "Stress", unit: "Pa" },
+  });
+  const warnings = el("ul", { class: "warnings" });
+  const derived = el(
+    "section",
+    { class: "card derived", "aria-label": "What follows" },
+    el("h2", {}, "What follows"),
+    figures,
+    chart.element,
+    warnings,
+  );
+  const derive = latest(async () => {
+    try {
+      const reply = await call(
+        "POST",
+        "/simulate",
+        { contact: definition(), path: { displacement: [0] }, steps: "last", stress: { points: 200, fields: ["pressure"] } },
+        signal,
+      );
+      form.clear();
+      derived.classList.remove("stale");
+      figures.replaceChildren(...listed(reply.contact));
+      chart.draw(pressed(reply, Number(friction.value)));
+      warnings.replaceChildren(...reply.warnings.map((warning) => el("li", {}, warning.message)));
+    } catch (error) {
+      if (signal.aborted) return;
+      derived.classList.add("stale");
+      form.place(error, "/contact");
+    }
+  });
+  const submit = async (event) => {
+    event.preventDefault();
+    try {
+      const made = await call("POST", "/contacts", body());
+      location.hash = `#/contacts/${made.id}`;
+    } catch (error) {
+      const first = form.place(error);
+      (first?.control ?? form.rest).focus?.();
+      notice(error.message, true);
+    }
+  };
+  main.replaceChildren(
+    el(
+      "div",
+      { class: "head" },
+      el("h1", {}, "New contact"),
+      copying(() => [{ method: "POST", path: "/contacts", body: body() }]),
+    ),
+    el(
+      "form",
+      { class: "create", onsubmit: submit, oninput: changed, onchange: changed },
+      el("section", { class: "card" }, el("h2", {}, "Shape"), profile.element),
+      el("section", { class: "card" }, el("h2", {}, "Bodies"), material.element, friction.element),
+      el(
+        "section",
+        { class: "card" },
+        el("h2", {}, "Load"),
+        preload.element,
+        label.element,
+        form.rest,
+        el("button", { class: "primary", id: "create" }, "Create"),
+      ),
+      derived,
+    ),
+  );
+  ready.now = true;
+  derive();
+}
+
+/** The figures of a contact, by name. */
+export function listed(figures) {
+  const entry = (text, value) => el("div", {}, el("dt", {}, words(text)), el("dd", {}, value));
+  return [
+    entry("Normal force F_N", shown(figures.normal_force, "N")),
+    entry("Indentation d", shown(figures.indentation, "m")),
+    entry("Contact radius a", shown(figures.contact_radius, "m")),
+    entry("Largest pressure p_max", shown(figures.max_pressure, "Pa")),
+    entry("Gross slip from u_max", shown(figures.gross_slip_displacement, "m")),
+    entry("Gross slip at μ F_N", shown(figures.gross_slip_force, "N")),
+    entry("Reduced modulus E*", shown(figures.e_star, "Pa")),
+    entry("Stiffness ratio E*/G*", plain(figures.e_star / figures.g_star)),
+  ];
+}
+
+/** The pressure, and what friction can bear. */
+function pressed({ contact: figures, stress: { radius, pressure } }, coefficient) {
+  const mean = figures.normal_force / (Math.PI * figures.contact_radius ** 2);
+  const points = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
+  return {
+    series: [
+      { name: "pressure p", kind: "pressure", points: points(1) },
+      { name: "bound μ p", kind: "bound", points: points(coefficient) },
+    ],
+    least: { y: [0] },
+    cap: figures.max_pressure === null ? 4 * mean : undefined,
+    empty: "There is no area of contact.",
+  };
+}

@@ -1,0 +1,114 @@
+// What a plot is drawn with: bands, a grid with its numbers, levels and lines.
+import { drawnWords, svg } from "./dom.js";
+
+/** Stretches of x with a colour and a name. */
+export function bands(chart) {
+  const group = svg("g", {});
+  for (const { from, to, kind, label } of chart.data.bands ?? []) {
+    const [left, right] = [chart.x.at(from), chart.x.at(to)].map((place) =>
+      Math.min(Math.max(place, chart.box.left), chart.box.right),
+    );
+    if (right - left < 0.5) continue;
+    group.append(
+      svg("rect", {
+        class: `band ${kind}`,
+        x: left,
+        y: chart.box.top,
+        width: right - left,
+        height: chart.box.bottom - chart.box.top,
+      }),
+    );
+    if (right - left > 34)
+      group.append(
+        svg(
+          "text",
+          { class: `band-name ${kind}`, x: (left + right) / 2, y: chart.box.top + 15, "text-anchor": "middle" },
+          label,
+        ),
+      );
+  }
+  return group;
+}
+
+/** The lines of the grid, the numbers at them, and what the axes are called. */
+export function grid(chart) {
+  const { left, right, top, bottom } = chart.box;
+  const group = svg("g", { class: "grid" });
+  for (const [value, text] of chart.x.ticks(80)) {
+    const x = chart.x.at(value);
+    group.append(
+      svg("line", { class: value === 0 ? "zero" : "", x1: x, x2: x, y1: top, y2: bottom }),
+      svg("text", { x, y: bottom + 17, "text-anchor": "middle" }, text),
+    );
+  }
+  for (const [value, text] of chart.y.ticks(45)) {
+    const y = chart.y.at(value);
+    group.append(
+      svg("line", { class: value === 0 ? "zero" : "", x1: left, x2: right, y1: y, y2: y }),
+      svg("text", { x: left - 7, y: y + 4, "text-anchor": "end" }, text),
+    );
+  }
+  const middle = (top + bottom) / 2;
+  group.append(
+    svg(
+      "text",
+      { class: "title", x: (left + right) / 2, y: bottom + 37, "text-anchor": "middle" },
+      ...drawnWords(chart.x.title()),
+    ),
+    svg(
+      "text",
+      { class: "title", x: 13, y: middle, "text-anchor": "middle", transform: `rotate(-90 13 ${middle})` },
+      ...drawnWords(chart.y.title()),
+    ),
+  );
+  return group;
+}
+
+/** A value of y that means something. */
+export function level(chart, { y, label, kind }) {
+  const at = chart.y.at(y);
+  return svg(
+    "g",
+    { class: `level ${kind ?? ""}` },
+    svg("line", { x1: chart.box.left, x2: chart.box.right, y1: at, y2: at }),
+    svg(
+      "text",
+      {
+        x: y > 0 ? chart.box.left + 6 : chart.box.right - 6,
+        y: at + (y > 0 ? 15 : -6),
+        "text-anchor": y > 0 ? "start" : "end",
+      },
+      ...drawnWords(label ?? ""),
+    ),
+  );
+}
+
+/** A series: its line, broken where there are no values, and its dots. */
+export function line(chart, { name, points, kind, dots, label, line = true }) {
+  const places = points.map(([x, y]) => (y === null || (chart.y.log && y <= 0) ? null : [chart.x.at(x), chart.y.at(y)]));
+  const drawn = [];
+  if (line) {
+    let pen = "M";
+    const path = places.map((place) => {
+      const step = place ? `${pen}${place[0].toFixed(2)},${place[1].toFixed(2)}` : "";
+      pen = place ? "L" : "M";
+      return step;
+    });
+    drawn.push(svg("path", { class: `line ${kind}`, d: path.join("") }));
+  }
+  if (dots)
+    for (const place of places)
+      if (place) drawn.push(svg("circle", { class: `dot ${kind}`, cx: place[0], cy: place[1], r: 3 }));
+  const last = places.findLast(Boolean);
+  if (label && last) {
+    const late = last[0] > (chart.box.left + chart.box.right) / 2;
+    drawn.push(
+      svg(
+        "text",
+        { class: "small", x: last[0] + (late ? -8 : 8), y: last[1] + 4, "text-anchor": late ? "end" : "start" },
+        name,
+      ),
+    );
+  }
+  return drawn;
+}

@@ -1,0 +1,70 @@
+// The shapes, the materials and the units that the form offers.
+
+export const LENGTH = [
+  ["m", 0],
+  ["mm", -3],
+  ["µm", -6],
+  ["nm", -9],
+];
+export const FORCE = [
+  ["kN", 3],
+  ["N", 0],
+  ["mN", -3],
+  ["µN", -6],
+];
+export const MODULUS = [
+  ["GPa", 9],
+  ["MPa", 6],
+  ["kPa", 3],
+  ["Pa", 0],
+];
+
+const radius = { name: "radius", label: "Radius R", units: LENGTH, unit: "mm", value: "10" };
+const slope = { name: "slope", label: "Slope dz/dr", value: "0.05" };
+const flat = { name: "flat_radius", label: "Radius of the flat", units: LENGTH, unit: "µm", value: "50" };
+
+/** What each shape is called, and its fields. */
+export const PROFILES = {
+  sphere: ["Sphere (Hertz’s parabola)", [radius]],
+  exact_sphere: ["Exact sphere", [radius]],
+  cone: ["Cone", [slope]],
+  power_law: [
+    "Power law z = c rⁿ",
+    [
+      { name: "exponent", label: "Exponent n", value: "4" },
+      { name: "coefficient", label: "Coefficient c (m to the 1 − n)", value: "1e6" },
+    ],
+  ],
+  flat_punch: ["Flat punch", [{ ...radius, value: "1" }]],
+  truncated_cone: ["Truncated cone", [slope, flat]],
+  truncated_sphere: ["Truncated (worn) sphere", [radius, flat]],
+  rounded_punch: [
+    "Punch with a rounded edge",
+    [flat, { name: "edge_radius", label: "Radius of the edge", units: LENGTH, unit: "mm", value: "5" }],
+  ],
+  rounded_cone: ["Cone with a rounded tip", [slope, { ...flat, name: "tip_radius", label: "Radius of the tip" }]],
+  tabulated: ["Table of measured heights", []],
+  sum: ["Sum of shapes", []],
+};
+
+/** A table to begin with: a ball of 10 mm in radius. */
+export const TABLE = Array.from({ length: 11 }, (_, index) => `${index * 20}\t${(index * index * 0.02).toFixed(2)}`).join(
+  "\n",
+);
+
+/** Young's modulus in GPa and Poisson's ratio. */
+export const MATERIALS = {
+  Steel: ["210", "0.3"],
+  Aluminium: ["70", "0.34"],
+  Titanium: ["114", "0.34"],
+  Glass: ["64", "0.2"],
+  "Silicon nitride": ["310", "0.27"],
+  PMMA: ["3", "0.38"],
+  Rubber: ["0.005", "0.5"],
+};
+
+export const PRELOADS = {
+  normal_force: { label: "Normal force F_N", units: FORCE, unit: "N", value: "10" },
+  indentation: { label: "Indentation d", units: LENGTH, unit: "µm", value: "1" },
+  contact_radius: { label: "Contact radius a", units: LENGTH, unit: "µm", value: "100" },
+};

@@ -1,0 +1,125 @@
+// The part of the form that says which shape touches the flat; a sum holds shapes of its own.
+import { el } from "./dom.js";
+import { Choice, NumberField, TextField } from "./field.js";
+import { LENGTH, PROFILES, TABLE } from "./profiles.js";
+import { written } from "./units.js";
+
+/** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields are others. */
+export function shape(form, at, changed, nested = false) {
+  const names = Object.entries(PROFILES)
+    .filter(([key]) => !nested || key !== "sum")
+    .map(([key, [text]]) => [key, text]);
+  const choice = new Choice(
+    form,
+    () => `${at()}/type`,
+    nested ? "Shape" : "Shape of the indenter",
+    Object.fromEntries(names),
+    "sphere",
+  );
+  const body = el("div", { class: "fields" });
+  let read;
+  const fill = () => {
+    body.replaceChildren();
+    read = (choice.value === "tabulated" ? table : choice.value === "sum" ? sum : numbers)(
+      form,
+      at,
+      changed,
+      body,
+      choice.value,
+    );
+    changed();
+  };
+  choice.control.addEventListener("change", fill);
+  const element = el("div", {}, choice.element, body);
+  fill();
+  return { element, value: () => ({ type: choice.value, ...read() }) };
+}
+
+function numbers(form, at, changed, body, type) {
+  const fields = PROFILES[type][1].map((about) => [about.name, new NumberField(form, () => `${at()}/${about.name}`, about)]);
+  body.append(...fields.map(([, field]) => field.element));
+  return () => Object.fromEntries(fields.map(([name, field]) => [name, field.value]));
+}
+
+function table(form, at, changed, body) {
+  const units = () =>
+    el(
+      "select",
+      {},
+      LENGTH.map(([name, power]) => el("option", { value: power, selected: name === "µm" }, name)),
+    );
+  const [across, up] = [units(), units()];
+  const text = new TextField(
+    form,
+    at,
+    "Radius and height, one pair a line",
+    el("textarea", { rows: 8, spellcheck: "false", value: "" }),
+  );
+  text.control.value = TABLE;
+  body.append(
+    text.element,
+    el("div", { class: "row" }, el("label", {}, "Radii in ", across), el("label", {}, "Heights in ", up)),
+    el(
+      "p",
+      { class: "note" },
+      "Paste two columns from a spreadsheet or a file; tabs, blanks, commas and semicolons part them. The first radius is 0.",
+    ),
+  );
+  return () => {
+    // A comma between digits of a pair that is parted otherwise is a decimal one.
+    const lines = text.value
+      .split("\n")
+      .map((line) => line.trim())
+      .filter((line) => line && !line.startsWith("#"));
+    const pairs = lines.map((line) =>
+      (/[\t;]|\s/.test(line.replace(/,\s+/, "")) ? line.split(/[\t;]+|\s+/) : line.split(","))
+        .map((cell) => cell.replace(/,$/, ""))
+        .filter(Boolean),
+    );
+    const column = (index, unit) => pairs.map((pair) => written(pair[index] ?? "", Number(unit.value)) ?? null);
+    return { r: column(0, across), z: column(1, up) };
+  };
+}
+
+function sum(form, at, changed, body) {
+  const parts = [];
+  const list = el("div", { class: "parts" });
+  const add = () => {
+    const part = {};
+    const place = () => `${at()}/parts/${Math.max(0, parts.indexOf(part))}`;
+    parts.push(part);
+    const remove = el(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          parts.splice(parts.indexOf(part), 1);
+          box.remove();
+          changed();
+        },
+      },
+      "Remove this shape",
+    );
+    const box = el("fieldset", {}, el("legend", {}, "Part of the sum"));
+    list.append(box);
+    part.editor = shape(form, place, changed, true);
+    box.append(part.editor.element, remove);
+  };
+  body.append(
+    list,
+    el(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          add();
+          changed();
+        },
+      },
+      "Add a shape",
+    ),
+  );
+  add();
+  add();
+  return () => ({ parts: parts.filter((part) => part.editor).map((part) => part.editor.value()) });
+}

@@ -1,0 +1,160 @@
+// What a contact like this one would do: the stress that remains against the number of reversals, and what solvers cost.
+import { call, offered } from "./api.js";
+import { Chart } from "./chart.js";
+import { copying } from "./code.js";
+import { el, notice, words } from "./dom.js";
+import { anew, PROTOCOLS } from "./run.js";
+
+const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
+// A logarithmic axis has no place for an error of nought.
+const LEAST = 1e-17;
+
+/** The cards below a contact. */
+export function studies(about) {
+  const element = el("div", { class: "studies" }, residual(about));
+  offered("/accuracy").then((is) => {
+    if (is) element.append(accuracy(about));
+  });
+  return element;
+}
+
+/** A card with a button that computes a plot. */
+function card({ title, text, chart, calls, compute, id, signal }) {
+  const bar = el("progress", { max: 1, value: 0, hidden: true, "aria-label": `Progress: ${title}` });
+  const button = el(
+    "button",
+    {
+      type: "button",
+      class: "primary",
+      id,
+      onclick: async () => {
+        button.disabled = true;
+        bar.hidden = false;
+        chart.element.hidden = false;
+        try {
+          await compute((part) => {
+            bar.value = part;
+          });
+        } catch (error) {
+          if (!signal.aborted) notice(error.message, true);
+        }
+        button.disabled = false;
+        bar.hidden = true;
+      },
+    },
+    "Compute",
+  );
+  chart.element.hidden = true;
+  return el(
+    "section",
+    { class: "card" },
+    el("div", { class: "head" }, el("h2", {}, words(title)), copying(calls)),
+    el("p", {}, words(text)),
+    el("p", { class: "row" }, button, bar),
+    chart.element,
+  );
+}
+
+function residual(about) {
+  const full = about.figures.max_pressure && about.friction * about.figures.max_pressure;
+  const chart = new Chart({
+    name: "residual",
+    title: "What remains after N_R reversals",
+    x: { label: "Reversals N_R", log: true },
+    y: full ? { label: "Residual |τ| / (μ p_max)", log: true } : { label: "Residual |τ| (Pa)", log: true },
+    note: full
+      ? "μ p_max is that of the preload."
+      : "The stress is infinite at one radius; the largest that is not is shown.",
+  });
+  const request = (kind, reversals) => ({
+    contact: about.definition,
+    path: { [kind]: { reversals } },
+    steps: "last",
+    residual: true,
+  });
+  const compute = async (report) => {
+    const found = { falling_amplitude: [], equal_peaks: [] };
+    const kinds = Object.keys(PROTOCOLS);
+    let done = 0;
+    for (const reversals of REVERSALS) {
+      for (const kind of kinds) {
+        const { residual: left } = await call("POST", "/simulate", request(kind, reversals), about.signal);
+        const peaks = left.peaks.map((peak) => Math.abs(peak.shear ?? NaN)).filter(Number.isFinite);
+        const most = left.max ?? (peaks.length ? Math.max(...peaks) : null);
+        // What is nought has no place on a logarithmic axis.
+        found[kind].push([reversals, ...[most, left.mean, left.min].map((value) => value / (full || 1) || null)]);
+        report((done += 1) / REVERSALS.length / kinds.length);
+      }
+      const line = (name, kind, column) => ({
+        name,
+        kind: `${kind} c${column}`,
+        dots: true,
+        points: found[kind].map((row) => [row[0], row[column]]),
+      });
+      chart.draw({
+        empty: "Nothing remains on this shape.",
+        series: [
+          line("linear: largest", kinds[0], 1),
+          line("linear: mean peak", kinds[0], 2),
+          line("linear: smallest peak", kinds[0], 3),
+          line("equal peaks: largest", kinds[1], 1),
+        ],
+      });
+    }
+  };
+  return card({
+    id: "compute-residual",
+    signal: about.signal,
+    title: "Residual stress against reversals",
+    chart,
+    compute,
+    text: "For this shape, friction and preload, from a virgin contact: how much shear stress is left after a run with so many reversals.",
+    calls: () => [{ method: "POST", path: "/simulate", body: request("falling_amplitude", 20) }],
+  });
+}
+
+function accuracy(about) {
+  const chart = new Chart({
+    name: "accuracy",
+    title: "Speed against error",
+    mode: "nearest",
+    height: 340,
+    x: { label: "Time to compute (s)", log: true },
+    y: { label: "Error of the stress / (μ p_max)", log: true },
+  });
+  chart.more = (_, series) => [series.name];
+  const body = () => ({ contact: anew(about), path: { falling_amplitude: { reversals: 20 } } });
+  const named = (solver) =>
+    typeof solver === "string"
+      ? solver
+      : Object.entries(solver)
+          .map(([name, about]) => `${about?.count ?? ""} ${name}`.trim())
+          .join();
+  const compute = async () => {
+    const { rows } = await call("POST", "/accuracy", body(), about.signal);
+    const error = (row) => (row.stress_error === null ? null : Math.max(row.stress_error, LEAST));
+    const series = rows.map((row, index) => ({
+      name: named(row.solver),
+      kind: `solver s${index}`,
+      dots: true,
+      line: false,
+      legend: false,
+      label: true,
+      points: [[row.compute_time, error(row)]],
+    }));
+    const table = () => ({
+      columns: ["solver", "compute_time_s", "force_error", "stress_error"],
+      rows: rows.map((row) => [named(row.solver), row.compute_time, row.force_error, row.stress_error]),
+    });
+    chart.draw({ empty: "No solver answered.", series, table });
+  };
+  return card({
+    id: "compute-accuracy",
+    signal: about.signal,
+    title: "Speed against error",
+    chart,
+    compute,
+    text: "The scene of 20 reversals on this contact by each solver: what it costs on this server, and how wrong it is.",
+    calls: () => [{ method: "POST", path: "/accuracy", body: body() }],
+  });
+}

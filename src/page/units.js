@@ -1,0 +1,50 @@
+// Numbers with their units, as people read them.
+
+const PREFIXES = [
+  [1e12, "T"],
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+  [1e-9, "n"],
+  [1e-12, "p"],
+  [1e-15, "f"],
+];
+
+/** The unit with the prefix that suits a value: how much it is, and its name. */
+export function scaled(value, unit) {
+  const size = Math.abs(value);
+  const [factor, prefix] = PREFIXES.find(([factor]) => size >= factor * 0.9999) || (size ? PREFIXES.at(-1) : [1, ""]);
+  return { factor, unit: prefix + unit };
+}
+
+/** A number with `digits` significant digits, and a true minus. */
+export function plain(value, digits = 4) {
+  if (value === null || value === undefined) return "∞";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  const text =
+    size < 1e-3 || size >= 1e6
+      ? value.toExponential(digits - 1).replace(/\.?0*e\+?/, " × 10^")
+      : String(Number(value.toPrecision(digits)));
+  return text.replace(/-/g, "−");
+}
+
+/** A value with its unit: `160.2 nm`. */
+export function shown(value, unit, digits = 4) {
+  if (value === null || value === undefined) return "∞";
+  if (!unit) return plain(value, digits);
+  const scale = scaled(value, unit);
+  return `${plain(value / scale.factor, digits)} ${scale.unit}`.trim();
+}
+
+/** What is written in a field of so many powers of ten: a number in SI, or the text itself for the service to refuse. */
+export function written(text, power = 0) {
+  const trimmed = text.trim().replace("−", "-").replace(",", ".");
+  if (trimmed === "") return undefined;
+  const parts = trimmed.match(/^([+-]?(?:\d+\.?\d*|\.\d+))(?:e([+-]?\d+))?$/i);
+  // The power goes to the digits, so that 10 mm are 0.01 m to the last bit.
+  return parts ? Number(`${parts[1]}e${Number(parts[2] ?? 0) + power}`) : trimmed;
+}

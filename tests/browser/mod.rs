@@ -1,0 +1,216 @@
+//! A real browser: Debian's Chromium without a window, driven by its WebDriver program.
+
+use std::io::{BufRead as _, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use fantoccini::actions::{InputSource as _, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
+use fantoccini::elements::Element;
+use fantoccini::{Client, ClientBuilder, Locator};
+use hyper_util::client::legacy::connect::HttpConnector;
+use serde_json::{Value, json};
+
+/// The variable that names a folder for screenshots.
+const SCREENSHOTS: &str = "PAGE_SCREENSHOTS";
+/// How long something may take to appear; against hanging alone.
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A browser; it ends when it is dropped.
+pub struct Browser {
+    driver: Child,
+    /// The WebDriver session, as an address.
+    session: String,
+    pub page: Client,
+    http: reqwest::Client,
+}
+
+impl Browser {
+    /// Starts one with a window of so many pixels.
+    pub async fn start(width: u32, height: u32, dark: bool) -> Browser {
+        let mut driver = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("./check installs chromium and chromedriver");
+        let stdout = driver.stdout.take().unwrap();
+        let port = tokio::task::spawn_blocking(move || {
+            let mut lines = BufReader::new(stdout).lines().map_while(Result::ok);
+            lines.find_map(|line| {
+                line.strip_prefix("ChromeDriver was started successfully on port ")
+                    .map(|port| port.trim_end_matches('.').to_owned())
+            })
+        });
+        let address = format!("http://127.0.0.1:{}", port.await.unwrap().expect("chromedriver names its port"));
+        // Without a sandbox, because tests in containers run as root; it sees no page but ours.
+        let options = json!({"args": ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu"]});
+        let wanted = json!({
+            "browserName": "chrome",
+            "goog:chromeOptions": options,
+            "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
+        });
+        let mut builder = ClientBuilder::new(HttpConnector::new());
+        let page = builder.capabilities(wanted.as_object().unwrap().clone()).connect(&address).await.unwrap();
+        let session = format!("{address}/session/{}", page.session_id().await.unwrap().unwrap());
+        let browser = Browser { driver, session, page, http: reqwest::Client::new() };
+        browser.look(width, height, dark).await;
+        browser
+    }
+
+    /// Another size of the window, and another scheme of colours.
+    pub async fn look(&self, width: u32, height: u32, dark: bool) {
+        let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+        self.command("Emulation.setDeviceMetricsOverride", &size).await;
+        self.command("Emulation.setScrollbarsHidden", &json!({"hidden": true})).await;
+        let scheme = if dark { "dark" } else { "light" };
+        let features = json!({"features": [{"name": "prefers-color-scheme", "value": scheme}]});
+        self.command("Emulation.setEmulatedMedia", &features).await;
+    }
+
+    async fn command(&self, name: &str, parameters: &Value) {
+        self.post("goog/cdp/execute", &json!({"cmd": name, "params": parameters})).await;
+    }
+
+    async fn post(&self, path: &str, body: &Value) -> Value {
+        let reply = self.http.post(format!("{}/{path}", self.session)).json(body).send().await.unwrap();
+        let mut reply: Value = reply.json().await.unwrap();
+        assert!(reply["value"]["error"].is_null(), "{path} {reply}");
+        reply["value"].take()
+    }
+
+    /// What the browser has logged since the last call.
+    async fn log(&self, kind: &str) -> Vec<Value> {
+        self.post("se/log", &json!({"type": kind})).await.as_array().unwrap().clone()
+    }
+
+    /// Nothing was complained about since the last call but what holds one of the `known` words, and nobody was asked but the
+    /// host of `base`.
+    pub async fn stayed_quiet_and_at(&self, base: &str, known: &[&str]) {
+        for complaint in self.log("browser").await {
+            let text = complaint["message"].as_str().unwrap();
+            assert!(known.iter().any(|known| text.contains(known)), "{text}");
+        }
+        let mut asked = 0;
+        for entry in self.log("performance").await {
+            let message: Value = serde_json::from_str(entry["message"].as_str().unwrap()).unwrap();
+            if message["message"]["method"] == "Network.requestWillBeSent" {
+                let url = message["message"]["params"]["request"]["url"].as_str().unwrap();
+                assert!([base, "data:", "blob:"].iter().any(|allowed| url.starts_with(allowed)), "{url}");
+                asked += 1;
+            }
+        }
+        assert!(asked > 0, "no request was seen at all");
+    }
+
+    /// Lets the page save files in a folder.
+    pub async fn save_in(&self, folder: &std::path::Path) {
+        let parameters = json!({"behavior": "allow", "downloadPath": folder.to_str().unwrap()});
+        self.command("Browser.setDownloadBehavior", &parameters).await;
+    }
+
+    /// An element, once it is there.
+    pub async fn find(&self, css: &str) -> Element {
+        let found = self.page.wait().at_most(PATIENCE).for_element(Locator::Css(css)).await;
+        found.unwrap_or_else(|error| panic!("{css}: {error}"))
+    }
+
+    /// The value of an expression of JavaScript.
+    pub async fn value(&self, expression: &str) -> Value {
+        let found = self.page.execute(&format!("return {expression};"), vec![]).await;
+        found.unwrap_or_else(|error| panic!("{expression}: {error}"))
+    }
+
+    /// Waits until an expression is true.
+    pub async fn until(&self, expression: &str) {
+        let deadline = Instant::now() + PATIENCE;
+        while self.value(expression).await != json!(true) {
+            if Instant::now() > deadline {
+                let shown = self.value("document.body.innerText").await;
+                panic!("not so: {expression}\n{}", shown.as_str().unwrap_or_default());
+            }
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
+    }
+
+    /// Writes a text into an empty field.
+    pub async fn write(&self, css: &str, text: &str) {
+        let field = self.find(css).await;
+        field.clear().await.unwrap();
+        field.send_keys(text).await.unwrap();
+    }
+
+    /// Where the parts of an element across its width are, at half its height, for the mouse; the element is brought into view.
+    async fn across(&self, css: &str) -> impl Fn(f64) -> PointerAction {
+        let element = self.find(css).await;
+        let argument = serde_json::to_value(&element).unwrap();
+        self.page.execute("arguments[0].scrollIntoView({block: 'center'})", vec![argument]).await.unwrap();
+        let (_, _, width, _) = element.rectangle().await.unwrap();
+        // Counted from the middle of the element.
+        move |part: f64| PointerAction::MoveToElement {
+            element: element.clone(),
+            duration: Some(Duration::from_millis(10)),
+            x: (part - 0.5) * width,
+            y: 0.0,
+        }
+    }
+
+    /// Moves the mouse to a part of the width of an element.
+    pub async fn hover(&self, css: &str, part: f64) {
+        let at = self.across(css).await;
+        self.page.perform_actions(MouseActions::new("mouse".to_owned()).then(at(part))).await.unwrap();
+    }
+
+    /// Presses the mouse on an element, moves it across its width in small steps, and lets go.
+    pub async fn drag(&self, css: &str, from: f64, to: f64) {
+        let at = self.across(css).await;
+        let mut mouse = MouseActions::new("mouse".to_owned())
+            .then(at(from))
+            .then(PointerAction::Down { button: MOUSE_BUTTON_LEFT });
+        for step in 1..=20 {
+            mouse = mouse.then(at(from + (to - from) * f64::from(step) / 20.0));
+        }
+        self.page.perform_actions(mouse.then(PointerAction::Up { button: MOUSE_BUTTON_LEFT })).await.unwrap();
+    }
+
+    /// Ends it.
+    pub async fn close(self) {
+        self.page.clone().close().await.unwrap();
+    }
+
+    /// Chooses an entry of the list below a label.
+    pub async fn choose(&self, label: &str, value: &str) {
+        let script = "const label = [...document.querySelectorAll('label')].find((one) => one.innerText === arguments[0]); \
+                      const list = document.getElementById(label.htmlFor); list.value = arguments[1]; \
+                      list.dispatchEvent(new Event('change', { bubbles: true }));";
+        self.page.execute(script, vec![json!(label), json!(value)]).await.unwrap();
+    }
+
+    /// Clicks on an element, wherever on the page it is.
+    pub async fn click(&self, css: &str) {
+        self.find(css).await;
+        self.value(&format!("document.querySelector({css:?}).click() ?? null")).await;
+    }
+
+    /// Presses keys on an element.
+    pub async fn press(&self, css: &str, keys: &str) {
+        self.find(css).await;
+        self.value(&format!("document.querySelector({css:?}).focus() ?? null")).await;
+        let focused = self.page.active_element().await.unwrap();
+        focused.send_keys(keys).await.unwrap();
+    }
+
+    /// Writes a picture of the whole page to the folder that is named by [`SCREENSHOTS`], if one is.
+    pub async fn picture(&self, name: &str) {
+        let Some(folder) = std::env::var_os(SCREENSHOTS) else { return };
+        let picture = self.page.screenshot().await.unwrap();
+        std::fs::write(PathBuf::from(folder).join(format!("{name}.png")), picture).unwrap();
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // The browser ends with its driver's session, which ends with the driver.
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
+    }
+}
