@@ -72,13 +72,18 @@ impl Chart {
             // As many as there are decades, so that none falls between two.
             (label, ticks) = (decade, ((right - left) as usize + 1, (high - low) as usize + 1));
         }
-        let margin = if decades { 0.0 } else { 0.05 * (high - low) };
+        // Curves that fall over decades leave the middle of the left free, where the legend goes then.
+        let (margin, headroom, place) = if decades {
+            (0.0, 0.0, SeriesLabelPosition::MiddleLeft)
+        } else {
+            (0.05 * (high - low), HEADROOM * (high - low), SeriesLabelPosition::UpperRight)
+        };
         let mut axes = ChartBuilder::on(&area)
             .caption(&self.title, ("sans-serif", 36))
             .margin(28)
             .x_label_area_size(88)
             .y_label_area_size(128)
-            .build_cartesian_2d(left..right, (low - margin)..(high + HEADROOM * (high - low)))?;
+            .build_cartesian_2d(left..right, (low - margin)..(high + headroom))?;
         axes.configure_mesh()
             .x_desc(&self.x)
             .y_desc(&self.y)
@@ -107,7 +112,7 @@ impl Chart {
                 .legend(move |(x, y)| Rectangle::new([(x, y - 6), (x + 28, y + 6)], colour.filled()));
         }
         axes.configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
+            .position(place)
             .legend_area_size(40)
             .background_style(WHITE.mix(0.85))
             .border_style(RGBColor(200, 200, 200))
