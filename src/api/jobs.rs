@@ -31,7 +31,7 @@ pub struct JobPath {
 
 /// Look at a job
 #[utoipa::path(
-    get, path = "/jobs/{id}", tag = "jobs", params(JobPath),
+    get, path = "/jobs/{id}", operation_id = "get_job", tag = "jobs", params(JobPath),
     responses((status = 200, description = "How it stands", body = JobReply))
 )]
 pub async fn get(Own(app): Own, JobId(id): JobId, params: Params) -> Result<Response, Problem> {
@@ -43,7 +43,7 @@ pub async fn get(Own(app): Own, JobId(id): JobId, params: Params) -> Result<Resp
 ///
 /// The table, once the job is done. It is kept for a day.
 #[utoipa::path(
-    get, path = "/jobs/{id}/result", tag = "jobs", params(JobPath, TableQuery),
+    get, path = "/jobs/{id}/result", operation_id = "job_result", tag = "jobs", params(JobPath, TableQuery),
     responses((status = 200, description = "The table", body = SweepReply))
 )]
 pub async fn result(Own(app): Own, JobId(id): JobId, headers: HeaderMap, params: Params) -> Result<Response, Problem> {
@@ -57,7 +57,7 @@ pub async fn result(Own(app): Own, JobId(id): JobId, headers: HeaderMap, params:
 ///
 /// Ends it if it has not ended, and deletes it with its result.
 #[utoipa::path(
-    delete, path = "/jobs/{id}", tag = "jobs", params(JobPath),
+    delete, path = "/jobs/{id}", operation_id = "cancel_job", tag = "jobs", params(JobPath),
     responses((status = 204, description = "It is gone"))
 )]
 pub async fn delete(Own(app): Own, JobId(id): JobId) -> Result<StatusCode, Problem> {
@@ -71,7 +71,7 @@ pub async fn delete(Own(app): Own, JobId(id): JobId) -> Result<StatusCode, Probl
 /// `done` or `failed` at its end. If there is nothing more to tell before that, because it has been deleted or the server
 /// stops, the last event is `end` (its data a `JobEndEvent`); comments keep an idle connection open.
 #[utoipa::path(
-    get, path = "/jobs/{id}/events", tag = "jobs", params(JobPath),
+    get, path = "/jobs/{id}/events", operation_id = "job_events", tag = "jobs", params(JobPath),
     responses((status = 200, description = "The events; the schema is that of the data of all but `end`",
         content_type = "text/event-stream", body = JobReply))
 )]

@@ -152,9 +152,7 @@ impl Jobs {
     }
 
     async fn own(&self, id: Uuid) -> Result<Job, JobError> {
-        let refused =
-            |error| if matches!(error, StoreError::NotFound) { JobError::NotFound(id) } else { JobError::Store(error) };
-        let job = self.common.store.job(id).await.map_err(refused)?;
+        let job = self.common.store.job(id).await.map_err(refused(id))?;
         if job.tenant == self.tenant { Ok(job) } else { Err(JobError::NotFound(id)) }
     }
 
@@ -186,15 +184,13 @@ impl Jobs {
     pub async fn result(&self, id: Uuid) -> Result<(Draft, Rows), JobError> {
         self.size(id).await?;
         let job = self.own(id).await?;
-        let refused =
-            |error| if matches!(error, StoreError::NotFound) { JobError::NotFound(id) } else { JobError::Store(error) };
-        let request = self.common.store.job_request(id).await.map_err(refused)?;
+        let request = self.common.store.job_request(id).await.map_err(refused(id))?;
         let read = move || wire::read::<SweepRequest>(request.as_bytes());
         let draft = self.common.pool.run(INLINE, read).await?;
         let draft = draft.map_err(|error| JobError::Broken(format!("a job cannot be read: {error}")))?;
         let (mut rows, mut next) = (Rows::default(), 0);
         while next < job.chunks() {
-            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(refused)?;
+            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(refused(id))?;
             if chunks.is_empty() {
                 // Deleted meanwhile, or else not whole.
                 self.own(id).await?;
@@ -217,10 +213,15 @@ impl Jobs {
     /// [`JobError::NotFound`], or a failure of the store.
     pub async fn delete(&self, id: Uuid) -> Result<(), JobError> {
         self.own(id).await?;
-        match self.common.store.delete_job(id).await {
-            Err(StoreError::NotFound) => Err(JobError::NotFound(id)),
-            other => other.map_err(JobError::Store),
-        }
+        self.common.store.delete_job(id).await.map_err(refused(id))
+    }
+}
+
+/// What a refusal of the store means for a job.
+fn refused(id: Uuid) -> impl Fn(StoreError) -> JobError {
+    move |error| match error {
+        StoreError::NotFound => JobError::NotFound(id),
+        other => JobError::Store(other),
     }
 }
 

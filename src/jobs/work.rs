@@ -11,7 +11,7 @@ use crate::simulation::{PoolError, Rows, Stop, Sweep, SweepError};
 use crate::store::{ChunkResult, Claim, Job, StoreError};
 use crate::wire::{self, SweepRequest};
 
-use super::{JobError, Jobs, NUMBER_BYTES};
+use super::{JobError, Jobs, NUMBER_BYTES, refused};
 
 /// Chunks that a process works on at a time: while one is being stored, the threads have the other.
 const AT_A_TIME: usize = 2;
@@ -100,10 +100,8 @@ impl Jobs {
 
     /// What a job asks for.
     async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
-        let refused =
-            |error| if matches!(error, StoreError::NotFound) { JobError::NotFound(id) } else { JobError::Store(error) };
-        let job = self.common.store.job(id).await.map_err(refused)?;
-        let request = self.common.store.job_request(id).await.map_err(refused)?;
+        let job = self.common.store.job(id).await.map_err(refused(id))?;
+        let request = self.common.store.job_request(id).await.map_err(refused(id))?;
         let plan = move || wire::read::<SweepRequest>(request.as_bytes()).and_then(Sweep::plan);
         let sweep = self.common.pool.run(INLINE, plan).await?;
         let sweep =
@@ -148,8 +146,7 @@ impl Jobs {
                     // In vain while the store is out of reach.
                     let _ = self.common.store.renew(claim, lease).await;
                 }
-                Err(StoreError::NotFound) => return Err(JobError::NotFound(claim.job)),
-                Err(error) => return Err(JobError::Store(error)),
+                Err(error) => return Err(refused(claim.job)(error)),
             }
         }
         Err(JobError::Store(StoreError::Unavailable("the storage takes no results".to_owned())))
