@@ -16,7 +16,7 @@ use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
 /// Every endpoint: what it takes, how it answers who may use it, and the roles that may; none listed is everybody.
-const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 17] = [
+const ENDPOINTS: [(&str, &str, &str, u16, &[&str]); 18] = [
     ("POST", "/simulate", "simulation", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),

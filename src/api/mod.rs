@@ -3,6 +3,7 @@
 pub mod access;
 pub mod bound;
 mod contacts;
+mod describe;
 pub mod descriptors;
 pub mod door;
 mod events;

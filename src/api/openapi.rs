@@ -12,7 +12,7 @@ use crate::mechanics::range::{self, Range};
 use crate::wire::{EndEvent, ProblemDocument, limits, profile};
 
 use super::access::{Need, need};
-use super::format::{self, Format};
+use super::describe;
 use super::limits as server;
 use super::problem::MEDIA_TYPE;
 
@@ -98,7 +98,7 @@ pub fn document() -> &'static str {
         write_parameters(&mut document);
         write_refusals(&mut document);
         write_keys(&mut document);
-        write_formats(&mut document);
+        describe::write(&mut document);
         format!("{document:#}\n")
     })
 }
@@ -299,40 +299,8 @@ fn write_keys(document: &mut Value) {
     }
 }
 
-/// The flat formats of tables, and the answer to those who have the present version already.
-fn write_formats(document: &mut Value) {
-    let Some(Value::Object(paths)) = document.get_mut("paths") else {
-        return;
-    };
-    for (path, operations) in paths {
-        let table = ["/stress", "/history", "/loop"].iter().any(|end| path.ends_with(end));
-        if !table && path != "/contacts/{id}" {
-            continue;
-        }
-        let operation = &mut operations["get"];
-        operation["responses"]["304"] =
-            json!({"description": "The client has this version already, as its If-None-Match says"});
-        if table {
-            let names = Format::ALL.map(Format::name);
-            for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
-                if parameter["name"] == "format" {
-                    parameter["schema"]["enum"] = json!(names);
-                }
-            }
-            let content = &mut operation["responses"]["200"]["content"];
-            content[format::ROWS] = json!({"schema": {"type": "array", "items": {"type": "object"}}});
-            for media_type in [format::CSV, format::NDJSON, format::SVG] {
-                content[media_type] = json!({"schema": {"type": "string"}});
-            }
-            for media_type in [format::ARROW, format::PNG] {
-                content[media_type] = json!({"schema": {"type": "string", "format": "binary"}});
-            }
-            operation["responses"]["406"] = refusal("Accept admits none of the formats");
-        }
-    }
-}
-
-fn refusal(description: &str) -> Value {
+/// A refusal as a response.
+pub(super) fn refusal(description: &str) -> Value {
     let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
     json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}})
 }
