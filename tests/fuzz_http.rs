@@ -86,7 +86,10 @@ fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Reque
         if random.below(4) == 0 {
             damage(&mut value, random);
         }
-        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let one = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let text = value
+            .as_array()
+            .map_or_else(|| one(&value), |members| members.iter().map(one).collect::<Vec<_>>().join(","));
         match (parameter["in"].as_str(), parameter["name"].as_str().unwrap()) {
             (Some("query"), name) => query.push(format!("{name}={}", utf8_percent_encode(&text, NON_ALPHANUMERIC))),
             (Some("header"), "If-Match") => headers.push(("if-match", format!("\"{}\"", random.below(3)))),

@@ -32,7 +32,7 @@ pub struct Seen {
 /// is deleted or has expired, or the server stops; comments keep an idle connection open.
 #[utoipa::path(
     get, path = "/contacts/{id}/events", tag = "contacts", params(ContactPath, Seen),
-    responses((status = 200, description = "The states; the schema is that of the data of one event `state`",
+    responses((status = 200, description = "The states; the schema is that of one event",
         content_type = "text/event-stream", body = StateEvent))
 )]
 pub async fn events(

@@ -17,6 +17,8 @@ pub const HISTORY_ITEM: usize = 1_536;
 pub const PAGE: RangeInclusive<usize> = 1..=1_000;
 /// Items of a page if the client does not say.
 pub const DEFAULT_PAGE: usize = 100;
+/// Radii in a query: with all digits, they fit into the head of a request.
+pub const QUERY_RADII: RangeInclusive<usize> = 1..=1_000;
 /// Characters of an idempotency key.
 pub const KEY_LENGTH: usize = 255;
 /// Characters of a request identifier that a client may choose.

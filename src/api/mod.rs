@@ -4,6 +4,7 @@ pub mod access;
 mod accuracy;
 pub mod bound;
 mod contacts;
+mod describe;
 pub mod descriptors;
 pub mod door;
 mod events;

@@ -12,7 +12,7 @@ use crate::mechanics::range::{self, Range};
 use crate::wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
 use super::access::{Need, need};
-use super::format::{self, Format};
+use super::describe;
 use super::limits as server;
 use super::problem::MEDIA_TYPE;
 
@@ -100,7 +100,7 @@ pub fn document() -> &'static str {
         write_parameters(&mut document);
         write_refusals(&mut document);
         write_keys(&mut document);
-        write_formats(&mut document);
+        describe::write(&mut document);
         format!("{document:#}\n")
     })
 }
@@ -318,44 +318,8 @@ fn write_keys(document: &mut Value) {
     }
 }
 
-/// The flat formats of tables, and the answer to those who have the present version already.
-fn write_formats(document: &mut Value) {
-    let Some(Value::Object(paths)) = document.get_mut("paths") else {
-        return;
-    };
-    for (path, operations) in paths {
-        let versioned = ["/stress", "/history", "/loop"].iter().any(|end| path.ends_with(end));
-        let table = versioned || path == "/sweep" || path == "/jobs/{id}/result";
-        if !table && path != "/contacts/{id}" {
-            continue;
-        }
-        let operation = &mut operations[if path == "/sweep" { "post" } else { "get" }];
-        if versioned || !table {
-            operation["responses"]["304"] =
-                json!({"description": "The client has this version already, as its If-None-Match says"});
-        }
-        if table {
-            let formats = if versioned { &Format::ALL[..] } else { &Format::TABLES[..] };
-            let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
-            for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
-                if parameter["name"] == "format" {
-                    parameter["schema"]["enum"] = json!(names);
-                }
-            }
-            let content = &mut operation["responses"]["200"]["content"];
-            content[format::ROWS] = json!({"schema": {"type": "array", "items": {"type": "object"}}});
-            for format in formats.iter().skip(2) {
-                let binary = matches!(format, Format::Arrow | Format::Png);
-                let schema =
-                    if binary { json!({"type": "string", "format": "binary"}) } else { json!({"type": "string"}) };
-                content[format.media_type()] = json!({"schema": schema});
-            }
-            operation["responses"]["406"] = refusal("Accept admits none of the formats");
-        }
-    }
-}
-
-fn refusal(description: &str) -> Value {
+/// A refusal as a response.
+pub(super) fn refusal(description: &str) -> Value {
     let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
     json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}})
 }

@@ -53,6 +53,17 @@ impl Params {
         value
     }
 
+    /// A list, whether its members have commas between them or come one by one under the same name.
+    fn list<T>(&mut self, name: &'static str, expected: &str, parse: impl Fn(&str) -> Option<T>) -> Option<Vec<T>> {
+        let members: Vec<String> =
+            self.given.iter().filter(|(key, _)| key == name).map(|(_, text)| text.clone()).collect();
+        if members.len() > 1 {
+            self.given.retain(|(key, _)| key != name);
+            self.given.push((name.to_owned(), members.join(",")));
+        }
+        self.take(name, expected, |text| text.split(',').map(|member| parse(member.trim())).collect())
+    }
+
     fn number<T: FromStr>(&mut self, name: &'static str, expected: &str) -> Option<T> {
         self.take(name, expected, |text| text.parse().ok())
     }
@@ -143,13 +154,14 @@ impl Params {
     pub fn stress(mut self, headers: &HeaderMap) -> Result<(Sampling, bool, Option<Format>), Problem> {
         let field = |name: &str| Field::ALL.into_iter().find(|field| field.name() == name);
         let mut points = self.number("points", "a whole number, not negative");
-        let radii = self.take("radii", "numbers with commas between them", |text| {
-            text.split(',').map(|number| number.trim().parse().ok()).collect()
-        });
-        let fields = self.take(
+        let radii = self.list("radii", "numbers with commas between them", |text| text.parse().ok());
+        if let Some(radii) = &radii {
+            self.faults.length(At::Root.member("radii"), radii.len(), &limits::QUERY_RADII);
+        }
+        let fields = self.list(
             "fields",
             "a list of fields, with commas between them, out of `pressure`, `shear`, `slip`, `displacement`",
-            |text| text.split(',').map(|name| field(name.trim())).collect(),
+            field,
         );
         let residual = self.number("residual", "true or false").unwrap_or(false);
         let format = self.format();

@@ -26,7 +26,7 @@ pub struct StressQuery {
     /// Number of radii, evenly spaced from the centre to the edge, both included; this or `radii`, unless a plot is asked for.
     #[param(nullable = false, example = 100)]
     points: Option<usize>,
-    /// Radii, m, with commas between them.
+    /// Radii, m, with commas between them, or one by one.
     #[param(nullable = false)]
     radii: Option<String>,
     /// Which fields, with commas between them, out of `pressure`, `shear`, `slip` and `displacement`; left out, the first two.

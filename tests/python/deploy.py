@@ -1,0 +1,42 @@
+"""Whether the files of deploy/ fit together: what is mounted is there, what is named is provisioned."""
+
+import json
+import pathlib
+import sys
+
+import yaml
+
+deploy = pathlib.Path(sys.argv[1])
+compose = yaml.safe_load((deploy / "compose.yaml").read_text())
+services = compose["services"]
+assert set(services) == {"stickslip", "postgres", "prometheus", "grafana"}
+for name, service in services.items():
+    for mount in service.get("volumes", []):
+        source = mount.split(":")[0]
+        there = (deploy / source).exists() if source.startswith(".") else source in compose["volumes"]
+        assert there, f"{name}: {mount}"
+    for port in service.get("ports", []):
+        assert port.startswith("127.0.0.1:"), f"{name}: {port} is open to others"
+    assert set(service.get("depends_on", [])) <= set(services), name
+
+provisioning = deploy / "grafana" / "provisioning"
+sources = yaml.safe_load((provisioning / "datasources" / "stickslip.yaml").read_text())["datasources"]
+kinds = {source["uid"]: source["type"] for source in sources}
+hosts = [source["url"].removeprefix("http://").split(":")[0] for source in sources if "url" in source]
+assert set(hosts) <= set(services), hosts
+targets = yaml.safe_load((deploy / "prometheus.yml").read_text())["scrape_configs"][0]["static_configs"][0]["targets"]
+assert targets == ["stickslip:8080"], targets
+
+provider = yaml.safe_load((provisioning / "dashboards" / "stickslip.yaml").read_text())["providers"][0]
+mounts = {mount.split(":")[1]: mount.split(":")[0] for mount in services["grafana"]["volumes"]}
+boards = sorted((deploy / mounts[provider["options"]["path"]]).glob("*.json"))
+assert len(boards) == 2, boards
+for board in boards:
+    found = json.loads(board.read_text())
+    used = [target["datasource"] for panel in found["panels"] for target in panel["targets"]]
+    used += [variable["datasource"] for variable in found["templating"]["list"]]
+    assert used and all(kinds[source["uid"]] == source["type"] for source in used), board
+    assert len({panel["id"] for panel in found["panels"]}) == len(found["panels"]), board
+home = services["grafana"]["environment"]["GF_DASHBOARDS_DEFAULT_HOME_DASHBOARD_PATH"]
+assert home.startswith(provider["options"]["path"]), home
+print("deploy fits together")
