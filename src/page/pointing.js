@@ -50,6 +50,8 @@ export function pointing(chart) {
       Escape: () => tell(null),
     };
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // The keyboard reads on, wherever the pointer rests.
+    over = null;
     if (event.key in steps) tell(stepped(chart, steps[event.key]));
     else if (event.key in acts) acts[event.key]();
     else return;
