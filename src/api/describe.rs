@@ -208,7 +208,7 @@ fn write_formats(operation: &mut Value, formats: &[Format]) {
             _ => json!({"type": "string"}),
         }});
     }
-    if ["history", "hysteresis"].iter().any(|name| operation["operationId"] == *name) {
+    if ["history", "loop"].iter().any(|name| operation["operationId"] == *name) {
         operation["responses"]["200"]["headers"]["Link"] = json!({
             "description": "The place of the next page, `rel=\"next\"`, if there is one", "schema": {"type": "string"},
         });
