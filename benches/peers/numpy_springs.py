@@ -2,7 +2,7 @@
 
 A row of springs over the contact, clamped to mu times the normal load of each after every move; the shear stress by
 differences between neighbours. It reads a scene as one line of JSON, then {"count": N} line by line, and answers each with
-forces, stresses, and the seconds that they took. `stickslip report --peers PYTHON` talks to it.
+forces, stresses, and the seconds of processor time that they took. `stickslip report --peers PYTHON` talks to it.
 """
 
 import json
@@ -71,9 +71,9 @@ def main():
         greeting["refused"] = "the script knows no tables"
     print(json.dumps(greeting), flush=True)
     for line in sys.stdin:
-        begin = time.perf_counter()
+        begin = time.process_time()
         forces, shears = solve(scene, g, inverse, json.loads(line)["count"])
-        seconds = time.perf_counter() - begin
+        seconds = time.process_time() - begin
         print(json.dumps({"seconds": seconds, "forces": forces, "shears": shears}), flush=True)
 
 

@@ -50,7 +50,7 @@ fn scenes(measured: &Measured) -> Vec<&str> {
 
 fn page(measured: &Measured) -> String {
     let mut page = format!(
-        "# Speed against error\n\n{} All of it took {:.0} s.\n\nRatios are medians over pairs: each run of a solver beside one of the exact solver just before it, quartiles in brackets. Errors are the largest: of the force over the path, relative to μ F_N; of the shear stress at 1000 random radii and at the kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\n",
+        "# Speed against error\n\n{} All of it took {:.0} s.\n\nTimes are of the processor, one thread, so that what else the machine does is not counted. Ratios are medians over pairs: each run of a solver beside one of the exact solver just before it, quartiles in brackets. Errors are the largest: of the force over the path, relative to μ F_N; of the shear stress at 1000 random radii and at the kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\n",
         measured.machine, measured.seconds
     );
     if !measured.peers.is_empty() {
@@ -114,7 +114,7 @@ fn chart(rows: &[Row], scene: &str, what: &str, error: fn(&Row) -> f64) -> Chart
         let points = rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(FLOOR))).collect();
         if solver == "exact" { Series::dots(solver, points) } else { Series::line(solver, points) }
     });
-    Chart { title: scene.to_owned(), x: "time, s".to_owned(), y: what.to_owned(), series: series.collect() }
+    Chart { title: scene.to_owned(), x: "processor time, s".to_owned(), y: what.to_owned(), series: series.collect() }
 }
 
 /// Processor, cores, system, compiler and optimisation.

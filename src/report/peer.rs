@@ -1,6 +1,6 @@
 //! A program that others use, on the same scene: a Python script that is told the scene and then, line by line, how fine to be.
 //!
-//! It answers each line with forces, stresses and the time that it took by its own clock, so that neither its start nor the
+//! It answers each line with forces, stresses and the processor time that it took by its own clock, so that neither its start nor the
 //! talk with it is counted.
 
 use std::io::{self, BufRead as _, BufReader, Write as _};
