@@ -119,6 +119,11 @@ impl Guarded {
 }
 
 impl Guarded {
+    /// The identifier of something new that a route is about.
+    async fn subject(&self, route: &str) -> String {
+        if route.starts_with("/jobs") { self.job("write").await } else { self.contact("write").await.to_string() }
+    }
+
     /// A job that is done.
     async fn job(&self, who: &str) -> String {
         let mut sweep = body("sweep").unwrap();
@@ -168,11 +173,7 @@ async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
                 Some("both") => &["read", "metrics"],
                 Some(_) => std::slice::from_ref(who.as_ref().unwrap()),
             };
-            let id = match route {
-                route if route.starts_with("/jobs") => server.job("write").await,
-                _ => server.contact("write").await.to_string(),
-            };
-            let path = route.replace("{id}", &id).replace("{code}", "forbidden");
+            let path = route.replace("{id}", &server.subject(route).await).replace("{code}", "forbidden");
             let path = path.replace("/stress", "/stress?points=3");
             let response = server.send(who, method, &path, body(body_name).as_ref(), &[]).await;
             let expected = match who {
@@ -192,7 +193,7 @@ async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
         }
         // HEAD is as GET.
         if method == "GET" && allowed == ["read", "write"] {
-            let path = route.replace("{id}", &server.contact("write").await.to_string());
+            let path = route.replace("{id}", &server.subject(route).await);
             let path = path.replace("/stress", "/stress?points=3");
             for (who, expected) in [(None, 401), (Some("metrics"), 403), (Some("read"), 200)] {
                 assert_eq!(server.send(who, "HEAD", &path, None, &[]).await.status().as_u16(), expected, "{path}");
