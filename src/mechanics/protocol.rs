@@ -121,32 +121,36 @@ pub struct Minimax {
 /// `None` if `go_on` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
 /// vertical edge, where the stress stays infinite.
 pub fn minimax(contact: &Contact, reversals: usize, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
-    minimax_to(contact, reversals, contact.gross_slip_displacement(), End::Free, go_on)
+    minimax_to(contact, reversals, contact.gross_slip_displacement(), End::Free, go_on).pop()
 }
 
-/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then.
-fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
+/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then,
+/// and there is a path for each that may be. None without an answer.
+fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: &dyn Fn() -> bool) -> Vec<Minimax> {
     let edge = *contact.memory.edge();
     let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
-        return None;
+        return Vec::new();
     }
-    let cutoff = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
-    let problem = Problem { profile: &contact.profile, edge, cutoff, reversals };
-    let equal = problem.solve(go_on)?;
-    let (levels, gap) = if end == End::Free {
-        (equal.levels, 1.0 - equal.ratio)
+    let cutoff_radius = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
+    let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
+    let Some(equal) = problem.solve(go_on) else { return Vec::new() };
+    let levels: Vec<Vec<f64>> = if end == End::Free {
+        vec![equal.levels]
     } else {
-        let kinks = ending::kinks(&problem, equal.limit, first / contact.scale(), end, go_on)?;
-        (kinks.iter().map(|kink| kink.level.value()).collect(), f64::NAN)
+        let found = ending::kinks(&problem, equal.limit, first / contact.scale(), end, go_on);
+        found.iter().map(|kinks| kinks.iter().map(|kink| kink.level.value()).collect()).collect()
     };
-    let mut displacements = vec![first];
-    let mut here = Double::from(first);
-    for (index, level) in levels.iter().rev().enumerate() {
-        // A stroke slips from the level on where it is twice the bound there.
-        let stroke = Double::from(2.0 * contact.scale()) * (edge.level - Double::from(*level)).value();
-        here = if index.is_multiple_of(2) { here - stroke } else { here + stroke };
-        displacements.push(here.value());
-    }
-    Some(Minimax { displacements, cutoff_radius: cutoff, gap })
+    let path = |levels: Vec<f64>| {
+        let mut displacements = vec![first];
+        let mut here = Double::from(first);
+        for (index, level) in levels.iter().rev().enumerate() {
+            // A stroke slips from the level on where it is twice the bound there.
+            let stroke = Double::from(2.0 * contact.scale()) * (edge.level - Double::from(*level)).value();
+            here = if index.is_multiple_of(2) { here - stroke } else { here + stroke };
+            displacements.push(here.value());
+        }
+        Minimax { displacements, cutoff_radius, gap: 1.0 - equal.ratio }
+    };
+    levels.into_iter().map(path).collect()
 }

@@ -7,7 +7,7 @@ use super::super::state::{Move, Regime, Tangential};
 use super::super::traction::Residual;
 use super::relief::Relief;
 use super::{
-    DEFAULT_CUTOFF, alternating, cutoff_of, equal_peaks, falling_amplitude, outermost_singular, spread::Spread,
+    DEFAULT_CUTOFF, alternating, cutoff_of, ending, equal_peaks, falling_amplitude, outermost_singular, spread::Spread,
 };
 
 /// What rounding may leave of a displacement, relative to that of gross slip.
@@ -250,21 +250,26 @@ impl Task<'_> {
             Err(_) => Ok(()),
         };
         if way == Way::GrossSlip && self.contact.memory_depth() <= DEEPEST && self.at_an_end() {
-            offer(self.judge(vec![self.contact.state().displacement], Way::Stay, None))?;
+            let stay = self.judge(vec![self.contact.state().displacement], Way::Stay, None)?;
+            if stay.largest <= 0.0 {
+                return Ok(stay);
+            }
+            offer(Ok(stay))?;
         }
         let full = self.contact.gross_slip_displacement();
         let sign = if first < 0.0 { -1.0 } else { 1.0 };
         // The smallest of the extrema is nowhere near the largest where the end is prescribed.
         let spread = |found: &super::Minimax| (self.end == End::Free).then_some(found.gap);
-        let beyond = first.abs() >= full;
-        let found = beyond
-            .then(|| super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.go_on))
-            .flatten();
-        if let Some(found) = &found {
+        let found = if first.abs() >= full {
+            super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.go_on)
+        } else {
+            Vec::new()
+        };
+        for found in &found {
             let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
             offer(self.judge(self.ended(path), way, spread(found)))?;
         }
-        if found.is_none() {
+        if found.is_empty() || (self.end != End::Free && self.reversals <= ending::FEW) {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };

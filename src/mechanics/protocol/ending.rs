@@ -10,7 +10,7 @@ use super::minimax::{Marched, Problem};
 use super::{Double, End};
 
 /// So many kinks are tried one by one.
-const FEW: usize = 8;
+pub(super) const FEW: usize = 8;
 /// Looks at the kinks, at the most.
 const LOOKS: usize = 40;
 /// What the two equations may miss, relative to the indentation and to E.
@@ -22,20 +22,18 @@ const PACE: f64 = 0.1;
 const LEAST: f64 = 1e-3;
 const RETRIES: usize = 8;
 
-/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m; `None` where there
-/// are none.
+/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence for
+/// each extremum that may stay below the others.
 pub(super) fn kinks(
     problem: &Problem<'_>,
     limit: f64,
     first: f64,
     end: End,
     go_on: &dyn Fn() -> bool,
-) -> Option<Vec<Point>> {
-    let equations = Equations { problem, limit, first, end, go_on };
+) -> Vec<Vec<Point>> {
     let tried = if problem.reversals <= FEW { problem.reversals } else { 1 };
-    let by_share = (0..tried).filter_map(|index| equations.by_share(index));
-    let found = by_share.chain(equations.by_core()).min_by(|a, b| a.0.total_cmp(&b.0));
-    found.map(|(_, kinks)| kinks)
+    let equations = Equations { problem, limit, first, end, go_on };
+    (0..tried).filter_map(|index| equations.by_share(index)).chain(equations.by_core()).collect()
 }
 
 /// What is to be solved.
@@ -54,8 +52,8 @@ impl Equations<'_> {
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
 
-    /// E, relative to the free optimum, and the kinks, if the extremum of this index stays below the others.
-    fn by_share(&self, index: usize) -> Option<(f64, Vec<Point>)> {
+    /// The kinks if the extremum of this index stays below the others.
+    fn by_share(&self, index: usize) -> Option<Vec<Point>> {
         let mut at = [1.0, 1.0];
         let (mut missed, mut marched) = self.look(index, at)?;
         // The Jacobian by differences once, then kept up.
@@ -65,7 +63,7 @@ impl Equations<'_> {
         let mut jacobian = [row(0), row(1)];
         for _ in 0..LOOKS {
             if missed.iter().all(|miss| miss.abs() <= TOLERANCE) {
-                return (at[1] <= 1.0 + TOLERANCE).then_some((at[0], marched.kinks));
+                return (at[1] <= 1.0 + TOLERANCE).then_some(marched.kinks);
             }
             let [[a, b], [c, d]] = jacobian;
             let determinant = a * d - b * c;
@@ -105,8 +103,8 @@ impl Equations<'_> {
         None
     }
 
-    /// The smallest E above the free optimum that leads to the end by itself, relative to it, and its kinks.
-    fn by_core(&self) -> Option<(f64, Vec<Point>)> {
+    /// The kinks of the smallest E above the free optimum that leads to the end by itself.
+    fn by_core(&self) -> Option<Vec<Point>> {
         let look = |stress: f64| self.look(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
         // At about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
         let mut step = PACE / self.problem.reversals as f64;
@@ -132,7 +130,7 @@ impl Equations<'_> {
             let middle = (low * at_high - high * at_low) / (at_high - at_low);
             let (value, kinks) = look(middle)?;
             if value.abs() <= TOLERANCE || high - low <= TOLERANCE {
-                return Some((middle, kinks));
+                return Some(kinks);
             }
             if value * at_high > 0.0 {
                 (high, at_high, at_low) = (middle, value, 0.5 * at_low);

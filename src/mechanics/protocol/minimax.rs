@@ -13,6 +13,9 @@ const LOOKS: usize = 80;
 const STEPS: usize = 400;
 /// Radii at which the core is looked at where its stress need not fall outwards.
 const CORE: usize = 32;
+/// Sections of the stretch about the largest of these, and their ratio.
+const SECTIONS: usize = 22;
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// What E may be off, relative to itself.
 const TOLERANCE: f64 = 1e-13;
 /// How E is changed until it is bracketed.
@@ -129,8 +132,25 @@ impl Problem<'_> {
         let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
         let width = kinks.last().unwrap_or(&self.edge).radius - self.cutoff;
         let looks = if self.profile.kernel_falls() { 1 } else { CORE };
-        let radius = |index: usize| self.cutoff + width * index as f64 / CORE as f64;
-        (0..looks).map(|index| sign * self.shear(kinks, &At::radius(radius(index)))).fold(f64::NEG_INFINITY, f64::max)
+        let value = |part: f64| sign * self.shear(kinks, &At::radius(self.cutoff + width * part));
+        let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
+        let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
+        if looks > 1 {
+            // Between two looks it may be larger: golden sections about the best.
+            let (mut low, mut high) = ((best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0));
+            let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+            for _ in 0..SECTIONS {
+                let [left, right] = inner(low, high);
+                let (at_left, at_right) = (value(left), value(right));
+                largest = largest.max(at_left).max(at_right);
+                if at_left > at_right {
+                    high = right;
+                } else {
+                    low = left;
+                }
+            }
+        }
+        largest
     }
 
     pub(super) fn march(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Option<Marched> {

@@ -18,7 +18,9 @@ use super::{Double, End, cutoff_of, outermost_singular};
 const DEEPEST: usize = 256;
 /// Radii that are looked at beside the kinks of the history, and cuts that are tried.
 const GRID: usize = 64;
-const CUTS: usize = 24;
+const CUTS: usize = 16;
+/// Among the cuts tried none is this much above the best there is.
+const COARSE: f64 = 1.1;
 /// Halvings of a bracket.
 const HALVINGS: usize = 60;
 /// Looks at E, and how it is changed until it is bracketed.
@@ -27,6 +29,8 @@ const STRIDE: f64 = 1.6;
 const PACE: f64 = 1.06;
 /// What E may be off, relative to itself.
 const TOLERANCE: f64 = 1e-8;
+/// An E below this part of the first guess is as good as none.
+const LEAST: f64 = 1e-4;
 
 /// Strokes from the state of a contact.
 pub(super) struct Relief<'a> {
@@ -148,7 +152,7 @@ impl<'a> Relief<'a> {
         }
         if cut.radius > self.problem.cutoff {
             let at = At::point(cut);
-            worst = worst.max(self.problem.shear_down_to(ring.outer, kinks, &at).abs());
+            worst = worst.max(self.problem.shear_down_to(*cut, kinks, &at).abs());
         }
         worst
     }
@@ -181,7 +185,7 @@ impl<'a> Relief<'a> {
             let (mut best, mut least) = tried.fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
             // Ever smaller steps to both sides of the best.
             let mut step = 0.5 / CUTS as f64;
-            while step > 1e-7 && least > limit && go_on() {
+            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && go_on() {
                 let sides = [best - step, best + step].map(|part| part.clamp(0.0, 1.0)).map(|part| (part, worst(part)));
                 match sides.into_iter().find(|(_, value)| *value < least) {
                     Some(side) => (best, least) = side,
@@ -240,6 +244,9 @@ impl<'a> Relief<'a> {
                     break;
                 }
                 (high, low) = (low, low / STRIDE);
+                if low < LEAST * guess {
+                    break;
+                }
             }
         } else {
             // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in small steps.
