@@ -47,9 +47,9 @@ async fn bare() {
     axum::serve(listener, router).await.expect("a server");
 }
 
-/// Requests a second.
-async fn round(address: &str, path: &'static str) -> f64 {
-    let start = Instant::now();
+/// Requests a second, and the seconds of processor time that each took of the process.
+async fn round(process: &Process, path: &'static str) -> (f64, f64) {
+    let (start, used, address) = (Instant::now(), process.used(), &process.address);
     let workers = (0..CONNECTIONS).map(|_| {
         let address = address.to_owned();
         tokio::spawn(async move {
@@ -64,7 +64,7 @@ async fn round(address: &str, path: &'static str) -> f64 {
     });
     let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
     let count: u32 = counts.into_iter().map(|count| count.expect("a worker that ends well")).sum();
-    f64::from(count) / start.elapsed().as_secs_f64()
+    (f64::from(count) / start.elapsed().as_secs_f64(), (process.used() - used) / f64::from(count))
 }
 
 async fn whole() {
@@ -74,17 +74,20 @@ async fn whole() {
         ("finished bytes", &bare, "/finished"),
         ("stickslip", &service, "/simulate"),
     ];
-    let mut rates = [const { Vec::new() }; 3];
+    let (mut rates, mut costs) = ([const { Vec::new() }; 3], [const { Vec::new() }; 3]);
     for _ in 0..ROUNDS {
-        for ((_, process, path), rates) in targets.iter().zip(&mut rates) {
-            rates.push(round(&process.address, path).await);
+        for (place, (_, process, path)) in targets.iter().enumerate() {
+            let (rate, cost) = round(process, path).await;
+            rates[place].push(rate);
+            costs[place].push(cost);
         }
     }
-    println!("| handler | requests a second | ratio to parsing and writing |");
-    println!("|---|---|---|");
-    for ((name, ..), own) in targets.iter().zip(&rates) {
-        let ratios: Vec<f64> = own.iter().zip(&rates[0]).map(|(own, both)| own / both).collect();
-        println!("| {name} | {:.0} | {:.2} |", median(own), median(&ratios));
+    println!("| handler | requests a second | ratio to parsing and writing | processor time a request |");
+    println!("|---|---|---|---|");
+    for (place, (name, ..)) in targets.iter().enumerate() {
+        let ratios: Vec<f64> = rates[place].iter().zip(&rates[0]).map(|(own, both)| own / both).collect();
+        let (rate, ratio, cost) = (median(&rates[place]), median(&ratios), 1e6 * median(&costs[place]));
+        println!("| {name} | {rate:.0} | {ratio:.2} | {cost:.0} us |");
     }
 }
 
