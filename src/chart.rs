@@ -44,7 +44,6 @@ impl Series {
 impl Chart {
     /// The chart as an SVG document.
     pub(crate) fn svg(&self) -> Result<String, String> {
-        crate::plot::ready();
         let mut text = String::new();
         self.draw(&mut text, false).map_err(|fault| fault.to_string())?;
         Ok(text)
@@ -62,6 +61,7 @@ impl Chart {
     }
 
     fn draw(&self, text: &mut String, decades: bool) -> Result<(), Box<dyn std::error::Error>> {
+        crate::plot::ready();
         let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let (mut left, mut right) = self.extent(|point| point.0);

@@ -17,7 +17,7 @@ pub fn write(document: &mut Value) {
         write_exclusions(schemas);
         write_gaps(schemas);
     }
-    let links = links(document);
+    let (links, of_jobs) = (links(document, "/contacts/{id}"), links(document, "/jobs/{id}"));
     let Some(Value::Object(paths)) = document.get_mut("paths") else {
         return;
     };
@@ -30,6 +30,9 @@ pub fn write(document: &mut Value) {
                 json!({"description": format!("The head of the request has more than {} bytes", server::HEAD)});
             if let Some(made) = operation["responses"].get_mut("201") {
                 made["links"] = links.clone();
+            }
+            if let Some(begun) = operation["responses"].get_mut("202") {
+                begun["links"] = of_jobs.clone();
             }
         }
         if ["/stress", "/history", "/loop"].iter().any(|end| path.ends_with(end)) {
@@ -95,7 +98,19 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     let places = ["points", "radii"];
     let places = json!([have(&places), none(&places)]);
     schemas["StressRequest"]["properties"]["fields"]["minItems"] = json!(1);
-    for (schema, wrong) in [("Move", &step), ("MoveRequest", &step), ("StressRequest", &places)] {
+    let aims = ["reversals", "target"];
+    let aims = json!([have(&aims), none(&aims)]);
+    // A contact may be left out only beside the name of one that lives.
+    let named = json!({"required": ["start"], "properties": {"start": {"required": ["contact_id"]}}});
+    let nowhere = json!({"not": {"anyOf": [have(&["contact"]), named]}});
+    let protocol = json!([aims[0], aims[1], nowhere]);
+    for (schema, wrong) in [
+        ("Move", &step),
+        ("MoveRequest", &step),
+        ("StressRequest", &places),
+        ("RelaxRequest", &aims),
+        ("ProtocolRequest", &protocol),
+    ] {
         schemas[schema]["not"] = json!({"anyOf": wrong});
     }
 }
@@ -113,11 +128,11 @@ fn write_gaps(schemas: &mut Map<String, Value>) {
     }
 }
 
-/// From a contact that has just been made to all that can be done with it.
-fn links(document: &Value) -> Value {
-    let of_contacts = document["paths"].as_object().into_iter().flatten();
-    let operations = of_contacts
-        .filter(|(path, _)| path.starts_with("/contacts/{id}"))
+/// From a contact that has just been made, or a job, to all that can be done with it.
+fn links(document: &Value, place: &str) -> Value {
+    let paths = document["paths"].as_object().into_iter().flatten();
+    let operations = paths
+        .filter(|(path, _)| path.starts_with(place))
         .filter_map(|(_, operations)| operations.as_object())
         .flat_map(Map::values);
     let link = |operation: &Value| {

@@ -35,7 +35,7 @@ const WHOLE: f64 = 1e-9;
 }))]
 pub struct SweepRequest {
     /// The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
-    #[schema(value_type = SimulateRequest)]
+    #[schema(value_type = Object)]
     pub base: Any,
     /// The numbers that change.
     pub axes: Vec<Axis>,

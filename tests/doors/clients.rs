@@ -23,7 +23,7 @@ async fn schemathesis_finds_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut ask = program("schemathesis");
     ask.arg("--config-file").arg(file("tests/python/schemathesis.toml")).arg("run");
-    ask.arg(format!("{}/openapi.json", server.base)).args(["--checks", "all", "--max-examples", "5", "--no-color"]);
+    ask.arg(format!("{}/openapi.json", server.base)).args(["--checks", "all", "--max-examples", "3", "--no-color"]);
     ask.current_dir(folder.path());
     ask.env("SCHEMATHESIS_HOOKS", "hooks").env("PYTHONPATH", file("tests/python"));
     let said = succeed(&mut ask, "it is installed");
