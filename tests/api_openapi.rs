@@ -108,7 +108,9 @@ fn every_number_that_can_be_sent_has_its_range_and_every_object_is_closed() {
             Some("object") => {
                 // A profile's members stand beside its type, and are closed where both are put together.
                 let composed = name.ends_with("Profile");
-                assert!(composed || node["additionalProperties"] == false, "{name}: {node}");
+                // The axes of a sweep put in what its base leaves out, so that only the whole can be held against a schema.
+                let base = name == "SweepRequest" && node["additionalProperties"] == true;
+                assert!(composed || base || node["additionalProperties"] == false, "{name}: {node}");
             }
             _ => {}
         });

@@ -98,10 +98,13 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     let places = ["points", "radii"];
     let places = json!([have(&places), none(&places)]);
     schemas["StressRequest"]["properties"]["fields"]["minItems"] = json!(1);
+    // Axes may put in what the base of a sweep leaves out.
+    schemas["SweepRequest"]["properties"]["base"]["additionalProperties"] = json!(true);
     let aims = ["reversals", "target"];
     let aims = json!([have(&aims), none(&aims)]);
     // A contact may be left out only beside the name of one that lives.
-    let named = json!({"required": ["start"], "properties": {"start": {"required": ["contact_id"]}}});
+    let named = json!({"required": ["start"], "properties": {"start": {"required": ["contact_id"],
+        "description": "One that names a contact."}}});
     let nowhere = json!({"not": {"anyOf": [have(&["contact"]), named]}});
     let protocol = json!([aims[0], aims[1], nowhere]);
     for (schema, wrong) in [
