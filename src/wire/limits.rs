@@ -10,7 +10,7 @@ pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
 /// Reversals of a falling amplitude; each is one move, and one more ends the path at nought.
 pub const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 /// Reversals of a protocol that is to be found: kinks are sought one by one, and the cost grows with their square.
-pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=500;
+pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
 /// What may remain of the largest stress after a protocol, over μ times the pressure.
 pub const TARGET: Range = Range { quantity: "target", unit: "", min: 1e-4, max: 10.0 };
 /// Standard deviation of the displacements of a protocol, relative to themselves.
