@@ -24,8 +24,6 @@ async fn schemathesis_finds_nothing() {
     let mut ask = program("schemathesis");
     ask.arg("--config-file").arg(file("tests/python/schemathesis.toml")).arg("run");
     ask.arg(format!("{}/openapi.json", server.base)).args(["--checks", "all", "--max-examples", "3", "--no-color"]);
-    // The best of five hundred reversals takes a while in a build for tests.
-    ask.args(["--request-timeout", "60"]);
     ask.current_dir(folder.path());
     ask.env("SCHEMATHESIS_HOOKS", "hooks").env("PYTHONPATH", file("tests/python"));
     let said = succeed(&mut ask, "it is installed");
