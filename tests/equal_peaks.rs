@@ -2,20 +2,11 @@
 
 mod physics;
 
+use physics::pressed;
 use physics::quadrature::integral;
 use stickslip::mechanics::profile::{Cone, ExactSphere, PowerLaw, RoundedCone, Tabulated, TruncatedSphere};
 use stickslip::mechanics::protocol::{equal_peaks, falling_amplitude};
-use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
-
-fn pressed(profile: Profile) -> Contact {
-    Contact::new(Setup {
-        profile,
-        elasticity: Elasticity::effective(1000.0, 800.0).unwrap(),
-        friction: 0.3,
-        preload: Preload::Indentation(0.025),
-    })
-    .unwrap()
-}
+use stickslip::mechanics::{Move, Profile, Sphere, Tangential};
 
 fn power(exponent: f64) -> Profile {
     Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())

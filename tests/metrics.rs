@@ -4,57 +4,35 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
+use common::prometheus::{MISSING, Prometheus};
 use common::{Server, ball};
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use stickslip::sessions::CAPACITY;
 use stickslip::store::{MemoryStore, SqliteStore};
 
-const MISSING: &str = "this test needs Prometheus: `./check` installs it, or on Debian `apt-get install prometheus`";
 /// How long a test waits for what should take a second.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A real Prometheus that reads one server five times a second.
-struct Prometheus {
-    child: Child,
-    base: String,
+/// What a Prometheus has read of one server.
+struct Readings {
+    prometheus: Prometheus,
     http: reqwest::Client,
     /// The moment that queries are about: that of a reading that succeeded.
     at: String,
-    _folder: tempfile::TempDir,
 }
 
-impl Prometheus {
-    fn start(target: &str) -> Prometheus {
-        let folder = tempfile::tempdir().unwrap();
-        let config = json!({"scrape_configs": [{"job_name": "stickslip", "scrape_interval": "200ms",
-            "scrape_timeout": "200ms", "static_configs": [{"targets": [target]}]}]});
-        let file = folder.path().join("prometheus.json");
-        // JSON is YAML.
-        std::fs::write(&file, config.to_string()).unwrap();
-        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let child = Command::new("prometheus")
-            .arg(format!("--config.file={}", file.display()))
-            .arg(format!("--storage.tsdb.path={}", folder.path().join("data").display()))
-            .arg(format!("--web.listen-address=127.0.0.1:{port}"))
-            .args(["--log.level=error"])
-            .spawn()
-            .expect(MISSING);
-        Prometheus {
-            child,
-            base: format!("http://127.0.0.1:{port}"),
-            http: reqwest::Client::new(),
-            at: String::new(),
-            _folder: folder,
-        }
+impl Readings {
+    fn start(target: &str) -> Readings {
+        Readings { prometheus: Prometheus::start(target), http: reqwest::Client::new(), at: String::new() }
     }
 
     async fn ask(&self, path: &str, questions: &[(&str, &str)]) -> Option<Value> {
-        let call = self.http.get(format!("{}/api/v1/{path}", self.base)).query(questions);
+        let call = self.http.get(format!("{}/api/v1/{path}", self.prometheus.base)).query(questions);
         let reply: Value = call.send().await.ok()?.json().await.ok()?;
         (reply["status"] == "success").then(|| reply["data"].clone())
     }
@@ -103,14 +81,6 @@ impl Prometheus {
     }
 }
 
-impl Drop for Prometheus {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
 /// A number that counts something.
 fn whole(value: f64) -> u64 {
     assert!(value >= 0.0 && value.fract().to_bits() == 0, "{value}");
@@ -143,7 +113,7 @@ async fn prometheus_reads_what_a_client_counted() {
     let folder = tempfile::tempdir().unwrap();
     let store = SqliteStore::open(&folder.path().join("contacts.db")).unwrap();
     let server = Server::with(Arc::new(store), CAPACITY).await;
-    let mut prometheus = Prometheus::start(server.base.trim_start_matches("http://"));
+    let mut prometheus = Readings::start(server.base.trim_start_matches("http://"));
     let mut client = Counting { server: &server, sent: BTreeMap::new() };
 
     client.send(7, "GET", "/healthz", "/healthz", None, 200).await;

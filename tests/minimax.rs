@@ -1,18 +1,11 @@
 //! The minimax protocol: its largest stress against known values, and against the other protocols on every finite profile.
 
+mod physics;
+
+use physics::pressed;
 use stickslip::mechanics::profile::{ExactSphere, PowerLaw, RoundedCone};
 use stickslip::mechanics::protocol::{equal_peaks, falling_amplitude, minimax};
-use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Residual, Setup, Sphere, Tangential};
-
-fn pressed(profile: Profile) -> Contact {
-    Contact::new(Setup {
-        profile,
-        elasticity: Elasticity::effective(1000.0, 800.0).unwrap(),
-        friction: 0.3,
-        preload: Preload::Indentation(0.025),
-    })
-    .unwrap()
-}
+use stickslip::mechanics::{Move, Profile, Residual, Sphere, Tangential};
 
 fn left(profile: &Profile, path: &[f64]) -> Residual {
     let mut contact = pressed(profile.clone());

@@ -1,21 +1,14 @@
 //! Protocols against facts: asymptotes of the sphere, bounds, other optimisers, and histories of every kind.
 
+mod physics;
+
+use physics::pressed;
 use proptest::prelude::*;
 use stickslip::mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated,
 };
 use stickslip::mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
-use stickslip::mechanics::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
-
-fn pressed(profile: Profile) -> Contact {
-    Contact::new(Setup {
-        profile,
-        elasticity: Elasticity::effective(1000.0, 800.0).unwrap(),
-        friction: 0.3,
-        preload: Preload::Indentation(0.025),
-    })
-    .unwrap()
-}
+use stickslip::mechanics::{Contact, Error, Move, Normal, Profile, Sphere, Tangential};
 
 fn sphere() -> Profile {
     Profile::Sphere(Sphere::new(10.0).unwrap())

@@ -186,12 +186,7 @@ impl FromRequestParts<App> for ContactId {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        let missing = |id: &str| Problem::new(Kind::ContactNotFound, format!("there is no contact {id}"));
-        match Path::<String>::from_request_parts(parts, app).await {
-            Ok(Path(id)) => Uuid::parse_str(&id).map(ContactId).map_err(|_| missing(&id)),
-            // Percent signs that do not decode.
-            Err(_) => Err(missing("of this name")),
-        }
+        identifier(parts, app, Kind::ContactNotFound, "contact").await.map(ContactId)
     }
 }
 
@@ -199,12 +194,17 @@ impl FromRequestParts<App> for JobId {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        let missing = |id: &str| Problem::new(Kind::JobNotFound, format!("there is no job {id}"));
-        match Path::<String>::from_request_parts(parts, app).await {
-            Ok(Path(id)) => Uuid::parse_str(&id).map(JobId).map_err(|_| missing(&id)),
-            // Percent signs that do not decode.
-            Err(_) => Err(missing("of this name")),
-        }
+        identifier(parts, app, Kind::JobNotFound, "job").await.map(JobId)
+    }
+}
+
+/// The identifier in the path. What is none names nothing that there is.
+async fn identifier(parts: &mut Parts, app: &App, kind: Kind, noun: &str) -> Result<Uuid, Problem> {
+    let missing = |id: &str| Problem::new(kind, format!("there is no {noun} {id}"));
+    match Path::<String>::from_request_parts(parts, app).await {
+        Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
+        // Percent signs that do not decode.
+        Err(_) => Err(missing("of this name")),
     }
 }
 

@@ -5,6 +5,7 @@ use axum::response::Response;
 use utoipa::IntoParams;
 
 use crate::mechanics::Contact;
+use crate::plot::Plot;
 use crate::sessions::Sessions;
 use crate::simulation::cost::{INLINE, Nanoseconds};
 use crate::wire::{HistoryPage, LoopPage, StressReply};
@@ -67,10 +68,8 @@ pub async fn stress(
         }
     }
     let more = (format.bytes(sampling.length(), format::STRESS_ROW), price(format));
-    let write = move |found: &StressReply, contact: &Contact, sequence: u64| match format {
-        Format::Columns => reply::written(found),
-        Format::Svg | Format::Png => plots::written(format, &plots::of_stress(id, sequence, contact, found)),
-        flat => Table::of_stress(found).written(flat),
+    let write = move |found: &StressReply, contact: &Contact, sequence: u64| {
+        written(format, found, || plots::of_stress(id, sequence, contact, found), || Table::of_stress(found))
     };
     let (sequence, body, held) = app.sessions.stress(id, sampling, residual, more, write).await?;
     Ok(reply::holding(format.reply(body?, &format.tag(&sequence.to_string())), held))
@@ -118,10 +117,8 @@ pub async fn history(
         return Ok(reply::not_modified(&tag));
     }
     let next = page.next;
-    let body = drawn(&app, format, move || match format {
-        Format::Columns => reply::written(&page),
-        Format::Svg | Format::Png => plots::written(format, &plots::of_history(id, &page)),
-        flat => Table::of_history(&page).written(flat),
+    let body = drawn(&app, format, move || {
+        written(format, &page, || plots::of_history(id, &page), || Table::of_history(&page))
     });
     let response = format.reply(body.await?, &tag);
     let rest = next.map(|next| format!("/contacts/{id}/history?after={next}&limit={limit}&format={}", format.name()));
@@ -175,11 +172,8 @@ pub async fn hysteresis(
     }
     let next = past.next;
     let page = LoopPage { next, ..app.sessions.trace(id, after, &past.items, points).await? };
-    let body = drawn(&app, format, move || match format {
-        Format::Columns => reply::written(&page),
-        Format::Svg | Format::Png => plots::written(format, &plots::of_loop(id, &page)),
-        flat => Table::of_loop(&page).written(flat),
-    });
+    let body =
+        drawn(&app, format, move || written(format, &page, || plots::of_loop(id, &page), || Table::of_loop(&page)));
     let response = format.reply(body.await?, &tag);
     let rest = next.map(|next| {
         let way = format!("after={next}&limit={limit}&points_per_move={points}&format={}", format.name());
@@ -202,6 +196,20 @@ async fn drawn(
     write: impl FnOnce() -> Result<Vec<u8>, Problem> + Send + 'static,
 ) -> Result<Vec<u8>, Problem> {
     app.pool.run(price(format), write).await?
+}
+
+/// A page in a format, and what makes a plot or a table of it where one is wanted.
+fn written(
+    format: Format,
+    page: &impl serde::Serialize,
+    plot: impl FnOnce() -> Plot,
+    table: impl FnOnce() -> Table,
+) -> Result<Vec<u8>, Problem> {
+    match format {
+        Format::Columns => reply::written(page),
+        Format::Svg | Format::Png => plots::written(format, &plot()),
+        flat => table().written(flat),
+    }
 }
 
 /// What writing costs beyond the numbers: a picture takes a thread of its own.

@@ -38,7 +38,7 @@ fn power(exponent: f64) -> Result<Profile, Error> {
 /// mu p_max, Pa.
 fn unit(contact: &Contact) -> f64 {
     let figures = contact.figures();
-    figures.gross_slip_force / figures.normal_force * figures.max_pressure.unwrap_or(f64::NAN)
+    figures.gross_slip_force / figures.normal_force * figures.unit_pressure()
 }
 
 fn found(contact: &Contact, kind: Kind, reversals: usize) -> Result<Design, Error> {

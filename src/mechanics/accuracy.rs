@@ -1,6 +1,7 @@
 //! How far off a result may be: estimates that scale with what has cost the accuracy.
 
 use super::contact::Contact;
+use super::normal::mean_pressure;
 
 /// Beyond this, steepness of g is the edge of a punch, which no rounding moves.
 const STEEPEST: f64 = 1e4;
@@ -31,7 +32,7 @@ impl Contact {
         // Where g is steep, a rounded radius moves the indentation by this many units.
         let steepness = radius * self.profile.slope(radius) / indentation;
         let steepness = if steepness.is_finite() { steepness.clamp(0.0, STEEPEST) } else { 0.0 };
-        let mean_pressure = self.normal_force() / (std::f64::consts::PI * radius * radius);
+        let mean_pressure = mean_pressure(self.normal_force(), radius);
         let doubt = self.profile.doubt(radius);
         let bend =
             self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * doubt.kernel) / mean_pressure;

@@ -43,6 +43,19 @@ pub struct Figures {
     pub gross_slip_force: f64,
 }
 
+impl Figures {
+    /// The pressure that stresses are compared with, Pa: the largest, or where that is infinite the mean.
+    #[must_use]
+    pub fn unit_pressure(&self) -> f64 {
+        self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))
+    }
+}
+
+/// F_N/(pi a^2), Pa; not finite without a contact.
+pub(super) fn mean_pressure(normal_force: f64, contact_radius: f64) -> f64 {
+    normal_force / (std::f64::consts::PI * contact_radius * contact_radius)
+}
+
 /// The ring from the centre to `edge`: the whole contact.
 pub(super) fn whole(profile: &Profile, edge: &Point) -> Ring {
     Ring::between(profile.point(super::double::Double::ZERO), *edge)

@@ -80,8 +80,7 @@ pub fn compare(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Fa
     let sampling = Sampling { points: Points::Radii(radii), fields };
     let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
     let figures = truth.figures();
-    let area = std::f64::consts::PI * figures.contact_radius * figures.contact_radius;
-    let pressure = figures.max_pressure.unwrap_or(figures.normal_force / area);
+    let pressure = figures.unit_pressure();
     let pressure = if pressure.is_finite() { pressure } else { 0.0 };
     let estimate = truth.accuracy();
     let reference = Reference {

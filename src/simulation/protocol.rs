@@ -117,8 +117,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
     let timer = Timer::start();
     let contact = subject.contact;
     let (figures, judged) = (contact.figures(), Judged::of(contact));
-    let mean = figures.normal_force / figures.contact_radius / figures.contact_radius / std::f64::consts::PI;
-    let unit = figures.gross_slip_force / figures.normal_force * figures.max_pressure.unwrap_or(mean);
+    let unit = figures.gross_slip_force / figures.normal_force * figures.unit_pressure();
     let end = End::from(task.end);
     let (reversals, chosen) = match task.aim {
         Aim::Reversals(reversals) => (reversals, subject.design(task.kind.into(), reversals, end, stop)?),

@@ -5,6 +5,7 @@
 pub mod kill;
 pub mod postgres;
 pub mod process;
+pub mod prometheus;
 pub mod raw;
 
 use std::io::{BufRead as _, BufReader};

@@ -1,61 +1,28 @@
 //! The dashboards of `deploy/`: each of their queries is run by the program that it is for.
 
 use std::collections::BTreeMap;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::time::Duration;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 use stickslip::wire::{Move, MoveRequest};
 use tokio_postgres::NoTls;
 
 use crate::common::create;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
+use crate::common::prometheus::{MISSING, Prometheus};
 use crate::python::{file, program, succeed};
 
-const MISSING: &str = "this test needs Prometheus: `./check` installs it, or on Debian `apt-get install prometheus`";
 const MOVES: usize = 5;
 
-/// A Prometheus that reads one server five times a second; killed when it is dropped.
-struct Prometheus {
-    child: Child,
-    base: String,
-    _folder: tempfile::TempDir,
-}
-
-impl Prometheus {
-    fn start(target: &str) -> Prometheus {
-        let folder = tempfile::tempdir().unwrap();
-        let config = json!({"scrape_configs": [{"job_name": "stickslip", "scrape_interval": "200ms",
-            "scrape_timeout": "200ms", "static_configs": [{"targets": [target]}]}]});
-        let file = folder.path().join("prometheus.json");
-        // JSON is YAML.
-        std::fs::write(&file, config.to_string()).unwrap();
-        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let mut command = Command::new("prometheus");
-        command.arg(format!("--config.file={}", file.display())).arg("--log.level=error");
-        command.arg(format!("--storage.tsdb.path={}", folder.path().join("data").display()));
-        command.arg(format!("--web.listen-address=127.0.0.1:{port}"));
-        let child = command.stdout(Stdio::null()).spawn().expect(MISSING);
-        Prometheus { child, base: format!("http://127.0.0.1:{port}"), _folder: folder }
-    }
-
-    /// What a query finds: a number for each set of labels. None if there is no answer.
-    async fn ask(&self, http: &reqwest::Client, query: &str) -> Option<Vec<(Value, f64)>> {
-        let reply = http.get(format!("{}/api/v1/query", self.base)).query(&[("query", query)]).send().await.ok()?;
-        let answer: Value = reply.json().await.ok()?;
-        assert_ne!(answer["status"], "error", "{query}: {answer}");
-        let found = answer["data"]["result"].as_array()?.iter();
-        found.map(|one| Some((one["metric"].clone(), one["value"][1].as_str()?.parse().ok()?))).collect()
-    }
-}
-
-impl Drop for Prometheus {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
+/// What a query finds: a number for each set of labels. None if there is no answer.
+async fn ask(prometheus: &Prometheus, http: &reqwest::Client, query: &str) -> Option<Vec<(Value, f64)>> {
+    let reply = http.get(format!("{}/api/v1/query", prometheus.base)).query(&[("query", query)]).send().await.ok()?;
+    let answer: Value = reply.json().await.ok()?;
+    assert_ne!(answer["status"], "error", "{query}: {answer}");
+    let found = answer["data"]["result"].as_array()?.iter();
+    found.map(|one| Some((one["metric"].clone(), one["value"][1].as_str()?.parse().ok()?))).collect()
 }
 
 fn dashboard(name: &str) -> Value {
@@ -97,7 +64,7 @@ async fn every_query_of_the_dashboards_is_answered() {
                 steps += 1;
                 let step = Move::displacement(1e-8 * f64::from(steps % 7)).into();
                 server.client.apply(made.id, &step, &Default::default()).await.unwrap();
-                let found = prometheus.ask(&http, &query).await.unwrap_or_default();
+                let found = ask(&prometheus, &http, &query).await.unwrap_or_default();
                 if !found.is_empty() && found.iter().all(|(_, value)| value.is_finite()) {
                     let legend = target["legendFormat"].as_str().unwrap();
                     for label in legend.split("{{").skip(1).map(|rest| rest.split("}}").next().unwrap()) {

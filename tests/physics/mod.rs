@@ -82,6 +82,12 @@ impl Ball {
     }
 }
 
+/// A contact of this shape, pressed in by a fortieth of a metre: in the tests of protocols all shapes are.
+pub fn pressed(profile: Profile) -> Contact {
+    let elasticity = Elasticity::effective(1000.0, 800.0).unwrap();
+    Contact::new(Setup { profile, elasticity, friction: 0.3, preload: Preload::Indentation(0.025) }).unwrap()
+}
+
 pub fn displace(target: f64) -> Move {
     Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }
 }

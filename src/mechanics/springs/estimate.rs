@@ -23,8 +23,7 @@ impl Springs {
         let figures = self.normal.figures();
         let edge = self.contact_radius();
         let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
-        let mean_pressure = figures.normal_force / (PI * edge * edge);
-        let pressure = figures.max_pressure.unwrap_or(mean_pressure);
+        let pressure = figures.unit_pressure();
         let bends = self.bends();
         let misplaced = 2.0 * self.initial.g_star * self.misplaced;
         let differences = self.twins.iter().map(|twin| (self.force() - twin.force()).abs());
