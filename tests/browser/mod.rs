@@ -25,23 +25,33 @@ pub struct Browser {
     http: reqwest::Client,
 }
 
-impl Browser {
-    /// Starts one with a window of so many pixels.
-    pub async fn start(width: u32, height: u32, dark: bool) -> Browser {
+/// A driver and its port. It looks for one that is free on IPv6 and then takes the same on IPv4, where somebody else may be; it
+/// ends then, and another one is started.
+fn driver() -> (Child, String) {
+    let started = (0..10).find_map(|_| {
         let mut driver = Command::new("chromedriver")
             .arg("--port=0")
             .stdout(Stdio::piped())
             .spawn()
             .expect("./check installs chromium and chromedriver");
-        let stdout = driver.stdout.take().unwrap();
-        let port = tokio::task::spawn_blocking(move || {
-            let mut lines = BufReader::new(stdout).lines().map_while(Result::ok);
-            lines.find_map(|line| {
-                line.strip_prefix("ChromeDriver was started successfully on port ")
-                    .map(|port| port.trim_end_matches('.').to_owned())
-            })
+        let mut lines = BufReader::new(driver.stdout.take().unwrap()).lines().map_while(Result::ok);
+        let port = lines.find_map(|line| {
+            line.strip_prefix("ChromeDriver was started successfully on port ")
+                .map(|port| port.trim_end_matches('.').to_owned())
         });
-        let address = format!("http://127.0.0.1:{}", port.await.unwrap().expect("chromedriver names its port"));
+        if port.is_none() {
+            driver.wait().unwrap();
+        }
+        port.map(|port| (driver, port))
+    });
+    started.expect("chromedriver finds a port in one of ten times")
+}
+
+impl Browser {
+    /// Starts one with a window of so many pixels.
+    pub async fn start(width: u32, height: u32, dark: bool) -> Browser {
+        let (driver, port) = tokio::task::spawn_blocking(driver).await.unwrap();
+        let address = format!("http://127.0.0.1:{port}");
         // Without a sandbox, because tests in containers run as root; it sees no page but ours.
         let options = json!({"args": ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu"]});
         let wanted = json!({

@@ -1,6 +1,6 @@
 //! What a service shows to the world: where it listens, what browsers may do with it, and that it keeps its secrets.
 
-mod common;
+use crate::common;
 
 use std::process::Command;
 

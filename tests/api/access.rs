@@ -1,6 +1,6 @@
 //! Who may do what: every role at every endpoint, and what one tenant sees of another.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Protocols over HTTP: what is promised is what comes, from any history, in as few reversals as there are.
 
-mod common;
+use crate::common;
 
 use common::{Server, ball, problem, run};
 use reqwest::{Method, Response};

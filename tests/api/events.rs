@@ -1,6 +1,6 @@
 //! Live events: each new state once, in order, without a gap, to everybody who listens, until there are no more.
 
-mod common;
+use crate::common;
 
 use std::io::Read as _;
 use std::pin::pin;

@@ -1,6 +1,6 @@
 //! Warnings over HTTP: each code comes when it should, stays away when it should not, and has its place in the docs.
 
-mod common;
+use crate::common;
 
 use serde_json::{Value, json};
 
@@ -121,7 +121,7 @@ async fn each_warning_has_its_cause_and_its_page() {
             &["tolerance_not_met"],
         ),
     ];
-    let pages = include_str!("../docs/warnings.md");
+    let pages = include_str!("../../docs/warnings.md");
     for (changes, expected) in cases {
         let found = codes(&server, &with(changes)).await;
         assert_eq!(&found, expected, "{changes}");

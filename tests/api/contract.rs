@@ -1,6 +1,6 @@
 //! The contract: every endpoint through the typed client, and what the replies promise.
 
-mod common;
+use crate::common;
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};

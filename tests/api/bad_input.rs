@@ -1,6 +1,6 @@
 //! Bad input: every refusal is a problem document that names the place, and nothing is ever a 500.
 
-mod common;
+use crate::common;
 
 use common::{Server, ball, problem};
 use reqwest::Method;

@@ -1,7 +1,7 @@
 //! What every store promises, whatever it is made of.
 
-mod common;
-mod promises;
+use crate::common;
+use crate::promises;
 
 use std::future::ready;
 use std::sync::Arc;

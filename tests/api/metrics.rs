@@ -1,6 +1,6 @@
 //! `/metrics`: what a real Prometheus reads there is what a client counted.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;

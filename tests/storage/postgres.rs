@@ -1,6 +1,6 @@
 //! What the PostgreSQL store promises beyond what every store does.
 
-mod common;
+use crate::common;
 
 use std::sync::Arc;
 
@@ -157,7 +157,7 @@ async fn replicas_that_start_together_make_the_tables_once_and_a_newer_schema_is
 async fn older_tables_are_brought_up_to_date_with_all_that_is_in_them() {
     let cluster = Cluster::shared();
     let url = cluster.database().await;
-    cluster.execute(url.rsplit('/').next().unwrap(), include_str!("data/postgres_1.sql")).await;
+    cluster.execute(url.rsplit('/').next().unwrap(), include_str!("../data/postgres_1.sql")).await;
     let store = PostgresStore::open(&url).await.unwrap();
     let [here, expired] = [1, 2].map(|number| Uuid::from_u128(0x0199_c0de_0000_7000_8000_0000_0000_0000 + number));
     let found = store.find(here).await.unwrap();

@@ -1,6 +1,6 @@
 //! `POST /accuracy`: its rows against sums of one's own, against `/simulate`, and what it refuses.
 
-mod common;
+use crate::common;
 
 use common::{Server, ball, problem};
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! The OpenAPI document: committed, complete, and its examples work as they stand.
 
-mod common;
+use crate::common;
 
 use common::Server;
 use reqwest::Method;

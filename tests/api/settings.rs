@@ -1,6 +1,6 @@
 //! Every setting in each of its three ways, and what is said of one that is wrong.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Corners of the service: where springs refuse a move, contacts without friction, and noughts without a sign.
 
-mod common;
+use crate::common;
 
 use common::{Server, ball};
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! `stickslip backup`: a copy taken while the service writes holds every move that was acknowledged before, bit for bit.
 
-mod common;
+use crate::common;
 
 use std::collections::HashMap;
 use std::fs;

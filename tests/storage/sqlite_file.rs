@@ -1,6 +1,6 @@
 //! The file of the SQLite store: what is refused at start and left alone, what is taken up, and what people can read.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -159,7 +159,7 @@ async fn a_file_in_use_is_refused_and_serves_on() {
 async fn an_older_file_opens_with_all_that_is_in_it() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("older.db");
-    Connection::open(&path).unwrap().execute_batch(include_str!("data/store_1.sql")).unwrap();
+    Connection::open(&path).unwrap().execute_batch(include_str!("../data/store_1.sql")).unwrap();
     let [first, second] = [1, 2].map(|number| Uuid::from_u128(0x0199_c0de_0000_7000_8000_0000_0000_0000 + number));
     let store = SqliteStore::open(&path).unwrap();
     let listed = store.list(None, None, 10).await.unwrap();

@@ -1,6 +1,6 @@
 //! A disk without room: changes are refused, nothing acknowledged is lost, and the service resumes by itself.
 
-mod common;
+use crate::common;
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Write as _};

@@ -1,6 +1,6 @@
 //! Traces: a real receiver of OTLP gets a span for each request, in the trace that the client names.
 
-mod common;
+use crate::common;
 
 use std::process::Command;
 use std::sync::{Arc, Mutex};

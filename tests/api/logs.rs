@@ -1,6 +1,6 @@
 //! The log: one JSON object a line, with what an engineer needs to follow a request from a complaint to its cause.
 
-mod common;
+use crate::common;
 
 use std::io::Read as _;
 use std::process::Command;

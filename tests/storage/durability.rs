@@ -1,6 +1,6 @@
 //! Nothing acknowledged is lost: not by a kill, not by a stop, not by another version.
 
-mod common;
+use crate::common;
 
 use common::kill;
 use tempfile::tempdir;

@@ -1,6 +1,6 @@
 //! Sessions: one move at a time, all or nothing, repeatable, and the same after a replay to the last bit.
 
-mod common;
+use crate::common;
 
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Every profile over HTTP: the promises of the contract that hang on the shape.
 
-mod common;
+use crate::common;
 
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! Several servers on one PostgreSQL: they serve as one, and go on when a part of them fails.
 
-mod common;
+use crate::common;
 
 use std::collections::HashMap;
 use std::sync::Arc;

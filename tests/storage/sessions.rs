@@ -1,6 +1,6 @@
 //! The session layer over a store: snapshots that change nothing but time, a cache of bounded bytes, expiry.
 
-mod common;
+use crate::common;
 
 use std::process::Command;
 use std::sync::Arc;

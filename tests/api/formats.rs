@@ -1,6 +1,6 @@
 //! Tables in every format hold the same numbers, and who has a version already is told so.
 
-mod common;
+use crate::common;
 
 use arrow_array::cast::AsArray as _;
 use arrow_array::types::{Float64Type, TimestampNanosecondType, UInt64Type};

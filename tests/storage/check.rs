@@ -1,6 +1,6 @@
 //! `stickslip check`: it finds every kind of damage, and none in a sound store.
 
-mod common;
+use crate::common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
