@@ -223,6 +223,37 @@ async fn a_guided_run_takes_the_stress_out_and_tells_how_much() {
     browser.close().await;
 }
 
+#[tokio::test]
+async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    // A history that no law starts from.
+    moved(&server, &session, &[0.9, -0.3, 0.5]).await;
+    let relax = format!("{}/contacts/{}/relax", server.address, session.id);
+    let dry = reqwest::Client::new().post(relax).json(&json!({"reversals": 3, "dry_run": true})).send().await.unwrap();
+    let promised = dry.json::<Value>().await.unwrap()["residual"]["max"].as_f64().unwrap();
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.until("document.querySelector('#protocol option[value=relax]') !== null").await;
+    browser.value("document.querySelector('#protocol').value = 'relax'").await;
+    browser.write("#reversals", "3").await;
+    browser.click("#run").await;
+    let told = "document.querySelector('#run-told').innerText";
+    browser.until(&format!("{told}.includes('Now')")).await;
+    let said = browser.value(told).await;
+    let share = 100.0 * promised / (0.3 * session.contact.max_pressure.unwrap());
+    assert!(said.as_str().unwrap().contains("Now: up to"), "{said}");
+    assert!(said.as_str().unwrap().ends_with(&format!("({share:.1} % of μ p_max).")), "{said} instead of {share}");
+
+    browser.click("#compute-accuracy").await;
+    browser.until("document.querySelectorAll('#plot-accuracy .dot').length >= 3").await;
+    let names = browser.value("document.querySelector('#plot-accuracy').textContent").await;
+    assert!(names.as_str().unwrap().contains("exact") && names.as_str().unwrap().contains("springs"), "{names}");
+    browser.picture("accuracy").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
 /// The file that the page saves, once it is whole.
 async fn saved(path: &Path) -> Vec<u8> {
     for _ in 0..600 {

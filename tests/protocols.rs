@@ -2,6 +2,8 @@
 
 mod physics;
 
+use std::f64::consts::PI;
+
 use physics::pressed;
 use proptest::prelude::*;
 use stickslip::mechanics::profile::{
@@ -59,6 +61,32 @@ fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
             assert!((inner - 0.7602).abs() < 1e-3, "inner peaks {inner}");
         }
     }
+}
+
+/// Far from the edge and the centre the memory is a square wave over (r/a)^2, and the stress its half-integral. With a distance
+/// of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) / n^(3/2) over the
+/// odd n.
+#[test]
+fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_square_wave() {
+    const SAMPLES: usize = 2_000;
+    let wave = |phase: f64| {
+        let odd = (1..4_000).step_by(2).map(f64::from);
+        odd.map(|n| (PI * n * phase + PI / 4.0).sin() / n.powf(1.5)).sum::<f64>() * 2.0 / PI
+    };
+    let phases = (0..SAMPLES).map(|index| (index as f64 + 0.5) / SAMPLES as f64);
+    let expected = phases.map(|phase| wave(phase).abs()).sum::<f64>() / SAMPLES as f64;
+    assert!((expected - 0.40).abs() < 0.01, "{expected}");
+
+    let contact = pressed(sphere());
+    let radius = contact.figures().contact_radius;
+    let reversals = 400;
+    let found = moved(&contact, &of(&contact, Kind::Linear, reversals, End::DisplacementZero).displacements);
+    // Equal shares of the area, which no reversal falls in step with.
+    let points = 40_009;
+    let radii: Vec<f64> = (0..points).map(|index| radius * ((index as f64 + 0.5) / f64::from(points)).sqrt()).collect();
+    let mean = found.shears(&radii).iter().map(|shear| shear.abs()).sum::<f64>() / f64::from(points);
+    let scaled = mean * (reversals as f64).sqrt() / unit(&contact);
+    assert!((scaled - expected).abs() < 1e-3, "{scaled} instead of {expected}");
 }
 
 #[test]

@@ -1,5 +1,9 @@
 //! What stands in the table.
 
+use arrow_array::Array as _;
+use arrow_array::cast::AsArray as _;
+use arrow_array::types::Float64Type;
+use arrow_ipc::reader::StreamReader;
 use serde_json::{Value, json};
 
 use crate::common::{self, Server, ball, problem};
@@ -122,6 +126,22 @@ async fn a_point_without_an_answer_is_a_row_without_numbers_and_stands_among_the
     assert_eq!(failures[0]["detail"], refusal.errors[0].detail);
 }
 
+/// The rows of a stream of Arrow's record batches, of which there are several.
+fn arrow(stream: &[u8], names: &[&str]) -> Vec<Vec<Option<f64>>> {
+    let batches: Vec<_> = StreamReader::try_new(stream, None).unwrap().map(Result::unwrap).collect();
+    assert!(batches.len() > 1);
+    let rows = batches.iter().flat_map(|batch| {
+        assert_eq!(batch.schema().fields().iter().map(|field| field.name()).collect::<Vec<_>>(), names);
+        let columns: Vec<_> = batch.columns().iter().map(|column| column.as_primitive::<Float64Type>()).collect();
+        (0..batch.num_rows())
+            .map(move |row| {
+                columns.iter().map(|column| column.is_valid(row).then(|| column.value(row))).collect::<Vec<_>>()
+            })
+            .collect::<Vec<_>>()
+    });
+    rows.collect()
+}
+
 #[tokio::test]
 async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
     let server = Place::of(&Server::start().await);
@@ -144,18 +164,27 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
         ("rows", "application/vnd.stickslip.rows+json"),
         ("csv", "text/csv; charset=utf-8"),
         ("ndjson", "application/x-ndjson"),
+        ("arrow", "application/vnd.apache.arrow.stream"),
     ] {
         let stored = server.get(&format!("{job}/result?format={format}")).await;
         assert_eq!(stored.headers()["content-type"], media_type);
-        let stored = stored.text().await.unwrap();
+        let stored = stored.bytes().await.unwrap();
         let accept = media_type.split(';').next().unwrap();
         let at_once = server.send(reqwest::Method::POST, "/sweep", Some(&sweep), &[("accept", accept)]).await;
         assert_eq!((at_once.status().as_u16(), &at_once.headers()["vary"]), (200, &"accept".parse().unwrap()));
-        assert_eq!(at_once.text().await.unwrap(), stored, "{format}");
+        assert_eq!(at_once.bytes().await.unwrap(), stored, "{format}");
+        if format == "arrow" {
+            assert_eq!(
+                arrow(&stored, &names),
+                rows.iter().map(|row| row.iter().map(Value::as_f64).collect()).collect::<Vec<Vec<_>>>()
+            );
+            continue;
+        }
+        let stored = std::str::from_utf8(&stored).unwrap();
         let object = |row: &Value| names.iter().map(|name| row[name].clone()).collect::<Vec<_>>();
         let read: Vec<Vec<Value>> = match format {
             "columns" => rows.clone(),
-            "rows" => serde_json::from_str::<Vec<Value>>(&stored).unwrap().iter().map(object).collect(),
+            "rows" => serde_json::from_str::<Vec<Value>>(stored).unwrap().iter().map(object).collect(),
             "ndjson" => stored.lines().map(|line| object(&serde_json::from_str(line).unwrap())).collect(),
             _ => {
                 let (head, body) = stored.split_once('\n').unwrap();
