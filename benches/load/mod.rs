@@ -1,4 +1,4 @@
-//! What both benchmarks of the service need: a process that serves, and a client that costs little.
+//! What the benchmarks of the service need: a process that serves, and a client that costs little.
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -26,6 +26,14 @@ impl Process {
         BufReader::new(output).read_line(&mut line).expect("it should say where it listens");
         let address = line.split("http://").nth(1).expect("it names an address").split([',', '\n']).next();
         Process { process, address: address.expect("an address").to_owned() }
+    }
+
+    /// Memory that the process holds, in bytes.
+    pub fn resident(&self) -> u64 {
+        let status =
+            std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).expect("a process that runs");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a line of its own");
+        1024 * line.trim().trim_end_matches(" kB").parse::<u64>().expect("a number")
     }
 
     /// Processor time that the process has used, in seconds.

@@ -8,6 +8,7 @@ use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse as _, Response};
 
+use crate::jobs::JobMeters;
 use crate::mechanics::ENGINE;
 use crate::metrics::page::{MEDIA_TYPE, Page};
 use crate::metrics::process::Process;
@@ -35,6 +36,7 @@ pub async fn metrics(State(app): State<App>, Extension(traffic): Extension<Arc<T
     let readings = app.sessions.readings();
     sessions(&mut page, &readings);
     solver(&mut page, app.pool.meters());
+    jobs(&mut page, app.jobs.meters());
     if let Some(store) = readings.commits {
         commits(&mut page, store);
     }
@@ -91,6 +93,18 @@ fn solver(page: &mut Page, meters: &PoolMeters) {
     page.histogram(name, &[], &meters.wait);
     let help = "Work for which no thread became free in time.";
     page.single("stickslip_solver_refused_total", "counter", help, meters.refused.get());
+}
+
+fn jobs(page: &mut Page, meters: &JobMeters) {
+    let help = "Points of sweeps computed by this process, at once or for jobs.";
+    page.single("stickslip_sweep_points_total", "counter", help, meters.points.get());
+    let help = "Chunks of jobs that this process has computed and stored.";
+    page.single("stickslip_job_chunks_total", "counter", help, meters.chunks.get());
+    let help = "Chunks that this process gave back undone.";
+    page.single("stickslip_job_chunks_returned_total", "counter", help, meters.returned.get());
+    page.single("stickslip_job_chunks_running", "gauge", "Chunks under way in this process.", meters.running.get());
+    let help = "Jobs that this process gave up; the log says why.";
+    page.single("stickslip_jobs_failed_total", "counter", help, meters.failed.get());
 }
 
 fn commits(page: &mut Page, commits: &Commits) {

@@ -15,6 +15,7 @@ use jiff::Timestamp;
 use tokio::sync::{Notify, Semaphore, watch};
 use uuid::Uuid;
 
+use crate::metrics::{Counter, Gauge};
 use crate::simulation::cost::{INLINE, Nanoseconds};
 use crate::simulation::{Pool, Rows, Stop, Sweep, Workers};
 use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
@@ -61,6 +62,22 @@ struct Common {
     owner: Uuid,
     streams: Arc<Semaphore>,
     ending: watch::Sender<bool>,
+    meters: JobMeters,
+}
+
+/// What this process has done for sweeps since its start.
+#[derive(Debug, Default)]
+pub struct JobMeters {
+    /// Points computed, at once and for jobs; those without an answer too.
+    pub points: Counter,
+    /// Chunks of jobs whose results are stored.
+    pub chunks: Counter,
+    /// Chunks that were given back, for this process or another one to do.
+    pub returned: Counter,
+    /// Jobs that were given up.
+    pub failed: Counter,
+    /// Chunks under way.
+    pub running: Gauge,
 }
 
 impl Jobs {
@@ -75,6 +92,7 @@ impl Jobs {
             owner: Uuid::now_v7(),
             streams: Arc::new(Semaphore::new(STREAMS)),
             ending: watch::Sender::new(false),
+            meters: JobMeters::default(),
         };
         Jobs { tenant: Tenant::default(), common: Arc::new(common) }
     }
@@ -90,7 +108,15 @@ impl Jobs {
     /// # Errors
     /// [`JobError::Sweep`] if it was stopped or took too long.
     pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<Rows, JobError> {
-        Ok(sweep.compute(0..sweep.points(), &self.common.pool, self.workers()?, stop, None).await?)
+        let rows = sweep.compute(0..sweep.points(), &self.common.pool, self.workers()?, stop, None).await?;
+        self.common.meters.points.add(sweep.points() as u64);
+        Ok(rows)
+    }
+
+    /// What this process has done, for all tenants.
+    #[must_use]
+    pub fn meters(&self) -> &JobMeters {
+        &self.common.meters
     }
 
     fn workers(&self) -> Result<&Workers, JobError> {

@@ -55,7 +55,11 @@ impl Jobs {
 
     /// Does a chunk, or gives it back.
     async fn advance(&self, claim: Claim, known: &mut Known, lease: Duration) {
-        let error = match self.chunk(claim, known, lease).await {
+        let meters = &self.common.meters;
+        let running = meters.running.enter();
+        let done = self.chunk(claim, known, lease).await;
+        drop(running);
+        let error = match done {
             // A job that has been deleted, and a claim that is none any more, are nobody's business.
             Ok(()) | Err(JobError::NotFound(_) | JobError::Sweep(SweepError::Failure(_))) => return,
             Err(error) => error,
@@ -70,10 +74,12 @@ impl Jobs {
         let done = match hopeless {
             Some(why) => {
                 tracing::error!(job = %claim.job, chunk = claim.chunk, %error, "a job has failed");
+                meters.failed.add(1);
                 self.common.store.fail_job(claim.job, why).await
             }
             None => {
                 tracing::debug!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is given back");
+                meters.returned.add(1);
                 self.common.store.release(claim).await
             }
         };
@@ -94,8 +100,12 @@ impl Jobs {
         let bytes = sweep.bytes(pool.capacity().threads) + 4 * NUMBER_BYTES * sweep.numbers(points.len());
         let _held = pool.reserve(bytes).await?;
         let rows = self.rows(claim, sweep, points.clone(), lease).await?;
-        let result = ChunkResult { points: points.len() as u64, failed: rows.failed, content: rows.to_bytes() };
-        self.keep(claim, result, lease).await
+        let count = points.len() as u64;
+        self.common.meters.points.add(count);
+        let result = ChunkResult { points: count, failed: rows.failed, content: rows.to_bytes() };
+        self.keep(claim, result, lease).await?;
+        self.common.meters.chunks.add(1);
+        Ok(())
     }
 
     /// What a job asks for.

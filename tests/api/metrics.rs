@@ -243,3 +243,25 @@ async fn clients_that_listen_and_clients_that_leave_are_counted() {
     };
     tokio::time::timeout(PATIENCE, noticed).await.expect("nobody noticed");
 }
+
+#[tokio::test]
+async fn sweeps_are_counted_at_once_and_as_jobs() {
+    let server = Server::start().await;
+    let sweep = |count: u64, job: bool| {
+        json!({"base": {"contact": ball(), "path": {"displacement": [1e-8]}}, "job": job, "outputs": ["/steps/0/force"],
+            "axes": [{"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.5, "count": count}}]})
+    };
+    assert_eq!(server.post("/sweep", &sweep(30, false)).await.status(), 200);
+    assert_eq!(sample(&server, "stickslip_sweep_points_total").await, 30);
+    assert_eq!(server.post("/sweep", &sweep(20, true)).await.status(), 202);
+    let stored = async {
+        while sample(&server, "stickslip_job_chunks_total").await == 0 {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    tokio::time::timeout(PATIENCE, stored).await.expect("a job so small is one chunk");
+    let names = ["sweep_points_total", "job_chunks_total", "job_chunks_returned_total", "jobs_failed_total"];
+    for (name, expected) in names.into_iter().zip([50, 1, 0, 0]) {
+        assert_eq!(sample(&server, &format!("stickslip_{name}")).await, expected, "{name}");
+    }
+}

@@ -1,0 +1,176 @@
+//! How cost grows: `cargo bench --bench growth`. Moves with the length of their path, stresses with radii and pieces, the service with
+//! its sessions; what a session and a piece of memory take, and how long a start lasts. Cores: `cargo bench --bench sweep`.
+
+// The other benchmarks use the rest.
+#[allow(dead_code)]
+mod load;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use load::{Connection, Process, median, served};
+use stickslip::mechanics::protocol::falling_amplitude;
+use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+
+const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
+/// Work that is shorter than this is repeated until it is not.
+const ENOUGH: Duration = Duration::from_millis(20);
+const TIMES: usize = 7;
+const CONNECTIONS: usize = 16;
+/// How long moves are made on so many sessions.
+const ROUND: Duration = Duration::from_secs(2);
+const SESSIONS: [usize; 6] = [1, 10, 100, 1_000, 10_000, 100_000];
+
+/// The median time of one call, in seconds.
+fn seconds(mut work: impl FnMut()) -> f64 {
+    let mut once = || {
+        let (begin, mut count) = (Instant::now(), 0_u32);
+        while count == 0 || begin.elapsed() < ENOUGH {
+            work();
+            count += 1;
+        }
+        begin.elapsed().as_secs_f64() / f64::from(count)
+    };
+    median(&(0..TIMES).map(|_| once()).collect::<Vec<_>>())
+}
+
+fn virgin() -> Contact {
+    let setup = Setup {
+        profile: Profile::Sphere(Sphere::new(0.01).expect("a valid radius")),
+        elasticity: Elasticity::effective(1.15e11, 8.5e10).expect("valid moduli"),
+        friction: 0.3,
+        preload: Preload::NormalForce(10.0),
+    };
+    Contact::new(setup).expect("a valid contact")
+}
+
+fn follow(contact: &mut Contact, path: &[f64]) {
+    for &target in path {
+        let to = Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
+        contact.apply(&to).expect("a displacement has no limit");
+    }
+}
+
+/// The contact after so many reversals of falling amplitude: as many pieces, and one or two.
+fn deep(reversals: usize) -> Contact {
+    let mut contact = virgin();
+    follow(&mut contact, &falling_amplitude(reversals, contact.figures().gross_slip_displacement));
+    contact
+}
+
+fn paths() {
+    println!("| random moves in a path | time of a move |\n|---|---|");
+    let unit = virgin().figures().gross_slip_displacement;
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (2.0 * ((seed >> 11) as f64 / (1_u64 << 53) as f64) - 1.0) * unit
+    };
+    for length in [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000] {
+        let path: Vec<f64> = (0..length).map(|_| next()).collect();
+        let start = virgin();
+        let time = seconds(|| follow(black_box(&mut start.clone()), &path));
+        println!("| {length} | {:.0} ns |", 1e9 * time / length as f64);
+    }
+}
+
+fn radii() {
+    println!("\n| radii | pieces | time | of a radius and piece |\n|---|---|---|---|");
+    for (count, reversals) in [(1, 20), (10, 20), (100, 20), (1_000, 20), (10_000, 20), (100_000, 20), (1_000, 1_000)] {
+        let contact = deep(reversals);
+        let (edge, pieces) = (contact.contact_radius(), contact.memory_depth());
+        let radii: Vec<f64> = (0..count).map(|index| edge * f64::from(index) / f64::from(count)).collect();
+        let time = seconds(|| drop(black_box(contact.shears(&radii))));
+        let each = 1e9 * time / f64::from(count) / pieces as f64;
+        println!("| {count} | {pieces} | {:.1} us | {each:.2} ns |", 1e6 * time);
+    }
+    let (shallow, thousand) = (virgin(), deep(1_000));
+    let pieces = thousand.memory_depth() - shallow.memory_depth();
+    let bytes = (thousand.memory_bytes() - shallow.memory_bytes()) as f64 / pieces as f64;
+    println!("\nA contact takes {} bytes, and {bytes:.0} for each piece more.", shallow.memory_bytes());
+}
+
+async fn create(connection: &mut Connection) -> String {
+    let reply = connection.post("/contacts", CONTACT.as_bytes()).await;
+    let reply: serde_json::Value = serde_json::from_slice(reply).expect("a contact");
+    format!("/contacts/{}/move", reply["id"].as_str().expect("an identifier"))
+}
+
+/// The paths of so many new sessions.
+async fn sessions(address: &str, count: usize) -> Vec<String> {
+    let workers = (0..CONNECTIONS).map(|worker| {
+        let (address, own) = (address.to_owned(), (count + worker) / CONNECTIONS);
+        tokio::spawn(async move {
+            let mut connection = Connection::open(&address).await;
+            let mut paths = Vec::new();
+            for _ in 0..own {
+                paths.push(create(&mut connection).await);
+            }
+            paths
+        })
+    });
+    let made = futures::future::join_all(workers.collect::<Vec<_>>()).await;
+    made.into_iter().flat_map(|paths| paths.expect("a worker that ends well")).collect()
+}
+
+/// Moves a second, one session after the other.
+async fn rate(address: &str, paths: &[String]) -> f64 {
+    let begin = Instant::now();
+    let workers = (0..CONNECTIONS).map(|worker| {
+        let (paths, address) = (paths.to_vec(), address.to_owned());
+        tokio::spawn(async move {
+            let mut connection = Connection::open(&address).await;
+            let mut count = 0;
+            while begin.elapsed() < ROUND {
+                let path = &paths[(worker + count * CONNECTIONS) % paths.len()];
+                let target = (count % 97) as f64 * 1e-9;
+                connection.post(path, format!(r#"{{"displacement":{target:e}}}"#).as_bytes()).await;
+                count += 1;
+            }
+            count
+        })
+    });
+    let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
+    counts.into_iter().map(|count| count.expect("a worker that ends well") as f64).sum::<f64>()
+        / begin.elapsed().as_secs_f64()
+}
+
+async fn grow(name: &str, store: &str) {
+    println!("\n| sessions, {name} | moves a second | bytes of memory a session |\n|---|---|---|");
+    let process = Process::start(served(store));
+    let before = process.resident();
+    let mut paths = Vec::new();
+    for count in SESSIONS {
+        paths.extend(sessions(&process.address, count - paths.len()).await);
+        let held = process.resident().saturating_sub(before) / count as u64;
+        let rate = rate(&process.address, &paths).await;
+        // Below some thousand sessions it is the pool, the buffers and the store that one sees.
+        let held = if count < 1_000 { "".to_owned() } else { held.to_string() };
+        println!("| {count} | {rate:.0} | {held} |");
+    }
+}
+
+/// The median time until the service says where it listens.
+fn start(store: &str) -> f64 {
+    let once = || {
+        let begin = Instant::now();
+        let process = Process::start(served(store));
+        let time = begin.elapsed().as_secs_f64();
+        drop(process);
+        time
+    };
+    median(&(0..TIMES).map(|_| once()).collect::<Vec<_>>())
+}
+
+#[tokio::main]
+async fn main() {
+    paths();
+    radii();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = format!("sqlite:{}", folder.path().join("growth.db").display());
+    println!("\nFrom the start of the process to listening: {:.1} ms with memory:", 1e3 * start("memory:"));
+    println!("{:.1} ms with an SQLite file that holds nothing", 1e3 * start(&file));
+    grow("memory:", "memory:").await;
+    grow("sqlite:", &file).await;
+    println!("\n{:.1} ms with that file", 1e3 * start(&file));
+}
