@@ -52,7 +52,7 @@ pub async fn protocols(Own(app): Own, command: Command<ProtocolRequest>) -> Resu
             let (definition, setup) = *made;
             let bytes = cost::bytes_of_protocol(&task) + cost::bytes_of_shape(&definition.profile);
             held.resize(&app.pool, bytes).await?;
-            let cost = cost::on(&setup.profile, cost::of_protocol(&task, 0), true);
+            let cost = cost::of_protocol(&setup.profile, &task, 0);
             let work = move || {
                 let found = simulation::protocol_for(&definition, &setup, first, &task, &stop)?;
                 reply::written(&found)

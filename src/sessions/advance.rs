@@ -6,7 +6,8 @@ use std::time::Instant;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::simulation::{Stop, Timer, accuracy, cost, equal_peaks, follow, missed, news, stresses};
+use crate::simulation::cost::{self, Work};
+use crate::simulation::{Stop, Timer, accuracy, equal_peaks, follow, missed, news, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
 use crate::wire::session::Advance;
 use crate::wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
@@ -118,9 +119,11 @@ impl Sessions {
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
-        let cost = cost::estimated_cost(advance.plan.length(), advance.plan.curved(), depth, radii, false);
-        let sought = advance.relax.map_or(0, |relax| cost::of_protocol(&relax.task, depth));
-        let cost = cost::on(live.contact.profile(), cost.saturating_add(sought), advance.relax.is_some());
+        let (moves, curved) = (advance.plan.length(), advance.plan.curved());
+        let profile = live.contact.profile();
+        let sought = advance.relax.map_or(0, |relax| cost::of_protocol(profile, &relax.task, depth));
+        let work = Work { moves, curved, depth, radii, residual: false };
+        let cost = work.cost(profile).saturating_add(sought);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
         let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
         match result {

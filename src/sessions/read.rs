@@ -5,7 +5,7 @@ use std::sync::Arc;
 use uuid::Uuid;
 
 use crate::mechanics::Contact;
-use crate::simulation::cost::{self, Nanoseconds};
+use crate::simulation::cost::{self, Nanoseconds, Work};
 use crate::simulation::{self, Reservation, stresses};
 use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
@@ -68,8 +68,8 @@ impl Sessions {
             let held = self.common.pool.reserve(bytes + more).await?;
             (live.contact.clone(), live.session.sequence, held)
         };
-        let cost = cost::estimated_cost(0, 0, contact.memory_depth(), sampling.length(), residual);
-        let cost = cost::on(contact.profile(), cost, residual).saturating_add(longer);
+        let looking = Work { depth: contact.memory_depth(), radii: sampling.length(), residual, ..Work::default() };
+        let cost = looking.cost(contact.profile()).saturating_add(longer);
         let work = move || {
             let stress = stresses(&contact, &sampling, &stop)?;
             let reply = StressReply {

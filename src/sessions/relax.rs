@@ -95,8 +95,7 @@ impl Sessions {
             (live.clone(), held)
         };
         let sequence = live.session.sequence;
-        let cost = cost::of_protocol(&task, live.contact.memory_depth());
-        let cost = cost::on(live.contact.profile(), cost, true);
+        let cost = cost::of_protocol(live.contact.profile(), &task, live.contact.memory_depth());
         let body = self.common.pool.run(cost, move || work(&mut live, &stop)).await??;
         Ok((sequence, body, held))
     }

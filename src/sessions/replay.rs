@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use uuid::Uuid;
 
-use crate::simulation::cost;
+use crate::simulation::cost::Work;
 use crate::store::{Record, Session, StoreError};
 use crate::wire::{At, Faults, limits};
 
@@ -110,7 +110,7 @@ impl Sessions {
     /// Makes moves of the past.
     async fn follow(&self, mut live: Box<Live>, page: Vec<Record>) -> Result<Box<Live>, SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
-        let cost = cost::on(live.contact.profile(), cost::estimated_cost(page.len(), curved, 0, 0, false), false);
+        let cost = Work { moves: page.len(), curved, ..Work::default() }.cost(live.contact.profile());
         let replayed = self.common.pool.run(cost, move || {
             let begin = Instant::now();
             for record in &page {

@@ -3,7 +3,8 @@
 use uuid::Uuid;
 
 use crate::mechanics::Contact;
-use crate::simulation::{Failure, Stop, cost};
+use crate::simulation::cost::Work;
+use crate::simulation::{Failure, Stop};
 use crate::store::Record;
 use crate::wire::{HistoryItem, LoopPage, limits};
 
@@ -56,8 +57,9 @@ impl Sessions {
             let drawn = records.iter().filter(|record| record.sequence > after).count();
             let curved = records.iter().filter(|record| record.step.is_curved()).count();
             let steps = records.len() + drawn * points;
-            let price = cost::estimated_cost(steps, curved * points, contact.memory_depth(), 0, false);
-            let price = cost::on(contact.profile(), price, false);
+            let depth = contact.memory_depth();
+            let drawing = Work { moves: steps, curved: curved * points, depth, ..Work::default() };
+            let price = drawing.cost(contact.profile());
             let stop = stop.clone();
             let work = move || {
                 for record in &records {

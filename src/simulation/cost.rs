@@ -2,7 +2,8 @@
 //!
 //! Handing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
 //! calls. Work below [`INLINE`] is therefore done on the thread that serves the connection, where it delays others by no
-//! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few.
+//! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few:
+//! `cargo bench --bench request` and `--bench growth` show what they come from.
 
 use crate::mechanics::Profile;
 use crate::wire::protocol::{Aim, ProtocolTask};
@@ -14,17 +15,19 @@ use crate::wire::{self, Comparison, Plan, Solver, Steps, limits};
 pub type Nanoseconds = u64;
 
 /// The line: work estimated below it runs inline.
-pub const INLINE: Nanoseconds = 50_000;
+pub const INLINE: Nanoseconds = 100_000;
 
 /// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50 microseconds.
 pub const INLINE_BODY: usize = 1024;
 
 /// One move of the exact solver, with its state, and the state written as JSON.
-const MOVE: u64 = 1_500;
+const MOVE: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
 const CURVED: u64 = 3_000_000;
 /// One piece of memory seen from one radius.
 const PIECE: u64 = 15;
+/// The same on a sphere, where many radii are done side by side.
+const SIDE_BY_SIDE: u64 = 2;
 /// One radius, whatever the memory, and its numbers written as JSON.
 const RADIUS: u64 = 200;
 /// The search for extrema on a shape with knots, at the least.
@@ -59,17 +62,49 @@ pub const WRITTEN_POINT_BYTES: usize = 128;
 /// One spring.
 const SPRING_BYTES: usize = 64;
 
-/// What `moves` moves, `curved` of them curved, then stresses at `radii` radii, then perhaps the extrema cost with the exact solver. `depth` is
-/// the memory before the moves; each adds at most one piece to it.
+/// What the exact solver is to do.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// Moves.
+    pub moves: usize,
+    /// How many of them are curved.
+    pub curved: usize,
+    /// Pieces of memory before the moves, each of which adds one at the most.
+    pub depth: usize,
+    /// Radii at which stresses are asked for after them.
+    pub radii: usize,
+    /// Whether the extrema are.
+    pub residual: bool,
+}
+
+impl Work {
+    /// What it costs on a shape.
+    #[must_use]
+    pub fn cost(&self, profile: &Profile) -> Nanoseconds {
+        match profile {
+            Profile::Sphere(_) => self.seen_at(SIDE_BY_SIDE),
+            _ => on(profile, self.seen_at(PIECE), self.residual),
+        }
+    }
+
+    /// What it costs where a piece seen from one radius costs `piece`.
+    fn seen_at(&self, piece: Nanoseconds) -> Nanoseconds {
+        let (moves, radii) = (self.moves as u64, self.radii as u64);
+        let pieces = (self.depth + self.moves) as u64 + 1;
+        // The search for extrema looks at each piece, and from there at all others.
+        let searched = if self.residual { pieces.saturating_mul(4) } else { 0 };
+        (moves * MOVE)
+            .saturating_add(self.curved as u64 * CURVED)
+            .saturating_add(radii * RADIUS)
+            .saturating_add(radii.saturating_mul(pieces * piece))
+            .saturating_add(searched.saturating_mul(pieces * PIECE))
+    }
+}
+
+/// What the search for the extrema under a memory of so many pieces costs on a sphere.
 #[must_use]
-pub fn estimated_cost(moves: usize, curved: usize, depth: usize, radii: usize, residual: bool) -> Nanoseconds {
-    let (moves, pieces, radii) = (moves as u64, (depth + moves) as u64 + 1, radii as u64);
-    // The search for extrema looks at each piece, and from there at all others.
-    let searched = if residual { pieces.saturating_mul(4) } else { 0 };
-    (moves * MOVE)
-        .saturating_add(curved as u64 * CURVED)
-        .saturating_add(radii * RADIUS)
-        .saturating_add((radii + searched).saturating_mul(pieces * PIECE))
+pub fn of_search(depth: usize) -> Nanoseconds {
+    Work { depth, residual: true, ..Work::default() }.seen_at(SIDE_BY_SIDE)
 }
 
 /// What it costs to write a table of so many points as JSON.
@@ -78,10 +113,9 @@ pub fn writing_table(points: usize) -> Nanoseconds {
     points as u64 * RADIUS
 }
 
-/// What costs so much on a sphere costs this much on another shape; the search for extrema goes from knot to knot there, and
-/// is never cheap.
-#[must_use]
-pub fn on(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
+/// What costs so much by the closed forms of a sphere costs this much on another shape; the search for extrema goes from knot
+/// to knot there, and is never cheap.
+fn on(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
     let searched = if residual && !matches!(profile, Profile::Sphere(_)) { SEARCH } else { 0 };
     sphere.saturating_mul(factor(profile)).saturating_add(searched)
 }
@@ -150,14 +184,14 @@ fn reversals(task: &ProtocolTask, sought: usize) -> usize {
     }
 }
 
-/// What it costs to find a protocol from a memory of so many pieces, on a sphere.
+/// What it costs to find a protocol from a memory of so many pieces.
 #[must_use]
-pub fn of_protocol(task: &ProtocolTask, depth: usize) -> Nanoseconds {
+pub fn of_protocol(profile: &Profile, task: &ProtocolTask, depth: usize) -> Nanoseconds {
     let reversals = reversals(task, SOUGHT);
     let tried = task.robustness.map_or(0, |robustness| robustness.samples as u64);
-    let once = estimated_cost(reversals + 1, 0, 0, 0, true);
+    let once = Work { moves: reversals + 1, residual: true, ..Work::default() }.seen_at(SIDE_BY_SIDE);
     let pairs = (reversals * (reversals + depth.min(SOUGHT))) as u64;
-    PROTOCOL + pairs * PAIR + 3 * tried.saturating_mul(once)
+    on(profile, PROTOCOL + pairs * PAIR + 3 * tried.saturating_mul(once), true)
 }
 
 /// Bytes that a protocol takes, with its reply and, in a session, its moves.
@@ -173,8 +207,8 @@ pub fn bytes_of_protocol(task: &ProtocolTask) -> usize {
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
-    let exact = estimated_cost(moves, simulation.plan.curved(), 0, radii, simulation.residual);
-    let exact = on(&simulation.setup.profile, exact, simulation.residual);
+    let curved = simulation.plan.curved();
+    let exact = Work { moves, curved, depth: 0, radii, residual: simulation.residual }.cost(&simulation.setup.profile);
     match simulation.solver {
         None | Some(Solver::Exact) => exact,
         Some(Solver::Springs(springs)) => {
@@ -193,8 +227,8 @@ fn sprung(springs: usize, passes: usize) -> Nanoseconds {
 #[must_use]
 pub fn of_comparison(comparison: &Comparison) -> Nanoseconds {
     let (plan, radii) = (&comparison.plan, comparison.sampling.length());
-    let exact = estimated_cost(plan.length(), plan.curved(), 0, radii, false);
-    let each = on(&comparison.setup.profile, exact, false).saturating_mul(comparison.solvers.len() as u64 + 1);
+    let exact = Work { moves: plan.length(), curved: plan.curved(), radii, ..Work::default() };
+    let each = exact.cost(&comparison.setup.profile).saturating_mul(comparison.solvers.len() as u64 + 1);
     let springs = comparison.springs().map(|springs| sprung(springs, comparison.passes()));
     springs.fold(each, Nanoseconds::saturating_add)
 }
@@ -211,15 +245,21 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{INLINE, estimated_cost};
+    use super::{INLINE, Work};
+    use crate::mechanics::profile::Cone;
+    use crate::mechanics::{Profile, Sphere};
 
     #[test]
     fn a_move_runs_inline_and_a_long_path_does_not() {
-        assert!(estimated_cost(1, 0, 1_000, 0, false) < INLINE);
-        assert!(estimated_cost(21, 0, 0, 20, false) < INLINE);
-        assert!(estimated_cost(1_000, 0, 0, 0, false) > INLINE);
-        assert!(estimated_cost(1, 1, 0, 0, false) > INLINE);
-        assert!(estimated_cost(0, 0, 1_000, 200, false) > INLINE);
-        assert!(estimated_cost(usize::MAX / 4_000, 0, 0, usize::MAX / 4_000, true) > INLINE);
+        let (sphere, cone) = (Sphere::new(0.01).map(Profile::Sphere), Cone::new(0.1).map(Profile::Cone));
+        for profile in [sphere.unwrap(), cone.unwrap()] {
+            let cost = |work: Work| work.cost(&profile);
+            assert!(cost(Work { moves: 1, depth: 1_000, ..Work::default() }) < INLINE);
+            assert!(cost(Work { moves: 1_000, ..Work::default() }) > INLINE);
+            assert!(cost(Work { moves: 1, curved: 1, ..Work::default() }) > INLINE);
+            assert!(cost(Work { depth: 1_000, radii: 200, ..Work::default() }) > INLINE);
+            let most = usize::MAX / 4_000;
+            assert!(cost(Work { moves: most, radii: most, residual: true, ..Work::default() }) > INLINE);
+        }
     }
 }

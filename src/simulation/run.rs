@@ -210,7 +210,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// # Errors
 /// [`Failure`] if the memory is so deep that they would take longer than is allowed, or nobody waits for them.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
-    let cost = Duration::from_nanos(cost::estimated_cost(0, 0, solver.depth(), 0, true));
+    let cost = Duration::from_nanos(cost::of_search(solver.depth()));
     let allowed = stop.allowed().unwrap_or(LONGEST_WORK);
     if cost > allowed {
         return Err(Failure::TooLong { pointer: "/residual".to_owned(), allowed });
