@@ -1,8 +1,6 @@
 //! How cost grows: `cargo bench --bench growth`. Moves with the length of their path, stresses with radii and pieces, the service with
 //! its sessions; what a session and a piece of memory take, and how long a start lasts. Cores: `cargo bench --bench sweep`.
 
-// The other benchmarks use the rest.
-#[allow(dead_code)]
 mod load;
 
 use std::hint::black_box;
@@ -44,8 +42,8 @@ fn virgin() -> Contact {
     Contact::new(setup).expect("a valid contact")
 }
 
-fn follow(contact: &mut Contact, path: &[f64]) {
-    for &target in path {
+fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
+    for target in path {
         let to = Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
         contact.apply(&to).expect("a displacement has no limit");
     }
@@ -54,7 +52,8 @@ fn follow(contact: &mut Contact, path: &[f64]) {
 /// The contact after so many reversals of falling amplitude: as many pieces, and one or two.
 fn deep(reversals: usize) -> Contact {
     let mut contact = virgin();
-    follow(&mut contact, &falling_amplitude(reversals, contact.figures().gross_slip_displacement));
+    let amplitude = contact.figures().gross_slip_displacement;
+    follow(&mut contact, falling_amplitude(reversals, amplitude));
     contact
 }
 
@@ -69,7 +68,7 @@ fn paths() {
     for length in [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000] {
         let path: Vec<f64> = (0..length).map(|_| next()).collect();
         let start = virgin();
-        let time = seconds(|| follow(black_box(&mut start.clone()), &path));
+        let time = seconds(|| follow(black_box(&mut start.clone()), path.iter().copied()));
         println!("| {length} | {:.0} ns |", 1e9 * time / length as f64);
     }
 }

@@ -1,5 +1,7 @@
 //! What the benchmarks of the service need: a process that serves, and a client that costs little.
 
+#![allow(dead_code, reason = "each benchmark uses a part of it")]
+
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Stdio};
 
