@@ -23,6 +23,7 @@ fn any_ball() -> impl Strategy<Value = Ball> {
 #[test]
 fn many_radii_at_once_are_each_as_exact_as_one() {
     let stresses = Worst::new("shear stress at many radii at once / mu p_max", 2e-15);
+    let pressures = Worst::new("pressure at many radii at once / p_max", 1e-15);
     let radii = prop::collection::vec(0.0..1.05_f64, 1..70);
     forall(300, (paths::oblique_steps(30), radii), |(steps, mut radii)| {
         for ball in [UNIT, PLAIN] {
@@ -39,6 +40,9 @@ fn many_radii_at_once_are_each_as_exact_as_one() {
             let unit = ball.stress_limit(edge.max(ball.radius));
             for (&r, found) in radii.iter().zip(contact.shears(&radii)) {
                 stresses.close(found, contact.shear(r), unit);
+            }
+            for (&r, found) in radii.iter().zip(contact.pressures(&radii)) {
+                pressures.close(ball.friction * found, ball.friction * contact.pressure(r), unit);
             }
             radii.iter_mut().for_each(|r| *r /= edge.max(f64::MIN_POSITIVE));
         }

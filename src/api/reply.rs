@@ -78,5 +78,17 @@ pub fn holding(mut response: Response, held: Reservation) -> Response {
 /// # Errors
 /// [`Problem::internal`] if it cannot be written, which no value of ours does.
 pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    serde_json::to_vec(value).map_err(|error| Problem::internal(format!("a reply cannot be written: {error}")))
+    written_in(0, value)
+}
+
+/// As [`written`], with room for so many bytes from the start: a text that grows is copied again and again.
+///
+/// # Errors
+/// As [`written`].
+pub fn written_in(room: usize, value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
+    let mut text = Vec::with_capacity(room);
+    match serde_json::to_writer(&mut text, value) {
+        Ok(()) => Ok(text),
+        Err(error) => Err(Problem::internal(format!("a reply cannot be written: {error}"))),
+    }
 }

@@ -54,6 +54,7 @@ pub async fn simulate(State(app): State<App>, command: Command<SimulateRequest>)
     let (simulation, mut held) = (command.body, command.held);
     held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;
     let cost = cost::of_simulation(&simulation);
-    let work = move || reply::written(&simulation::simulate(&simulation, &stop)?);
+    let room = cost::length_of_simulation(&simulation);
+    let work = move || reply::written_in(room, &simulation::simulate(&simulation, &stop)?);
     Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
 }

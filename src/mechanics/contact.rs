@@ -258,6 +258,12 @@ impl Contact {
         normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &At::radius(radius))
     }
 
+    /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
+    #[must_use]
+    pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
+        normal::pressures(&self.profile, &self.elasticity, self.memory.edge(), radii)
+    }
+
     /// The shape of the indenter.
     #[must_use]
     pub fn profile(&self) -> &Profile {

@@ -110,6 +110,16 @@ pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point,
     elasticity.e_star() / std::f64::consts::PI * profile.kernel(at, &ring)
 }
 
+/// [`pressure`] at each of `radii`, m: quicker than one by one.
+pub(super) fn pressures(profile: &Profile, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
+    let ring = whole(profile, edge);
+    if ring.depth <= 0.0 {
+        return vec![0.0; radii.len()];
+    }
+    let unit = elasticity.e_star() / std::f64::consts::PI;
+    profile.kernel_sums(&[(ring, 1.0)], radii).into_iter().map(|sum| unit * sum).collect()
+}
+
 /// The largest pressure, Pa; `None` where it is infinite.
 pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
     let at = |radius: f64| pressure(profile, elasticity, edge, &At::radius(radius));

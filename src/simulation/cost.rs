@@ -61,6 +61,12 @@ const POINT_BYTES: usize = 1_280;
 pub const WRITTEN_POINT_BYTES: usize = 128;
 /// One spring.
 const SPRING_BYTES: usize = 64;
+/// A number as JSON, with its comma.
+const NUMBER_LENGTH: usize = 24;
+/// A state as JSON.
+const STATE_LENGTH: usize = 512;
+/// What surrounds them in a reply.
+const REPLY_LENGTH: usize = 2_048;
 
 /// What the exact solver is to do.
 #[derive(Clone, Copy, Debug, Default)]
@@ -164,6 +170,14 @@ pub fn bytes_of_simulation(simulation: &Simulation) -> usize {
         + bytes_of_stress(radii)
         + bytes_of_shape(&simulation.definition.profile)
         + springs
+}
+
+/// Bytes of the reply to a simulation, and some more.
+#[must_use]
+pub fn length_of_simulation(simulation: &Simulation) -> usize {
+    let states = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
+    let numbers = simulation.stress.as_ref().map_or(0, |stress| stress.length() * (1 + stress.fields.count()));
+    REPLY_LENGTH + states * STATE_LENGTH + numbers * NUMBER_LENGTH
 }
 
 /// Bytes that moves of a session take, with their records and the reply; rather too many than too few.

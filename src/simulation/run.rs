@@ -188,16 +188,17 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
     let along = |field: &dyn Fn(f64) -> f64| -> Result<Vec<Option<f64>>, Failure> {
         radius.iter().map(|radius| stop.check().map(|()| finite(field(*radius)))).collect()
     };
-    let pressure = sampling.fields.pressure.then(|| along(&|radius| solver.pressure(radius))).transpose()?;
-    let shears = || -> Result<Vec<Option<f64>>, Failure> {
+    // What is quick at one radius is done at many of them between two looks at the flag.
+    let together = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
         let mut all = Vec::with_capacity(radius.len());
         for radii in radius.chunks(AT_A_TIME) {
             stop.check()?;
-            all.extend(solver.shears(radii).into_iter().map(finite));
+            all.extend(field(radii).into_iter().map(finite));
         }
         Ok(all)
     };
-    let shear = sampling.fields.shear.then(shears).transpose()?;
+    let pressure = sampling.fields.pressure.then(|| together(&|radii| solver.pressures(radii))).transpose()?;
+    let shear = sampling.fields.shear.then(|| together(&|radii| solver.shears(radii))).transpose()?;
     let slip = |radius| solver.slip(radius).unwrap_or(f64::NAN);
     let slip = sampling.fields.slip.then(|| along(&slip)).transpose()?;
     let displacement = |radius| solver.surface_displacement(radius);

@@ -21,8 +21,8 @@ pub trait Solver {
     fn state(&self) -> State;
     /// Pieces held in memory.
     fn depth(&self) -> usize;
-    /// Normal pressure at a radius (m), Pa.
-    fn pressure(&self, radius: f64) -> f64;
+    /// Normal pressure at each of the radii (m), Pa.
+    fn pressures(&self, radii: &[f64]) -> Vec<f64>;
     /// Shear stress at each of the radii (m), Pa.
     fn shears(&self, radii: &[f64]) -> Vec<f64>;
     /// Slip under the indenter at a radius (m), m; none outside the contact.
@@ -64,8 +64,8 @@ impl Solver for Contact {
         self.memory_depth()
     }
 
-    fn pressure(&self, radius: f64) -> f64 {
-        self.pressure(radius)
+    fn pressures(&self, radii: &[f64]) -> Vec<f64> {
+        self.pressures(radii)
     }
 
     fn shears(&self, radii: &[f64]) -> Vec<f64> {
@@ -124,8 +124,8 @@ impl Solver for Springs {
         0
     }
 
-    fn pressure(&self, radius: f64) -> f64 {
-        self.pressure(radius)
+    fn pressures(&self, radii: &[f64]) -> Vec<f64> {
+        radii.iter().map(|&radius| self.pressure(radius)).collect()
     }
 
     fn shears(&self, radii: &[f64]) -> Vec<f64> {

@@ -112,6 +112,14 @@ pub struct Fields {
     pub displacement: bool,
 }
 
+impl Fields {
+    /// How many are asked for.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        [self.pressure, self.shear, self.slip, self.displacement].into_iter().filter(|asked| *asked).count()
+    }
+}
+
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
     pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
