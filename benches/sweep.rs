@@ -1,9 +1,18 @@
 //! What a sweep costs: `cargo bench --bench sweep`. A million points of a sphere after 20 reversals, on one thread and on
-//! more, up to one a core; and how much of it is the simulation itself.
+//! more, up to one a core; how much of it is the simulation itself; and the same as a job that replicas share over PostgreSQL,
+//! each of them bound to a core of its own. Needs PostgreSQL, as the tests do.
+
+mod load;
+// Made for the tests, of which this uses a part.
+#[allow(dead_code)]
+#[path = "../tests/common/postgres.rs"]
+mod postgres;
 
 use std::hint::black_box;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
+use load::{Connection, Process, served};
 use serde_json::json;
 use stickslip::simulation::{Rows, Stop, Sweep, Workers, simulate};
 use stickslip::wire::{self, SimulateRequest, SweepRequest};
@@ -24,13 +33,13 @@ fn base() -> serde_json::Value {
     })
 }
 
+fn request() -> String {
+    let axis = json!({"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.6, "count": POINTS}});
+    json!({"base": base(), "axes": [axis], "outputs": ["/residual/max"], "job": true}).to_string()
+}
+
 fn plan() -> Sweep {
-    let request = json!({
-        "base": base(),
-        "axes": [{"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.6, "count": POINTS}}],
-        "outputs": ["/residual/max"]
-    });
-    let draft = wire::read::<SweepRequest>(request.to_string().as_bytes()).expect("a valid sweep");
+    let draft = wire::read::<SweepRequest>(request().as_bytes()).expect("a valid sweep");
     Sweep::plan(draft).expect("a sweep with outputs")
 }
 
@@ -42,6 +51,33 @@ fn timed(threads: usize) -> (Rows, Duration) {
         rows.append(plan.slice(rest, &workers, threads, &Stop::default(), None).expect("nobody stops it"));
     }
     (rows, begin.elapsed())
+}
+
+/// The service on one core, with a store.
+fn confined(core: usize, store: &str) -> Command {
+    let service = served(store);
+    let mut command = Command::new("taskset");
+    command.args(["--cpu-list", &core.to_string()]).arg(service.get_program()).args(service.get_args());
+    command
+}
+
+/// The time of the job, shared by so many replicas.
+async fn shared(replicas: usize) -> Duration {
+    let store = postgres::Cluster::shared().database().await;
+    let processes: Vec<Process> = (0..replicas).map(|core| Process::start(confined(core, &store))).collect();
+    let mut connection = Connection::open(&processes[0].address).await;
+    let begin = Instant::now();
+    let reply: serde_json::Value =
+        serde_json::from_slice(connection.post("/sweep", request().as_bytes()).await).expect("a job");
+    let path = format!("/jobs/{}", reply["id"].as_str().expect("an identifier"));
+    loop {
+        let job: serde_json::Value = serde_json::from_slice(connection.get(&path).await).expect("a job");
+        match job["state"].as_str() {
+            Some("done") => return begin.elapsed(),
+            Some("running") => tokio::time::sleep(Duration::from_millis(50)).await,
+            _ => panic!("{job}"),
+        }
+    }
 }
 
 fn main() {
@@ -66,5 +102,19 @@ fn main() {
             Some((expected, _)) => assert!(*expected == rows, "another result on {threads} threads"),
             None => first = Some((rows, time)),
         }
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    let mut one: Option<Duration> = None;
+    for replicas in [1, 2, 4].into_iter().filter(|replicas| *replicas <= cores) {
+        let time = runtime.block_on(shared(replicas));
+        let (rate, speedup) = (
+            POINTS as f64 / time.as_secs_f64(),
+            one.map_or(1.0, |alone: Duration| alone.as_secs_f64() / time.as_secs_f64()),
+        );
+        println!(
+            "the same as a job of {replicas} replicas: {:.1} s, {rate:.0} points/s, {speedup:.2} times one",
+            time.as_secs_f64()
+        );
+        one.get_or_insert(time);
     }
 }

@@ -29,7 +29,6 @@
 
 pub mod access;
 pub mod api;
-mod chart;
 pub mod client;
 pub mod figures;
 pub mod jobs;

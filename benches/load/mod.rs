@@ -91,11 +91,20 @@ impl Connection {
         Connection { stream, buffer: Vec::new() }
     }
 
-    /// The body of the reply.
+    /// The body of the reply to a `POST`.
     pub async fn post(&mut self, path: &str, body: &[u8]) -> &[u8] {
+        self.send("POST", path, body).await
+    }
+
+    /// The body of the reply to a `GET`.
+    pub async fn get(&mut self, path: &str) -> &[u8] {
+        self.send("GET", path, b"").await
+    }
+
+    async fn send(&mut self, method: &str, path: &str, body: &[u8]) -> &[u8] {
         self.buffer.clear();
         let head = format!(
-            "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\r\n",
+            "{method} {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\r\n",
             body.len()
         );
         self.buffer.extend_from_slice(head.as_bytes());

@@ -10,9 +10,9 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use crate::chart::{Chart, Series};
 use crate::mechanics::protocol::falling_amplitude;
 use crate::mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, State, Tangential};
+use crate::plot::chart::{Chart, Series};
 
 const REVERSALS: usize = 20;
 /// Radii a curve is drawn through, beside its kinks.

@@ -1,9 +1,9 @@
 //! Figures 6 to 9: what the three laws of the amplitudes leave, on the sphere and on other shapes.
 
-use crate::chart::{Chart, Series};
 use crate::mechanics::profile::PowerLaw;
 use crate::mechanics::protocol::{Design, End, Errors, Kind, Start, design, trials};
 use crate::mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup, Sphere};
+use crate::plot::chart::{Chart, Series};
 
 const KINDS: [(Kind, &str); 3] =
     [(Kind::Linear, "linear"), (Kind::EqualPeaks, "equal peaks"), (Kind::Minimax, "minimax")];

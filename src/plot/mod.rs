@@ -1,7 +1,9 @@
-//! Plots for people who look at a contact: panels of curves over one axis, with shaded bands, as SVG or PNG.
+//! Plots for people who look at a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. Plain charts of
+//! whatever two quantities, for figures and reports, are in [`chart`].
 //!
 //! Each axis is labelled with its quantity and unit; values come in SI and are shown in the thousandfold that suits them.
 
+pub(crate) mod chart;
 mod draw;
 mod font;
 mod png;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
-use crate::chart::{Chart, Series};
+use crate::plot::chart::{Chart, Series};
 
 use super::{Measured, Row};
 

@@ -61,7 +61,7 @@ impl Chart {
     }
 
     fn draw(&self, text: &mut String, decades: bool) -> Result<(), Box<dyn std::error::Error>> {
-        crate::plot::ready();
+        super::ready();
         let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let (mut left, mut right) = self.extent(|point| point.0);
