@@ -15,19 +15,22 @@
 //! # }
 //! ```
 
+mod sweeps;
+
 use eventsource_stream::{EventStreamError, Eventsource as _};
 use futures::{Stream, StreamExt as _};
 use reqwest::header::{AUTHORIZATION, HeaderValue};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+pub use sweeps::Swept;
 use uuid::Uuid;
 
 use crate::wire::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage,
-    MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest,
-    RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
-    StressRequest,
+    LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply,
+    ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent,
+    StressReply, StressRequest,
 };
 
 /// A handle on a service; clones share its connections.
@@ -207,6 +210,22 @@ impl Client {
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
+    /// `GET /contacts/{id}/loop`: a page of moves with so many points for each, the recorded states alone unless told otherwise.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn trace(
+        &self,
+        id: Uuid,
+        after: Option<u64>,
+        limit: Option<usize>,
+        points_per_move: Option<usize>,
+    ) -> Result<LoopPage, Error> {
+        let call = self.call(Method::GET, &format!("/contacts/{id}/loop"));
+        let call = call.query(&[("after", after)]).query(&[("limit", limit)]);
+        json(call.query(&[("points_per_move", points_per_move)])).await
+    }
+
     /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The stream
     /// ends when the service or the connection does; go on from the sequence of the last state then.
     ///
@@ -337,5 +356,9 @@ fn event_of(
 
 async fn json<T: DeserializeOwned>(call: RequestBuilder) -> Result<T, Error> {
     let (status, body) = sent(call).await?;
-    serde_json::from_slice(&body).map_err(|error| Error::Unexpected { status, detail: error.to_string() })
+    read(status, &body)
+}
+
+fn read<T: DeserializeOwned>(status: StatusCode, body: &[u8]) -> Result<T, Error> {
+    serde_json::from_slice(body).map_err(|error| Error::Unexpected { status, detail: error.to_string() })
 }

@@ -77,7 +77,7 @@ pub async fn serve_through(
     drop(listener);
     // A client that follows a contact would never be done.
     sessions.end_events();
-    jobs.end_events();
+    jobs.end();
     // Fails if nobody is connected.
     let _ = closing.send(());
     if timeout(GRACE, closing.closed()).await.is_err() {

@@ -26,6 +26,9 @@ use super::{key, print};
 /// How long work that does not look at its flag may hold up the end of the process.
 const LAST_WORK: Duration = Duration::from_millis(500);
 
+/// How long the parts of jobs under way may take to be given back at the end.
+const GIVE_BACK: Duration = Duration::from_secs(2);
+
 /// The shortest time after which an idle contact may expire.
 const SHORTEST_IDLE_TIME: Duration = Duration::from_secs(1);
 
@@ -194,10 +197,13 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);
-    tokio::spawn(jobs.clone().work(options.job_lease.into()));
+    let working = tokio::spawn(jobs.clone().work(options.job_lease.into()));
     tokio::spawn(sessions.clone().keep_house(options.expire_after));
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     let app = App { sessions, jobs, pool, access };
-    api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))
+    api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
+    // Others wait for a lease where a store out of reach takes nothing back.
+    let _ = tokio::time::timeout(GIVE_BACK, working).await;
+    Ok(())
 }

@@ -50,8 +50,8 @@ impl Jobs {
         Ok(futures::stream::unfold(listener, Listener::next))
     }
 
-    /// Ends all events, present and future: the process is about to stop.
-    pub fn end_events(&self) {
+    /// Ends all events, present and future, and all work on jobs: the process is about to stop.
+    pub fn end(&self) {
         self.common.ending.send_replace(true);
     }
 }

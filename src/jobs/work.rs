@@ -26,15 +26,16 @@ const OFFERS: usize = 30;
 type Known = Option<(Job, Arc<Sweep>)>;
 
 impl Jobs {
-    /// Works on the jobs of all tenants, and never ends. The chunks of a process that has not been heard of for the time of
-    /// a lease are taken by others.
+    /// Works on the jobs of all tenants until [`Jobs::end`], and gives back what is not done then. The chunks of a process that
+    /// has not been heard of for the time of a lease are taken by others.
     pub async fn work(self, lease: Duration) {
         futures::future::join_all((0..AT_A_TIME).map(|_| self.clone().work_alone(lease))).await;
     }
 
     async fn work_alone(self, lease: Duration) {
         let (mut last, mut known) = (None, None);
-        loop {
+        let mut ending = self.common.ending.subscribe();
+        while !*ending.borrow() {
             let new = self.common.new.notified();
             match self.common.store.claim(self.common.owner, last, lease).await {
                 Ok(Some(claim)) => {
@@ -43,7 +44,11 @@ impl Jobs {
                 }
                 Ok(None) => {
                     known = None;
-                    let _ = tokio::time::timeout(PAUSE, new).await;
+                    tokio::select! {
+                        () = new => {}
+                        _ = ending.changed() => {}
+                        () = tokio::time::sleep(PAUSE) => {}
+                    }
                 }
                 Err(error) => {
                     tracing::debug!(%error, "no work can be taken for now");
@@ -99,7 +104,9 @@ impl Jobs {
         let pool = &self.common.pool;
         let bytes = sweep.bytes(pool.capacity().threads) + 4 * NUMBER_BYTES * sweep.numbers(points.len());
         let _held = pool.reserve(bytes).await?;
-        let rows = self.rows(claim, sweep, points.clone(), lease).await?;
+        let Some(rows) = self.rows(claim, sweep, points.clone(), lease).await? else {
+            return self.common.store.release(claim).await.map_err(refused(claim.job));
+        };
         let count = points.len() as u64;
         self.common.meters.points.add(count);
         let result = ChunkResult { points: count, failed: rows.failed, content: rows.to_bytes() };
@@ -119,23 +126,25 @@ impl Jobs {
         Ok((job, Arc::new(sweep)))
     }
 
-    /// Computes a chunk while the claim holds.
+    /// Computes a chunk while the claim holds; nothing if the process is about to stop.
     async fn rows(
         &self,
         claim: Claim,
         sweep: &Arc<Sweep>,
         points: Range<usize>,
         lease: Duration,
-    ) -> Result<Rows, JobError> {
+    ) -> Result<Option<Rows>, JobError> {
         let (stop, guard) = Stop::unbounded();
         let mut guard = Some(guard);
         let (pool, workers) = (&self.common.pool, self.workers()?);
         let allowed = Some(pool.capacity().deadline);
         let mut rows = std::pin::pin!(sweep.compute(points, pool, workers, &stop, allowed));
         let mut changed = self.common.store.changes().subscribe(claim.job);
+        let mut ending = self.common.ending.subscribe();
         loop {
             tokio::select! {
-                rows = &mut rows => return Ok(rows?),
+                rows = &mut rows => return Ok(Some(rows?)),
+                _ = ending.wait_for(|ending| *ending) => return Ok(None),
                 _ = changed.changed() => {}
                 () = tokio::time::sleep(lease / RENEWALS) => {}
             }

@@ -8,16 +8,51 @@ use std::time::{Duration, Instant};
 
 use common::{Server, ball, create};
 use serde_json::{Value, json};
-use stickslip::client::{Client, Options};
+use stickslip::client::{Client, Options, Swept};
 use stickslip::wire::{
-    FallingAmplitude, Field, ForkRequest, Move, Path, PathRequest, Regime, SimulateRequest, SolverKind, Steps,
-    StressRequest,
+    FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SimulateRequest, SolverKind,
+    Steps, StressRequest, SweepRequest,
 };
 
 fn simulation(more: Value) -> SimulateRequest {
     let mut body = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 20}}});
     body.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
     serde_json::from_value(body).unwrap()
+}
+
+#[tokio::test]
+async fn loops_and_sweeps_answer_the_client() {
+    let server = Server::start().await;
+    let (client, plain) = (&server.client, Options::default());
+    let contact = client.create(&create(), &plain).await.unwrap();
+    for displacement in [1e-7, -1e-7] {
+        client.apply(contact.id, &Move::displacement(displacement).into(), &plain).await.unwrap();
+    }
+    let page = client.trace(contact.id, Some(1), Some(1), Some(4)).await.unwrap();
+    assert_eq!((page.sequence, page.part), (vec![2; 4], vec![0.25, 0.5, 0.75, 1.0]));
+    assert_eq!((page.displacement[3], page.next), (-1e-7, None));
+
+    let mut request: SweepRequest = serde_json::from_value(json!({
+        "base": {"contact": ball(), "path": {"displacement": [1e-8]}},
+        "axes": [{"pointer": "/contact/friction", "values": [0.1, 0.2, 0.3]}], "outputs": ["/steps/0/force"]
+    }))
+    .unwrap();
+    let Swept::Table(table) = client.sweep(&request, &plain).await.unwrap() else { panic!("three points are no job") };
+    assert_eq!((table.points, table.columns["/steps/0/force"].len()), (3, 3));
+    request.job = true;
+    let keyed = Options { idempotency_key: Some("a-sweep".to_owned()), ..Options::default() };
+    let Swept::Job(job) = client.sweep(&request, &keyed).await.unwrap() else { panic!("a job was asked for") };
+    assert_eq!(
+        client.sweep(&request, &keyed).await.unwrap(),
+        Swept::Job(job.clone()),
+        "once, however often it is sent"
+    );
+    while client.job(job.id).await.unwrap().state == JobState::Running {
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    assert_eq!(client.job_result(job.id).await.unwrap(), table);
+    client.delete_job(job.id).await.unwrap();
+    assert_eq!(client.job(job.id).await.unwrap_err().problem().unwrap().code, "job_not_found");
 }
 
 #[tokio::test]

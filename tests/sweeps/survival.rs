@@ -91,6 +91,29 @@ async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_othe
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn a_replica_that_stops_gives_its_part_back_at_once() {
+    let url = Cluster::shared().database().await;
+    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
+    tokio::spawn(connection);
+    let process = Process::start(&url).await;
+    let path = Place::at(&process.base).start(&long(POINTS)).await;
+    let held = async || {
+        let of =
+            "SELECT count(*) FILTER (WHERE owner IS NOT NULL), count(*) FILTER (WHERE content IS NULL) FROM job_chunks";
+        let row = client.query_one(of, &[]).await.unwrap();
+        (row.get::<_, i64>(0), row.get::<_, i64>(1))
+    };
+    until("it works on it", async || (held().await.0 > 0).then_some(())).await;
+    process.stop().await;
+    let (held, left) = held().await;
+    assert!(left > 0, "the job was over before the stop");
+    assert_eq!(held, 0, "the lease is thirty seconds");
+    let process = Process::start(&url).await;
+    assert_eq!(Place::at(&process.base).send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
+    process.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
     let folder = tempdir().unwrap();
     let file = folder.path().join("old.db");
