@@ -141,12 +141,12 @@ pub fn design(
     end: End,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Design, Error> {
-    let above = |quantity, value| Error::OutOfRange { quantity, value, allowed: "more than 0".to_owned() };
+    let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
     if contact.friction <= 0.0 {
-        return Err(above("friction", contact.friction));
+        return Err(above("friction", contact.friction, "nothing holds without friction"));
     }
     if contact.indentation() <= 0.0 {
-        return Err(above("indentation", contact.indentation()));
+        return Err(above("indentation", contact.indentation(), "bodies that do not touch carry no stress"));
     }
     let task = Task { contact, reversals, end, judged: Judged::of(contact), go_on };
     let (first, way) = match start {
