@@ -64,7 +64,11 @@ def main():
     print(json.dumps({"version": version, "refused": refused, "counts": GRIDS}), flush=True)
     for line in sys.stdin:
         begin = time.process_time()
-        forces, shears = solve(aspher, scene, json.loads(line)["count"])
+        try:
+            forces, shears = solve(aspher, scene, json.loads(line)["count"])
+        except RuntimeError as error:
+            print(json.dumps({"failed": str(error)}), flush=True)
+            continue
         seconds = time.process_time() - begin
         print(json.dumps({"seconds": seconds, "forces": forces, "shears": shears}), flush=True)
 

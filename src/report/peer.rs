@@ -39,10 +39,10 @@ struct Greeting {
 
 /// What it says to a line.
 #[derive(Deserialize)]
-struct Answer {
-    seconds: f64,
-    forces: Vec<f64>,
-    shears: Vec<f64>,
+#[serde(untagged)]
+enum Answer {
+    Run { seconds: f64, forces: Vec<f64>, shears: Vec<f64> },
+    Failed { failed: String },
 }
 
 impl Peer {
@@ -69,8 +69,10 @@ impl Peer {
 
     /// One run on so many springs, or points along a side of its grid.
     pub(super) fn run(&mut self, count: usize) -> io::Result<Timed> {
-        let Answer { seconds, forces, shears } = self.ask(&json!({"count": count}))?;
-        Ok(Timed { forces, shears, seconds })
+        match self.ask(&json!({"count": count}))? {
+            Answer::Run { seconds, forces, shears } => Ok(Timed { forces, shears, seconds }),
+            Answer::Failed { failed } => Err(io::Error::other(failed)),
+        }
     }
 
     fn ask<T: for<'de> Deserialize<'de>>(&mut self, line: &Value) -> io::Result<T> {
