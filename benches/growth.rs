@@ -10,7 +10,6 @@ use load::{Connection, Process, median, served};
 use stickslip::mechanics::protocol::falling_amplitude;
 use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
-const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
 /// Work that is shorter than this is repeated until it is not.
 const ENOUGH: Duration = Duration::from_millis(20);
 const TIMES: usize = 7;
@@ -89,12 +88,6 @@ fn radii() {
     println!("\nA contact takes {} bytes, and {bytes:.0} for each piece more.", shallow.memory_bytes());
 }
 
-async fn create(connection: &mut Connection) -> String {
-    let reply = connection.post("/contacts", CONTACT.as_bytes()).await;
-    let reply: serde_json::Value = serde_json::from_slice(reply).expect("a contact");
-    format!("/contacts/{}/move", reply["id"].as_str().expect("an identifier"))
-}
-
 /// The paths of so many new sessions.
 async fn sessions(address: &str, count: usize) -> Vec<String> {
     let workers = (0..CONNECTIONS).map(|worker| {
@@ -103,7 +96,7 @@ async fn sessions(address: &str, count: usize) -> Vec<String> {
             let mut connection = Connection::open(&address).await;
             let mut paths = Vec::new();
             for _ in 0..own {
-                paths.push(create(&mut connection).await);
+                paths.push(format!("/contacts/{}/move", connection.create().await));
             }
             paths
         })
@@ -141,7 +134,7 @@ async fn grow(name: &str, store: &str) {
     let mut paths = Vec::new();
     for count in SESSIONS {
         paths.extend(sessions(&process.address, count - paths.len()).await);
-        let held = process.resident().saturating_sub(before) / count as u64;
+        let held = (process.resident() - before) / count as i64;
         let rate = rate(&process.address, &paths).await;
         // Below some thousand sessions it is the pool, the buffers and the store that one sees.
         let held = if count < 1_000 { "".to_owned() } else { held.to_string() };

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use axum::extract::Path;
 use axum::routing::post;
 use axum::{Json, Router};
-use load::{Connection, Process, itself, median, served};
+use load::{CONTACT, Connection, Process, itself, median, served};
 use stickslip::wire::{MoveReply, MoveRequest};
 use tokio::net::TcpListener;
 use uuid::Uuid;
@@ -26,7 +26,6 @@ const CONNECTIONS: usize = 32;
 const SESSIONS: usize = 256;
 const ROUNDS: usize = 5;
 const ROUND: Duration = Duration::from_secs(3);
-const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
 
 /// What serves moves, with what was measured of it.
 struct Service {
@@ -42,18 +41,12 @@ impl Service {
     async fn start(name: &'static str, command: Command) -> Service {
         let process = Process::start(command);
         let mut service = Service { name, process, paths: Vec::new(), rates: Vec::new(), costs: Vec::new() };
+        let mut connection = Connection::open(&service.process.address).await;
         for _ in 0..SESSIONS {
-            let id = if name == "bare" { Uuid::now_v7() } else { service.create().await };
+            let id = if name == "bare" { Uuid::now_v7() } else { connection.create().await };
             service.paths.push(format!("/contacts/{id}/move"));
         }
         service
-    }
-
-    async fn create(&self) -> Uuid {
-        let mut connection = Connection::open(&self.process.address).await;
-        let reply = connection.post("/contacts", CONTACT.as_bytes()).await;
-        let reply: serde_json::Value = serde_json::from_slice(reply).expect("a contact");
-        serde_json::from_value(reply["id"].clone()).expect("an identifier")
     }
 
     /// Makes moves over all connections for a while.

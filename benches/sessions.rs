@@ -10,10 +10,13 @@
 #[path = "../tests/common/postgres.rs"]
 mod postgres;
 
+mod load;
+
 use std::sync::Arc;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use load::resident;
 use stickslip::sessions::Sessions;
 use stickslip::simulation::Pool;
 use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
@@ -72,13 +75,6 @@ async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
     id
 }
 
-/// The memory that this process holds, in bytes.
-fn resident() -> i64 {
-    let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a line of its own");
-    line.trim().trim_end_matches(" kB").parse::<i64>().expect("a number") * 1024
-}
-
 /// Prints by how much the process grows with the number of sessions that are stored.
 async fn rest(store: Arc<dyn Store>) {
     let sessions = sessions(&store);
@@ -88,7 +84,7 @@ async fn rest(store: Arc<dyn Store>) {
             futures::future::join_all((0..AT_ONCE).map(|_| create(&sessions))).await;
             made += AT_ONCE;
         }
-        let grown = resident() - held;
+        let grown = resident("self") - held;
         held += grown;
         println!("{count} sessions at rest in SQLite: {} kB held, {} kB more than before", held / 1024, grown / 1024);
     }

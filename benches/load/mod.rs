@@ -7,6 +7,10 @@ use std::process::{Child, Command, Stdio};
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
+use uuid::Uuid;
+
+/// A ball under load, as the body of `POST /contacts`.
+pub const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
 
 /// Parts of a second that Linux counts processor time in.
 const TICKS: f64 = 100.0;
@@ -31,11 +35,8 @@ impl Process {
     }
 
     /// Memory that the process holds, in bytes.
-    pub fn resident(&self) -> u64 {
-        let status =
-            std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).expect("a process that runs");
-        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a line of its own");
-        1024 * line.trim().trim_end_matches(" kB").parse::<u64>().expect("a number")
+    pub fn resident(&self) -> i64 {
+        resident(&self.process.id().to_string())
     }
 
     /// Processor time that the process has used, in seconds.
@@ -54,6 +55,13 @@ impl Drop for Process {
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
+}
+
+/// Memory that a process of this name in `/proc` holds, in bytes.
+pub fn resident(process: &str) -> i64 {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).expect("a process that runs, on Linux");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a line of its own");
+    line.trim().trim_end_matches(" kB").parse::<i64>().expect("a number") * 1024
 }
 
 /// The service with a store, as little in the log as it can.
@@ -89,6 +97,13 @@ impl Connection {
         let stream = TcpStream::connect(address).await.expect("the service should accept");
         stream.set_nodelay(true).expect("TCP_NODELAY");
         Connection { stream, buffer: Vec::new() }
+    }
+
+    /// Makes a contact of [`CONTACT`].
+    pub async fn create(&mut self) -> Uuid {
+        let reply: serde_json::Value =
+            serde_json::from_slice(self.post("/contacts", CONTACT.as_bytes()).await).expect("a contact");
+        serde_json::from_value(reply["id"].clone()).expect("an identifier")
     }
 
     /// The body of the reply to a `POST`.
