@@ -14,6 +14,9 @@ use super::problem::Problem;
 /// Headers that a reply has in the end, so that the map need not grow step by step.
 const HEADERS: usize = 12;
 
+/// Bytes that a text begins with where nobody knows how long it will be.
+const ROOM: usize = 128;
+
 /// 200 with a JSON body.
 pub fn json(body: Vec<u8>) -> Response {
     let mut response = Response::new(Body::from(body));
@@ -78,7 +81,7 @@ pub fn holding(mut response: Response, held: Reservation) -> Response {
 /// # Errors
 /// [`Problem::internal`] if it cannot be written, which no value of ours does.
 pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
-    written_in(0, value)
+    written_in(ROOM, value)
 }
 
 /// As [`written`], with room for so many bytes from the start: a text that grows is copied again and again.
