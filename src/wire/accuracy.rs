@@ -153,21 +153,23 @@ impl Document for AccuracyRequest {
         });
         let at = At::Root.member("stress");
         let sampling = stress.check(at, &mut faults).unwrap_or_else(Sampling::none);
-        // An empty list is a fault of its own already.
+        // Without a sampling its own faults are known already.
         if !sampling.fields.shear && sampling.fields != Sampling::none().fields {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }
         let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
         let at = At::Root.member("solvers");
         let solvers = self.solvers.unwrap_or_else(ladder);
-        let passes = plan.length() + sampling.length();
+        let passes = plan.as_ref().map_or(0, Plan::length) + sampling.length();
         if faults.length(at, solvers.len(), &limits::SOLVERS) {
             let each = solvers.iter().enumerate();
             each.for_each(|(index, solver)| solver.check(at.index(index), passes, &mut faults));
         }
         let (definition, fields) = (self.contact, Sampling::none().fields);
         let sampling = Sampling { fields: super::Fields { shear: true, ..fields }, ..sampling };
-        let comparison = setup.map(|setup| Comparison { definition, setup, plan, sampling, solvers, tolerance });
+        let comparison = setup
+            .zip(plan)
+            .map(|(setup, plan)| Comparison { definition, setup, plan, sampling, solvers, tolerance });
         if let Some(comparison) = &comparison {
             let (all, most) =
                 (comparison.springs().fold(0, usize::saturating_add), limits::SPRING_STEPS / passes.max(1));

@@ -67,6 +67,8 @@ pub fn escaped(name: &str) -> String {
 #[derive(Debug, Default)]
 pub struct Faults {
     found: Vec<Fault>,
+    /// How many there are, those that are not listed included.
+    count: usize,
     /// What the mechanics has no answer to, and where: it has a kind of its own if nothing else is wrong.
     unanswerable: Option<(String, Error)>,
 }
@@ -74,6 +76,7 @@ pub struct Faults {
 impl Faults {
     /// Notes a fault; beyond [`limits::FAULTS`] they are no longer listed.
     pub fn add(&mut self, at: At<'_>, detail: impl fmt::Display) {
+        self.count = self.count.saturating_add(1);
         if self.found.len() < limits::FAULTS {
             self.found.push(Fault { pointer: at.to_string(), detail: detail.to_string() });
         }
@@ -126,6 +129,14 @@ impl Faults {
             self.add(at, format_args!("{value:?} is out of range: allowed is {least:e} to {most:e}"));
         }
         tolerance.unwrap_or(DEFAULT_TOLERANCE)
+    }
+
+    /// What `check` makes of a part of the document, if it notes no fault: nothing is computed from numbers that are out of
+    /// range.
+    pub fn part<T>(&mut self, check: impl FnOnce(&mut Faults) -> T) -> Option<T> {
+        let before = self.count;
+        let part = check(self);
+        (self.count == before).then_some(part)
     }
 
     /// Whether nothing has been found.

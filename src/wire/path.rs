@@ -175,8 +175,8 @@ impl Move {
 impl Path {
     /// The checked path; its faults are noted at `at`.
     #[must_use]
-    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Plan {
-        match self {
+    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Plan> {
+        faults.part(|faults| match self {
             Path::Moves(moves) => {
                 let at = at.member("moves");
                 if faults.length(at, moves.len(), &limits::PATH_MOVES) {
@@ -208,7 +208,7 @@ impl Path {
                 }
                 Plan::EqualPeaks(peaks)
             }
-        }
+        })
     }
 }
 

@@ -353,7 +353,7 @@ impl Document for PathRequest {
         let plan = self.path.check(At::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
         let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
-        faults.done(Some(Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
+        faults.done(plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
     }
 }
 

@@ -143,12 +143,14 @@ impl Document for SimulateRequest {
         let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
         if let Some(solver) = &self.solver {
             let search = if self.residual { limits::SPRING_SEARCH } else { 0 };
-            let passes = plan.length() + stress.as_ref().map_or(0, Sampling::length) + search;
+            let moves = plan.as_ref().map_or(0, Plan::length);
+            let passes = moves + stress.as_ref().map_or(0, Sampling::length) + search;
             solver.check(At::Root.member("solver"), passes, &mut faults);
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
-        let simulation = |setup| Simulation { definition, setup, plan, stress, residual, steps, solver, tolerance };
-        faults.done(setup.map(simulation))
+        let simulation =
+            |(setup, plan)| Simulation { definition, setup, plan, stress, residual, steps, solver, tolerance };
+        faults.done(setup.zip(plan).map(simulation))
     }
 }
 

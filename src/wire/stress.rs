@@ -123,6 +123,10 @@ impl Fields {
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
     pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+        faults.part(|faults| self.read(at, faults)).flatten()
+    }
+
+    fn read(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
         let fields = match self.fields.as_deref() {
             None => Fields { pressure: true, shear: true, slip: false, displacement: false },
             Some(named) => {

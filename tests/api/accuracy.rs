@@ -187,6 +187,23 @@ async fn what_is_too_much_or_wrong_is_refused_at_its_place() {
         assert_eq!(refusal.errors[0].pointer, pointer, "{refusal:?}");
         assert!(refusal.errors[0].detail.contains(told), "{refusal:?}");
     }
+    // Nothing is computed from a count that is out of range: these two overflow when one is added, or one to the other.
+    for (path, points, pointer) in [
+        (json!({"falling_amplitude": {"reversals": u64::MAX}}), 2, "/path/falling_amplitude/reversals"),
+        (json!({"equal_peaks": {"reversals": u64::MAX}}), 2, "/path/equal_peaks/reversals"),
+        (path.clone(), u64::MAX, "/stress/points"),
+    ] {
+        let asked = json!({"points": points, "fields": ["shear"]});
+        for solvers in [json!(["exact"]), json!([springs(10)])] {
+            let body = json!({"contact": ball(), "path": path, "solvers": solvers, "stress": asked});
+            let refusal = problem(server.post("/accuracy", &body).await).await;
+            assert_eq!((refusal.status, refusal.code.as_str()), (422, "invalid_input"), "{refusal:?}");
+            assert_eq!(refusal.errors[0].pointer, pointer, "{refusal:?}");
+        }
+        let body = json!({"contact": ball(), "path": path, "solver": springs(10), "stress": asked});
+        let refusal = problem(server.post("/simulate", &body).await).await;
+        assert_eq!((refusal.status, refusal.errors[0].pointer.as_str()), (422, pointer), "{refusal:?}");
+    }
     let sixteen = json!({"contact": ball(), "path": path, "solvers": many(16)});
     assert_eq!(compared(&server, &sixteen).await.rows.len(), 16);
 }
