@@ -7,8 +7,8 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use load::{Connection, Process, median, served};
-use stickslip::mechanics::protocol::falling_amplitude;
-use stickslip::mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
 /// Work that is shorter than this is repeated until it is not.
 const ENOUGH: Duration = Duration::from_millis(20);

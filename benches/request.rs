@@ -14,9 +14,12 @@ use axum::Router;
 use axum::body::Bytes;
 use axum::routing::post;
 use load::{Connection, Process, itself, median, served};
-use stickslip::simulation::{Stop, simulate};
-use stickslip::wire::{SimulateReply, SimulateRequest, read};
+use stickslip::admission::Stop;
+use stickslip::simulation::simulate;
+use stickslip_wire::{SimulateReply, SimulateRequest, read};
 use tokio::net::TcpListener;
+use tokio::runtime::Handle;
+use tokio::task::spawn_blocking;
 
 const BODY: &str = r#"{"contact":{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}},"path":{"falling_amplitude":{"reversals":20}},"stress":{"points":200}}"#;
 const CONNECTIONS: usize = 8;
@@ -113,6 +116,8 @@ fn parts() {
     println!("| parsing {} bytes | {:.1} us |", BODY.len(), time(|| read::<SimulateRequest>(BODY.as_bytes())));
     println!("| solving | {:.1} us |", time(|| simulate(&request, &Stop::default())));
     println!("| writing {bytes} bytes | {:.1} us |", time(|| serde_json::to_vec(&reply)));
+    let hand_over = || tokio::task::block_in_place(|| Handle::current().block_on(spawn_blocking(|| black_box(1))));
+    println!("| a thread of the blocking pool and back | {:.1} us |", time(hand_over));
     let numbers: Vec<f64> = (1..=1_000).map(|number| 1.0 / f64::from(number)).collect();
     println!("\n| writing a number that reads back the same | time |\n|---|---|");
     let count = numbers.len() as f64;

@@ -18,7 +18,7 @@ use axum::extract::Path;
 use axum::routing::post;
 use axum::{Json, Router};
 use load::{CONTACT, Connection, Process, itself, median, served};
-use stickslip::wire::{MoveReply, MoveRequest};
+use stickslip_wire::{MoveReply, MoveRequest};
 use tokio::net::TcpListener;
 use uuid::Uuid;
 
@@ -78,11 +78,11 @@ impl Service {
 /// The same body in and the same shape out, with nothing between.
 async fn bare() {
     let reply = stickslip::simulation::simulate(
-        &stickslip::wire::read::<stickslip::wire::SimulateRequest>(
+        &stickslip_wire::read::<stickslip_wire::SimulateRequest>(
             format!(r#"{{"contact":{CONTACT},"path":{{"displacement":[1e-7]}}}}"#).as_bytes(),
         )
         .expect("a sound request"),
-        &stickslip::simulation::Stop::default(),
+        &stickslip::admission::Stop::default(),
     )
     .expect("a reply");
     let handler = move |Path(id): Path<Uuid>, Json(request): Json<MoveRequest>| async move {

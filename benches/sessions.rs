@@ -17,11 +17,11 @@ use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use load::resident;
+use stickslip::admission::Pool;
 use stickslip::sessions::Sessions;
-use stickslip::simulation::Pool;
 use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
-use stickslip::wire::session::Advance;
-use stickslip::wire::{CreateRequest, Plan, Steps, read};
+use stickslip_wire::session::Advance;
+use stickslip_wire::{CreateRequest, Plan, Steps, read};
 use uuid::Uuid;
 
 const MOVES: usize = 1_000_000;

@@ -14,8 +14,9 @@ use std::time::{Duration, Instant};
 
 use load::{Connection, Process, served};
 use serde_json::json;
-use stickslip::simulation::{Rows, Stop, Sweep, Workers, simulate};
-use stickslip::wire::{self, SimulateRequest, SweepRequest};
+use stickslip::admission::Stop;
+use stickslip::simulation::{Rows, Sweep, Workers, simulate};
+use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
 /// Simulations that are timed for comparison.

@@ -1,8 +1,8 @@
 //! The life of a contact with the typed client: `cargo run --example client -- [URL]`.
 
 use futures::StreamExt as _;
-use stickslip::client::{Client, Error, Event, Options};
-use stickslip::wire::{CreateRequest, Move, StressRequest};
+use stickslip_wire::client::{Client, Error, Event, Options};
+use stickslip_wire::{CreateRequest, Move, StressRequest};
 
 const BALL: &str = r#"{
     "label": "from Rust",

@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 
 use crate::simulation::{compare, cost};
-use crate::wire::{AccuracyReply, AccuracyRequest};
+use stickslip_wire::{AccuracyReply, AccuracyRequest};
 
 use super::extract::Command;
 use super::problem::Problem;

@@ -1,7 +1,7 @@
 //! How much memory the process takes at the most, as it follows from what it is configured to take on.
 
+use crate::admission::Capacity;
 use crate::sessions::STREAMS;
-use crate::simulation::Capacity;
 
 use super::door::Connections;
 use super::limits::SPARE_CONNECTIONS;

@@ -5,7 +5,7 @@ use axum::response::Response;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use crate::wire::{ContactDefinition, CreateRequest, ForkRequest, NewSession, SessionPage, SessionReply};
+use stickslip_wire::{ContactDefinition, CreateRequest, ForkRequest, NewSession, SessionPage, SessionReply};
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected, OptionalCommand};

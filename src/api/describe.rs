@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::mechanics::range;
+use stickslip_mechanics::range;
 
 use super::format::Format;
 use super::limits as server;

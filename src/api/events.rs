@@ -5,7 +5,7 @@ use futures::{Stream, StreamExt as _};
 use utoipa::IntoParams;
 
 use crate::sessions::Happening;
-use crate::wire::{EndEvent, StateEvent};
+use stickslip_wire::{EndEvent, StateEvent};
 
 use super::access::Own;
 use super::extract::{ContactId, LastEventId};

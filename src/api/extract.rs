@@ -12,9 +12,10 @@ use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 use uuid::Uuid;
 
-use crate::simulation::{Place, Pool, Reservation, cost};
+use crate::admission::{Place, Pool, Reservation};
+use crate::simulation::cost;
 use crate::store::RequestKey;
-use crate::wire::{self, Document};
+use stickslip_wire::{self as wire, Document};
 
 use super::door::SlowBody;
 use super::problem::{Kind, Problem};
@@ -103,7 +104,7 @@ async fn command<T: Document + 'static>(request: Request, app: &App, optional: b
     }
     let key = idempotency_key(&parts.headers)?;
     let length = bytes.len();
-    let price = if length > cost::INLINE_BODY { cost::INLINE } else { 0 };
+    let price = if length > cost::INLINE_BODY { crate::admission::INLINE } else { 0 };
     if price > 0 {
         app.pool.resize(&mut memory, length.saturating_mul(limits::EXPANSION)).await?;
     }

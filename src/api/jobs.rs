@@ -8,7 +8,7 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use crate::jobs::Happening;
-use crate::wire::{JobEndEvent, JobReply, JobState, SweepReply};
+use stickslip_wire::{JobEndEvent, JobReply, JobState, SweepReply};
 
 use super::access::Own;
 use super::extract::JobId;

@@ -1,4 +1,4 @@
-//! What the server takes, apart from what [`crate::wire::limits`] says about documents.
+//! What the server takes, apart from what [`stickslip_wire::limits`] says about documents.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;

@@ -8,7 +8,7 @@ use axum::http::Uri;
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
-use crate::simulation::PoolError;
+use crate::admission::PoolError;
 
 use super::door::Refusal;
 use super::problem::{Kind, Problem};

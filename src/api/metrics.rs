@@ -8,13 +8,13 @@ use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse as _, Response};
 
+use crate::admission::PoolMeters;
 use crate::jobs::JobMeters;
-use crate::mechanics::ENGINE;
 use crate::metrics::page::{MEDIA_TYPE, Page};
 use crate::metrics::process::Process;
 use crate::sessions::Readings;
-use crate::simulation::PoolMeters;
 use crate::store::Commits;
+use stickslip_mechanics::ENGINE;
 
 use super::App;
 use super::traffic::Traffic;

@@ -39,9 +39,9 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
+use crate::admission::Pool;
 use crate::jobs::Jobs;
 use crate::sessions::Sessions;
-use crate::simulation::Pool;
 
 pub use access::Access;
 pub use door::{Connections, Door};

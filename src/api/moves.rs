@@ -4,8 +4,8 @@ use axum::response::Response;
 use uuid::Uuid;
 
 use crate::simulation::cost;
-use crate::wire::session::Advance;
-use crate::wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
+use stickslip_wire::session::Advance;
+use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
 use super::access::Own;
 use super::extract::{Command, ContactId, Expected};

@@ -7,9 +7,9 @@ use utoipa::{IntoParams, OpenApi};
 use uuid::Uuid;
 
 use crate::access::Role;
-use crate::mechanics::DEFAULT_TOLERANCE;
-use crate::mechanics::range::{self, Range};
-use crate::wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+use stickslip_mechanics::range::{self, Range};
+use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
 use super::access::{Need, need};
 use super::describe;

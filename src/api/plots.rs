@@ -2,9 +2,9 @@
 
 use uuid::Uuid;
 
-use crate::mechanics::{Contact, Regime};
-use crate::plot::{Axis, Band, Colour, Curve, Panel, Plot};
-use crate::wire::{HistoryPage, LoopPage, State, StressReply};
+use stickslip_mechanics::{Contact, Regime};
+use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot};
+use stickslip_wire::{HistoryPage, LoopPage, State, StressReply};
 
 use super::format::Format;
 use super::problem::Problem;

@@ -26,12 +26,13 @@
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
+use crate::admission::PoolError;
 use crate::jobs::JobError;
-use crate::mechanics;
 use crate::sessions::SessionError;
-use crate::simulation::{Failure, PoolError, SweepError};
+use crate::simulation::{Failure, SweepError};
 use crate::store::StoreError;
-use crate::wire::{Fault, ProblemDocument, Rejection};
+use stickslip_mechanics as mechanics;
+use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
 use super::limits;
 
@@ -371,8 +372,8 @@ impl From<SessionError> for Problem {
 #[cfg(test)]
 mod tests {
     use super::Problem;
-    use crate::mechanics::{self, range};
     use crate::simulation::Failure;
+    use stickslip_mechanics::{self as mechanics, range};
 
     #[test]
     fn a_point_of_a_sweep_fails_by_the_code_that_it_is_refused_with_alone() {

@@ -3,8 +3,8 @@
 use axum::response::Response;
 
 use crate::simulation::{self, cost};
-use crate::wire::protocol::ProtocolSubject;
-use crate::wire::{ProtocolReply, ProtocolRequest};
+use stickslip_wire::protocol::ProtocolSubject;
+use stickslip_wire::{ProtocolReply, ProtocolRequest};
 
 use super::access::Own;
 use super::extract::Command;

@@ -6,8 +6,8 @@ use axum::extract::{FromRequestParts, Query};
 use axum::http::HeaderMap;
 use axum::http::request::Parts;
 
-use crate::wire::limits as wire_limits;
-use crate::wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
+use stickslip_wire::limits as wire_limits;
+use stickslip_wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
 
 use super::App;
 use super::format::Format;

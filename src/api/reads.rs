@@ -4,11 +4,11 @@ use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
 use utoipa::IntoParams;
 
-use crate::mechanics::Contact;
-use crate::plot::Plot;
+use crate::admission::{INLINE, Nanoseconds};
 use crate::sessions::Sessions;
-use crate::simulation::cost::{INLINE, Nanoseconds};
-use crate::wire::{HistoryPage, LoopPage, StressReply};
+use stickslip_mechanics::Contact;
+use stickslip_report::plot::Plot;
+use stickslip_wire::{HistoryPage, LoopPage, StressReply};
 
 use super::access::Own;
 use super::extract::ContactId;

@@ -6,7 +6,7 @@ use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
-use crate::simulation::Reservation;
+use crate::admission::Reservation;
 use crate::store::Reply;
 
 use super::problem::Problem;

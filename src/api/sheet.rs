@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use serde_json::{Number, Value};
 
 use crate::simulation::Rows;
-use crate::wire::sweep::{Draft, Run, indices};
+use stickslip_wire::sweep::{Draft, Run, indices};
 
 use super::format::Format;
 

@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 
 use crate::simulation::{self, cost};
-use crate::wire::{SimulateReply, SimulateRequest};
+use stickslip_wire::{SimulateReply, SimulateRequest};
 
 use super::extract::Command;
 use super::problem::Problem;

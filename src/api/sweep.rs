@@ -10,8 +10,8 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use crate::jobs::AT_ONCE;
-use crate::simulation::{Sweep, cost};
-use crate::wire::{JobReply, SweepReply, SweepRequest};
+use crate::simulation::Sweep;
+use stickslip_wire::{JobReply, SweepReply, SweepRequest};
 
 use super::access::Own;
 use super::extract::Command;
@@ -70,7 +70,7 @@ pub async fn sweep(
     let Command { body: draft, key, mut held } = command;
     let wanted = draft.request.job;
     let preferred = prefers_job(&headers);
-    let sweep = app.pool.run(cost::INLINE, move || Sweep::plan(draft)).await??;
+    let sweep = app.pool.run(crate::admission::INLINE, move || Sweep::plan(draft)).await??;
     if events || wanted || preferred || sweep.cost() > AT_ONCE {
         let made = app.jobs.start(&sweep, key).await?;
         let id = made.created.unwrap_or(Uuid::nil());

@@ -10,7 +10,7 @@ use arrow_schema::{ArrowError, Field as ArrowField, Schema};
 use jiff::Timestamp;
 use serde_json::{Value, json};
 
-use crate::wire::{Field, HistoryPage, LoopPage, StressReply};
+use stickslip_wire::{Field, HistoryPage, LoopPage, StressReply};
 
 use super::format::Format;
 use super::problem::Problem;

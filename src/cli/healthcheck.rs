@@ -4,7 +4,7 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::time::Duration;
 
 use clap::Args;
-use stickslip::client::Client;
+use stickslip_wire::client::Client;
 
 use super::settings::ConfigFile;
 

@@ -17,7 +17,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stickslip::{api, figures};
+use stickslip::api;
+use stickslip_report::figures;
 
 use healthcheck::Healthcheck;
 use key::Key;

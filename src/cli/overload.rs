@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use bytesize::ByteSize;
 use clap::Args;
+use stickslip::admission;
+use stickslip::admission::Capacity;
 use stickslip::api::Connections;
 use stickslip::api::descriptors::room_for;
 use stickslip::api::door::MOST;
-use stickslip::simulation::{self, Capacity};
 
 /// The times that clients can be given.
 const SHORTEST_TIME: Duration = Duration::from_millis(10);
@@ -23,16 +24,16 @@ pub struct Overload {
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
     /// Requests worked on at a time; more wait.
-    #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = simulation::REQUESTS, value_parser = at_least_one)]
+    #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = admission::REQUESTS, value_parser = at_least_one)]
     max_requests: usize,
     /// Requests that wait at a time; more are refused.
-    #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = simulation::QUEUE, value_parser = at_least_one)]
+    #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = admission::QUEUE, value_parser = at_least_one)]
     max_queue: usize,
     /// How long a request waits before it is refused.
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
     max_wait: Duration,
     /// Bytes of memory for large bodies, their work and their replies, all together.
-    #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(simulation::BYTES as u64), value_parser = work_bytes)]
+    #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(admission::BYTES as u64), value_parser = work_bytes)]
     work_bytes: ByteSize,
     /// How long the solver works for one request before it is stopped.
     #[arg(long, env = "STICKSLIP_DEADLINE", default_value = "60s", value_parser = duration)]
@@ -84,7 +85,7 @@ fn duration(text: &str) -> Result<Duration, String> {
 }
 
 fn work_bytes(text: &str) -> Result<ByteSize, String> {
-    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(simulation::LARGEST as u64));
+    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(admission::LARGEST as u64));
     if size < least { Err(format!("at least {least}: one request can take as much")) } else { Ok(size) }
 }
 

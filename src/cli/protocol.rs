@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
+use stickslip::admission::Stop;
 use stickslip::api::problem::{Kind, Problem};
-use stickslip::simulation::{self, Failure, Stop};
-use stickslip::wire::protocol::ProtocolSubject;
-use stickslip::wire::{self, ProtocolReply, ProtocolRequest};
+use stickslip::simulation::{self, Failure};
+use stickslip_wire::protocol::ProtocolSubject;
+use stickslip_wire::{self as wire, ProtocolReply, ProtocolRequest};
 
 use super::print;
 use super::simulate::{json, read};

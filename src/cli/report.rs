@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use stickslip::report::{self, NAMES, Options};
+use stickslip_report::benchmark::{self, NAMES, Options};
 
 /// Where to write, and how much to measure.
 #[derive(Args)]
@@ -41,9 +41,10 @@ impl Report {
             largest: self.largest.unwrap_or(if self.full { 1_000_000 } else { 10_000 }),
             patience: Duration::from_millis(if self.full { 5_000 } else { 200 }),
             budget: self.budget.or((!self.full).then_some(BUDGET)).map(|seconds| Duration::from_secs(seconds.into())),
+            compiler: env!("BUILD_COMPILER"),
             peers: self.peers,
         };
-        let written = report::measure(&options).and_then(|measured| report::write(&self.out, &measured));
+        let written = benchmark::measure(&options).and_then(|measured| benchmark::write(&self.out, &measured));
         written.map_err(|error| format!("cannot report to {}: {error}", self.out.display()))
     }
 }

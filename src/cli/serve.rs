@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
+use stickslip::admission::Pool;
 use stickslip::api::headers::Origin;
 use stickslip::api::{self, Access, App, Door, bound};
 use stickslip::jobs::{self, Jobs};
 use stickslip::sessions::{self, Sessions};
-use stickslip::simulation::Pool;
 use stickslip::store::{self, Store};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};

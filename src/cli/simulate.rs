@@ -4,9 +4,10 @@ use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::Path;
 
+use stickslip::admission::Stop;
 use stickslip::api::Problem;
-use stickslip::simulation::{self, Stop};
-use stickslip::wire::{self, SimulateRequest};
+use stickslip::simulation;
+use stickslip_wire::{self as wire, SimulateRequest};
 
 use super::print;
 

@@ -4,11 +4,12 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use stickslip::admission::Stop;
 use stickslip::api::Problem;
 use stickslip::api::format::Format;
 use stickslip::api::sheet::Table;
-use stickslip::simulation::{Rows, Stop, Sweep as Plan, Workers};
-use stickslip::wire::{self, SweepRequest};
+use stickslip::simulation::{Rows, Sweep as Plan, Workers};
+use stickslip_wire::{self as wire, SweepRequest};
 
 use super::simulate::{json, read};
 

@@ -2,7 +2,8 @@
 
 use uuid::Uuid;
 
-use crate::simulation::{PoolError, SweepError};
+use crate::admission::PoolError;
+use crate::simulation::SweepError;
 use crate::store::StoreError;
 
 /// Why nothing came of a sweep or a job.

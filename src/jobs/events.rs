@@ -6,7 +6,7 @@ use futures::Stream;
 use tokio::sync::{OwnedSemaphorePermit, watch};
 use uuid::Uuid;
 
-use crate::wire::{EndReason, JobReply, JobState};
+use stickslip_wire::{EndReason, JobReply, JobState};
 
 use super::{JobError, Jobs};
 

@@ -15,12 +15,13 @@ use jiff::Timestamp;
 use tokio::sync::{Notify, Semaphore, watch};
 use uuid::Uuid;
 
+use crate::admission::{INLINE, Nanoseconds};
+use crate::admission::{Pool, Stop};
 use crate::metrics::{Counter, Gauge};
-use crate::simulation::cost::{INLINE, Nanoseconds};
-use crate::simulation::{Pool, Rows, Stop, Sweep, Workers};
+use crate::simulation::{Rows, Sweep, Workers};
 use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
-use crate::wire::sweep::Draft;
-use crate::wire::{self, JobProgress, JobReply, JobState, SweepRequest};
+use stickslip_wire::sweep::Draft;
+use stickslip_wire::{self as wire, JobProgress, JobReply, JobState, SweepRequest};
 
 pub use error::JobError;
 pub use events::Happening;

@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::simulation::cost::INLINE;
-use crate::simulation::{PoolError, Rows, Stop, Sweep, SweepError};
+use crate::admission::INLINE;
+use crate::admission::{PoolError, Stop};
+use crate::simulation::{Rows, Sweep, SweepError};
 use crate::store::{ChunkResult, Claim, Job, StoreError};
-use crate::wire::{self, SweepRequest};
+use stickslip_wire::{self as wire, SweepRequest};
 
 use super::{JobError, Jobs, NUMBER_BYTES, refused};
 

@@ -6,11 +6,12 @@ use std::time::Instant;
 use jiff::Timestamp;
 use uuid::Uuid;
 
+use crate::admission::Stop;
 use crate::simulation::cost::{self, Work};
-use crate::simulation::{Stop, Timer, accuracy, equal_peaks, follow, missed, news, stresses};
+use crate::simulation::{Timer, accuracy, equal_peaks, follow, missed, news, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
-use crate::wire::session::Advance;
-use crate::wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
+use stickslip_wire::session::Advance;
+use stickslip_wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
 
 use super::cache::Guard;
 use super::live::Live;

@@ -11,8 +11,8 @@ use hashlink::LruCache;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
+use crate::admission::Reservation;
 use crate::metrics::Counter;
-use crate::simulation::Reservation;
 use crate::store::Tenant;
 
 use super::live::Live;

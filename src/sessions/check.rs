@@ -7,9 +7,9 @@ use std::fmt;
 
 use uuid::Uuid;
 
-use crate::mechanics::Contact;
 use crate::store::{Record, Session, Snapshot, Store, StoreError};
-use crate::wire::{At, Faults, State};
+use stickslip_mechanics::Contact;
+use stickslip_wire::{At, Faults, State};
 
 use super::live::Live;
 use super::snapshot::{Worth, worth};

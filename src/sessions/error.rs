@@ -2,7 +2,8 @@
 
 use uuid::Uuid;
 
-use crate::simulation::{self, PoolError};
+use crate::admission::PoolError;
+use crate::simulation;
 use crate::store::StoreError;
 
 /// Why a session did not do what it was asked for. Nothing has changed then.

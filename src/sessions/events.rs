@@ -11,7 +11,7 @@ use futures::Stream;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use uuid::Uuid;
 
-use crate::wire::{EndReason, StateEvent};
+use stickslip_wire::{EndReason, StateEvent};
 
 use super::{SessionError, Sessions};
 

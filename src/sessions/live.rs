@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::mechanics::{Contact, Setup};
 use crate::simulation::{self, Seen, warnings};
 use crate::store::{Reply, Session};
-use crate::wire::profile::{Profile, SumProfile, TabulatedProfile};
-use crate::wire::{ContactDefinition, Figures, NewSession, Warning};
+use stickslip_mechanics::{Contact, Setup};
+use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
+use stickslip_wire::{ContactDefinition, Figures, NewSession, Warning};
 
 use super::snapshot::Beyond;
 use super::{SessionError, written};

@@ -33,9 +33,9 @@ use jiff::Timestamp;
 use tokio::sync::Semaphore;
 use uuid::Uuid;
 
-use crate::simulation::Pool;
+use crate::admission::Pool;
 use crate::store::{Reply, RequestKey, Session, Store, StoreError, Tenant};
-use crate::wire::session::Creation;
+use stickslip_wire::session::Creation;
 
 pub use cache::CAPACITY;
 use cache::{Cache, Guard};

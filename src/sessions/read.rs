@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::mechanics::Contact;
-use crate::simulation::cost::{self, Nanoseconds, Work};
-use crate::simulation::{self, Reservation, stresses};
-use crate::wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
+use crate::admission::Nanoseconds;
+use crate::admission::Reservation;
+use crate::simulation::cost::{self, Work};
+use crate::simulation::{self, stresses};
+use stickslip_mechanics::Contact;
+use stickslip_wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
 use super::live::table_points;
 use super::{SessionError, Sessions, written};

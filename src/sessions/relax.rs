@@ -2,10 +2,11 @@
 
 use uuid::Uuid;
 
-use crate::mechanics::DEFAULT_TOLERANCE;
-use crate::simulation::{self, Failure, Reservation, Stop, Subject, cost, follow};
-use crate::wire::protocol::{ProtocolTask, Relaxation};
-use crate::wire::{ContactDefinition, Plan, ProtocolReply, RelaxReply, Steps};
+use crate::admission::{Reservation, Stop};
+use crate::simulation::{self, Failure, Subject, cost, follow};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+use stickslip_wire::protocol::{ProtocolTask, Relaxation};
+use stickslip_wire::{ContactDefinition, Plan, ProtocolReply, RelaxReply, Steps};
 
 use super::live::Live;
 use super::{SessionError, Sessions, written};

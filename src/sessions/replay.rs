@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use crate::simulation::cost::Work;
 use crate::store::{Record, Session, StoreError};
-use crate::wire::{At, Faults, limits};
+use stickslip_wire::{At, Faults, limits};
 
 use super::cache::Guard;
 use super::live::Live;
@@ -121,7 +121,7 @@ impl Sessions {
             live.beyond.add(page.len(), begin.elapsed());
             Ok(live)
         });
-        replayed.await?.map_err(|error: crate::mechanics::Error| {
+        replayed.await?.map_err(|error: stickslip_mechanics::Error| {
             SessionError::Broken(format!("a stored move cannot be made again: {error}"))
         })
     }

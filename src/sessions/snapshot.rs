@@ -6,8 +6,8 @@
 
 use std::time::Duration;
 
-use crate::mechanics::Contact;
 use crate::store::{Snapshot, StoreError};
+use stickslip_mechanics::Contact;
 
 use super::live::Live;
 use super::{SessionError, Sessions};

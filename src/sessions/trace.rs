@@ -2,11 +2,12 @@
 
 use uuid::Uuid;
 
-use crate::mechanics::Contact;
+use crate::admission::Stop;
+use crate::simulation::Failure;
 use crate::simulation::cost::Work;
-use crate::simulation::{Failure, Stop};
 use crate::store::Record;
-use crate::wire::{HistoryItem, LoopPage, limits};
+use stickslip_mechanics::Contact;
+use stickslip_wire::{HistoryItem, LoopPage, limits};
 
 use super::{SessionError, Sessions};
 
@@ -92,12 +93,7 @@ fn along(
     stop: &Stop,
     page: &mut LoopPage,
 ) -> Result<(), SessionError> {
-    let check = || {
-        stop.check().map_err(|failure| match failure {
-            Failure::TooLong { allowed, .. } => Failure::TooLong { pointer: POINTS.to_owned(), allowed },
-            other => other,
-        })
-    };
+    let check = || stop.check().map_err(|interrupted| Failure::interrupted(interrupted, POINTS));
     let go_on = || stop.check().is_ok();
     let step = record.step.step();
     // The copy goes in small steps; the contact itself makes the move as it was made, to the last bit.

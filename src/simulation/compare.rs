@@ -6,15 +6,16 @@
 
 use std::time::{Duration, Instant};
 
-use crate::mechanics::{Contact, Estimate};
-use crate::wire::reply::finite;
-use crate::wire::{
+use stickslip_mechanics::{Contact, Estimate};
+use stickslip_wire::reply::finite;
+use stickslip_wire::{
     AccuracyReply, AccuracyRow, Comparison, Fault, Fields, Points, Protocol, Reference, Sampling, Solver as Named,
     SolverKind, limits,
 };
 
 use super::run::{contact, equal_peaks, follow, foundation, stresses};
-use super::{Failure, Solver, Stop};
+use super::{Failure, Solver};
+use crate::admission::Stop;
 
 /// The reference is held to this part of the tolerance: four times the chords, with a sixteenth of their error.
 const REFINED: f64 = 1.0 / 16.0;

@@ -1,21 +1,16 @@
 //! What work costs, and what is cheap enough to do where one stands.
 //!
 //! Handing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
-//! calls. Work below [`INLINE`] is therefore done on the thread that serves the connection, where it delays others by no
-//! more than that; everything above goes to the [`super::Pool`]. The estimates need only be right to a factor of a few:
+//! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection, where it delays others by no
+//! more than that; everything above goes to the [`Pool`](crate::admission::Pool). The estimates need only be right to a factor of a few:
 //! `cargo bench --bench request` and `--bench growth` show what they come from.
 
-use crate::mechanics::Profile;
-use crate::wire::protocol::{Aim, ProtocolTask};
-use crate::wire::session::Advance;
-use crate::wire::simulate::Simulation;
-use crate::wire::{self, Comparison, Plan, Solver, Steps, limits};
-
-/// Estimated nanoseconds of work.
-pub type Nanoseconds = u64;
-
-/// The line: work estimated below it runs inline.
-pub const INLINE: Nanoseconds = 100_000;
+use crate::admission::Nanoseconds;
+use stickslip_mechanics::Profile;
+use stickslip_wire::protocol::{Aim, ProtocolTask};
+use stickslip_wire::session::Advance;
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{self as wire, Comparison, Plan, Solver, Steps, limits};
 
 /// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50 microseconds.
 pub const INLINE_BODY: usize = 1024;
@@ -259,9 +254,10 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{INLINE, Work};
-    use crate::mechanics::profile::Cone;
-    use crate::mechanics::{Profile, Sphere};
+    use super::Work;
+    use crate::admission::INLINE;
+    use stickslip_mechanics::profile::Cone;
+    use stickslip_mechanics::{Profile, Sphere};
 
     #[test]
     fn a_move_runs_inline_and_a_long_path_does_not() {

@@ -1,40 +1,33 @@
 //! Running what has been parsed: a checked request against the mechanics.
 //!
 //! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor storage.
-//! Long loops look at a [`Stop`] between moves and between radii. [`cost`] says what work is worth a thread of its own,
-//! and [`Pool`] gives it one.
+//! Long loops look at a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the work.
 
 mod compare;
 pub mod cost;
-mod pool;
 mod protocol;
 mod robustness;
 mod rows;
 mod run;
 mod shape;
 mod solver;
-mod stop;
 mod sweep;
-#[cfg(test)]
-mod tests;
 mod warnings;
 
 pub use compare::compare;
-pub use pool::{
-    BYTES, Capacity, LARGEST, LONGEST_WAIT, Place, Pool, PoolError, PoolMeters, QUEUE, REQUESTS, Reservation, Taken,
-};
 pub use protocol::{Subject, protocol, protocol_for};
 pub use rows::Rows;
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
-pub use stop::{LONGEST_WORK, Stop, StopOnDrop};
 pub use sweep::{Sweep, SweepError, Workers};
 pub use warnings::{Seen, missed, news, warnings};
 
 use std::time::Duration;
 
-use crate::mechanics;
-use crate::wire::limits;
+use stickslip_mechanics as mechanics;
+use stickslip_wire::limits;
+
+use crate::admission::Interrupted;
 
 /// Why a run came to no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -68,7 +61,22 @@ pub enum Failure {
     Stopped,
 }
 
+impl From<Interrupted> for Failure {
+    fn from(interrupted: Interrupted) -> Failure {
+        Failure::interrupted(interrupted, "")
+    }
+}
+
 impl Failure {
+    /// Work was broken off that `pointer` asks for.
+    #[must_use]
+    pub fn interrupted(interrupted: Interrupted, pointer: &str) -> Failure {
+        match interrupted {
+            Interrupted::Abandoned => Failure::Stopped,
+            Interrupted::TimeLimit(allowed) => Failure::TooLong { pointer: pointer.to_owned(), allowed },
+        }
+    }
+
     /// The code that `POST /simulate` refuses it with.
     #[must_use]
     pub fn code(&self) -> &'static str {

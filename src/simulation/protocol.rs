@@ -1,18 +1,19 @@
 //! From a protocol asked for to the path, what it leaves, and what the others would.
 
-use crate::mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
-use crate::mechanics::{Contact, Error, Setup};
-use crate::wire::limits;
-use crate::wire::protocol::{
+use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
+use stickslip_mechanics::{Contact, Error, Setup};
+use stickslip_wire::limits;
+use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
     ProtocolReply, ProtocolTask, StartReply,
 };
-use crate::wire::reply::finite;
-use crate::wire::{ContactDefinition, Warning};
+use stickslip_wire::reply::finite;
+use stickslip_wire::{ContactDefinition, Warning};
 
 use super::robustness::robustness;
 use super::run::{Timer, accuracy, contact};
-use super::{Failure, Seen, Stop, warnings};
+use super::{Failure, Seen, warnings};
+use crate::admission::Stop;
 
 /// A contact for which a protocol is sought, and what the reversals begin from.
 pub struct Subject<'a> {
@@ -44,8 +45,7 @@ impl Subject<'_> {
     fn design(&self, kind: Kind, reversals: usize, end: End, stop: &Stop) -> Result<Design, Failure> {
         let found = design(self.contact, self.start(), kind, reversals, end, &|| stop.check().is_ok());
         found.map_err(|error| match stop.check() {
-            Err(Failure::TooLong { allowed, .. }) => Failure::TooLong { pointer: "/reversals".to_owned(), allowed },
-            Err(stopped) => stopped,
+            Err(interrupted) => Failure::interrupted(interrupted, "/reversals"),
             Ok(()) => Failure::Refused { pointer: self.place(&error).to_owned(), error },
         })
     }

@@ -1,12 +1,13 @@
 //! What remains if a protocol is not followed exactly, in a few numbers.
 
-use crate::mechanics::protocol::{Errors, trials};
-use crate::mechanics::{Contact, Setup};
-use crate::wire::protocol::{Robustness, RobustnessReply};
-use crate::wire::reply::finite;
+use stickslip_mechanics::protocol::{Errors, trials};
+use stickslip_mechanics::{Contact, Setup};
+use stickslip_wire::protocol::{Robustness, RobustnessReply};
+use stickslip_wire::reply::finite;
 
+use super::Failure;
 use super::protocol::Subject;
-use super::{Failure, Stop};
+use crate::admission::Stop;
 
 /// Tries a path, m, with errors; `unit` is that of stress, Pa.
 ///
@@ -26,10 +27,7 @@ pub(super) fn robustness(
     };
     let found = trials(&make, path, &Errors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
     let found = found.map_err(|error| match stop.check() {
-        Err(Failure::TooLong { allowed, .. }) => {
-            Failure::TooLong { pointer: "/robustness/samples".to_owned(), allowed }
-        }
-        Err(stopped) => stopped,
+        Err(interrupted) => Failure::interrupted(interrupted, "/robustness/samples"),
         Ok(()) => Failure::Refused { pointer: "/robustness".to_owned(), error },
     })?;
     let count = found.len() as f64;

@@ -1,6 +1,6 @@
 //! Rows of a sweep's table, and how they become bytes for a store.
 
-use crate::wire::{PointFailure, limits};
+use stickslip_wire::{PointFailure, limits};
 
 /// The outputs of points that follow each other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,7 +63,7 @@ impl Rows {
 #[cfg(test)]
 mod tests {
     use super::Rows;
-    use crate::wire::{PointFailure, limits};
+    use stickslip_wire::{PointFailure, limits};
 
     #[test]
     fn rows_come_back_to_the_last_bit_and_what_is_cut_off_does_not() {

@@ -2,17 +2,18 @@
 
 use std::time::{Duration, Instant};
 
-use crate::mechanics::{self, Contact, Estimate, Preload, Setup, Springs, springs};
-use crate::wire::reply::{Accuracy, State, finite};
-use crate::wire::simulate::Simulation;
-use crate::wire::{
-    self, ContactDefinition, Move, Plan, Protocol, Residual, Sampling, SimulateReply, Steps, Stress, limits,
+use stickslip_mechanics::{self as mechanics, Contact, Estimate, Preload, Setup, Springs, springs};
+use stickslip_wire::reply::{Accuracy, State, finite};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{
+    self as wire, ContactDefinition, Move, Plan, Protocol, Residual, Sampling, SimulateReply, Steps, Stress, limits,
 };
 
 use super::{
-    Failure, LONGEST_WORK, Solver, Stop, cost, quantity,
+    Failure, Solver, cost, quantity,
     warnings::{Seen, missed, warnings},
 };
+use crate::admission::{LONGEST_WORK, Stop};
 
 /// Measures the time spent computing.
 #[derive(Clone, Copy, Debug)]
@@ -160,8 +161,7 @@ pub fn follow<S: Solver>(
     for (index, step) in moves.enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
-            Err(Failure::TooLong { allowed, .. }) => Failure::TooLong { pointer: plan.place_of(index, None), allowed },
-            Err(stopped) => stopped,
+            Err(interrupted) => Failure::interrupted(interrupted, &plan.place_of(index, None)),
             Ok(()) => {
                 let named = quantity(&error).filter(|name| step.names(name));
                 Failure::Refused { pointer: plan.place_of(index, named), error }
@@ -186,7 +186,8 @@ const AT_A_TIME: usize = 64;
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
     let radius = sampling.radii(solver.state().contact_radius);
     let along = |field: &dyn Fn(f64) -> f64| -> Result<Vec<Option<f64>>, Failure> {
-        radius.iter().map(|radius| stop.check().map(|()| finite(field(*radius)))).collect()
+        let at = |radius: &f64| stop.check().map(|()| finite(field(*radius))).map_err(Failure::from);
+        radius.iter().map(at).collect()
     };
     // What is quick at one radius is done at many of them between two looks at the flag.
     let together = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
@@ -212,13 +213,13 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// [`Failure`] if the memory is so deep that they would take longer than is allowed, or nobody waits for them.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     let cost = Duration::from_nanos(cost::of_search(solver.depth()));
-    let allowed = stop.allowed().unwrap_or(LONGEST_WORK);
+    let allowed = stop.time_limit().unwrap_or(LONGEST_WORK);
     if cost > allowed {
         return Err(Failure::TooLong { pointer: "/residual".to_owned(), allowed });
     }
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => Ok(residual.into()),
-        None => Err(stop.check().err().unwrap_or(Failure::Stopped)),
+        None => Err(stop.check().err().map_or(Failure::Stopped, Failure::from)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The shape of a reply before anything is computed: which numbers it will have.
 
-use crate::wire::simulate::Simulation;
-use crate::wire::{
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{
     Accuracy, Figures, Peak, Plan, Protocol, Regime, Residual, Sampling, SimulateReply, SolverKind, State, Steps,
     Stress,
 };

@@ -1,7 +1,7 @@
 //! What the two solvers have in common.
 
-use crate::mechanics::{Contact, Error, Estimate, Figures, Move, Residual, Springs, State};
-use crate::wire::SolverKind;
+use stickslip_mechanics::{Contact, Error, Estimate, Figures, Move, Residual, Springs, State};
+use stickslip_wire::SolverKind;
 
 /// A contact that can be moved and looked at.
 pub trait Solver {

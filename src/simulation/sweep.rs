@@ -12,20 +12,22 @@ use rayon::ThreadPool;
 use serde::Deserialize as _;
 use serde_json::{Value, json};
 
-use crate::mechanics::Setup;
-use crate::wire::any::Pointer;
-use crate::wire::check::{At, Fault, Faults};
-use crate::wire::pluck::{Found, pluck};
-use crate::wire::simulate::Simulation;
-use crate::wire::sweep::Draft;
-use crate::wire::{
+use stickslip_mechanics::Setup;
+use stickslip_wire::any::Pointer;
+use stickslip_wire::check::{At, Fault, Faults};
+use stickslip_wire::pluck::{Found, pluck};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::sweep::Draft;
+use stickslip_wire::{
     ContactDefinition, Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest, parse_value,
 };
 
-use super::cost::{self, Nanoseconds};
+use super::cost;
 use super::rows::Rows;
 use super::shape::shape;
-use super::{Failure, Pool, PoolError, Stop, simulate};
+use super::{Failure, simulate};
+use crate::admission::Nanoseconds;
+use crate::admission::{Pool, PoolError, Stop};
 
 /// How long a sweep keeps its threads.
 const SLICE: Duration = Duration::from_millis(25);
@@ -146,7 +148,7 @@ impl Sweep {
             }
         }
         let fixed =
-            |axis: &crate::wire::sweep::Run| axis.pointer.segments().first().is_none_or(|first| first != "contact");
+            |axis: &stickslip_wire::sweep::Run| axis.pointer.segments().first().is_none_or(|first| first != "contact");
         if self.draft.axes.iter().all(fixed) {
             self.contact = Some((simulation.definition, simulation.setup));
         }
@@ -298,7 +300,7 @@ impl Sweep {
         let outputs = self.draft.outputs.len();
         for point in points {
             stop.check()?;
-            let own = allowed.map_or_else(|| stop.clone(), |allowed| stop.within_it(allowed));
+            let own = allowed.map_or_else(|| stop.clone(), |allowed| stop.child_deadline(allowed));
             match self.point(document, point, &own) {
                 Ok(reply) => rows.values.extend(self.draft.outputs.iter().map(|output| match pluck(&reply, output) {
                     Found::Number(Some(value)) => value,
@@ -355,7 +357,7 @@ fn failure(code: &str, pointer: String, detail: String) -> PointFailure {
 fn any_peak(output: &Pointer) -> Pointer {
     match output.segments() {
         [residual, peaks, index, rest @ ..]
-            if residual == "residual" && peaks == "peaks" && crate::wire::any::index(index).is_some() =>
+            if residual == "residual" && peaks == "peaks" && stickslip_wire::any::index(index).is_some() =>
         {
             let first = format!("/residual/peaks/0{}", rest.iter().map(|part| format!("/{part}")).collect::<String>());
             Pointer::parse(&first).unwrap_or_else(|| output.clone())

@@ -1,7 +1,7 @@
 //! What to know about a result that is nevertheless given. Each code has its paragraph in `docs/warnings.md`.
 
-use crate::mechanics::{Contact, Elasticity};
-use crate::wire::{Profile, Warning};
+use stickslip_mechanics::{Contact, Elasticity};
+use stickslip_wire::{Profile, Warning};
 
 /// Dundurs' β beyond which the bodies are no longer called alike; round-off of like bodies stays below it.
 const BETA: f64 = 1e-12;

@@ -19,7 +19,7 @@ use futures::future::BoxFuture;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::wire::{ContactDefinition, Move, SessionSummary, State};
+use stickslip_wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;

@@ -11,7 +11,7 @@ use common::{ball, problem};
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::access::{Role, new_key};
-use stickslip::client::Options;
+use stickslip_wire::client::Options;
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
@@ -303,7 +303,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
         let client = |who: &str| server.process.client.clone().with_key(server.key(who));
         let (id, nobody) = (server.contact("north").await, Uuid::now_v7());
         let options = Options { idempotency_key: Some(format!("first-{cache}")), ..Options::default() };
-        client("north").apply(id, &stickslip::wire::Move::displacement(1e-8).into(), &options).await.unwrap();
+        client("north").apply(id, &stickslip_wire::Move::displacement(1e-8).into(), &options).await.unwrap();
         let before = client("reader").contact(id).await.unwrap();
         for who in ["south", "nameless"] {
             for (method, route, body, headers) in attempts() {
@@ -317,7 +317,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
             }
             assert!(client(who).contacts(None, None).await.unwrap().items.iter().all(|item| item.id != id));
             // The key of a request is the tenant's own: nothing is owed for that of another.
-            let retry = client(who).apply(id, &stickslip::wire::Move::displacement(1e-8).into(), &options).await;
+            let retry = client(who).apply(id, &stickslip_wire::Move::displacement(1e-8).into(), &options).await;
             assert_eq!(retry.unwrap_err().problem().unwrap().status, 404);
         }
         assert_eq!(format!("{:?}", client("reader").contact(id).await.unwrap()), format!("{before:?}"));

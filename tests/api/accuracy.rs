@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{Server, ball, problem};
 use serde_json::{Value, json};
-use stickslip::wire::{AccuracyReply, AccuracyRequest};
+use stickslip_wire::{AccuracyReply, AccuracyRequest};
 
 const E_STAR: f64 = 1.15e11;
 const G_STAR: f64 = 8.5e10;

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use common::{Server, ball, create};
 use serde_json::{Value, json};
-use stickslip::client::{Client, Options, Swept};
-use stickslip::wire::{
+use stickslip_wire::client::{Client, Options, Swept};
+use stickslip_wire::{
     FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SimulateRequest, SolverKind,
     Steps, StressRequest, SweepRequest,
 };

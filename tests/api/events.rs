@@ -13,11 +13,11 @@ use futures::future::join_all;
 use futures::{Stream, StreamExt as _};
 use reqwest::Method;
 use serde_json::{Value, json};
-use stickslip::client::{Client, Error, Event, Options};
+use stickslip::admission::Pool;
 use stickslip::sessions::{CAPACITY, STREAMS, Sessions};
-use stickslip::simulation::Pool;
 use stickslip::store::MemoryStore;
-use stickslip::wire::{EndReason, Move, Path, PathRequest, StateEvent, Steps};
+use stickslip_wire::client::{Client, Error, Event, Options};
+use stickslip_wire::{EndReason, Move, Path, PathRequest, StateEvent, Steps};
 use uuid::Uuid;
 
 /// Against hanging alone.
@@ -51,7 +51,7 @@ async fn past(client: &Client, id: Uuid, after: u64) -> Vec<StateEvent> {
     let (mut all, mut after) = (Vec::new(), Some(after));
     while after.is_some() {
         let page = client.history(id, after, Some(1_000)).await.unwrap();
-        let event = |item: stickslip::wire::HistoryItem| StateEvent {
+        let event = |item: stickslip_wire::HistoryItem| StateEvent {
             id,
             sequence: item.sequence,
             step: Some(item.step),

@@ -9,7 +9,7 @@ use common::{ball, clean};
 use reqwest::header::HeaderMap;
 use serde_json::Value;
 use stickslip::access::{Role, new_key};
-use stickslip::client::Client;
+use stickslip_wire::client::Client;
 use tempfile::tempdir;
 
 fn binary(arguments: &[&str]) -> Command {

@@ -8,8 +8,8 @@ use std::process::Command;
 use common::{Binary, create};
 use reqwest::Client;
 use serde_json::Value;
-use stickslip::client::Options;
-use stickslip::wire::Move;
+use stickslip_wire::Move;
+use stickslip_wire::client::Options;
 
 /// Ends the server as an operator would, and returns its log.
 fn end(mut server: Binary) -> Vec<Value> {

@@ -2,6 +2,12 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../harness/damage.rs"]
+mod damage;
+#[path = "../harness/mod.rs"]
+mod harness;
+#[path = "../harness/requests.rs"]
+mod requests;
 
 mod access;
 mod accuracy;
@@ -11,12 +17,16 @@ mod corners;
 mod events;
 mod exposure;
 mod formats;
+mod fuzz_bodies;
+mod fuzz_http;
 mod logs;
 mod metrics;
 mod openapi;
 mod otlp;
 mod profiles;
 mod protocols;
+mod schema;
 mod sessions;
 mod settings;
+mod sweeps;
 mod warnings;

@@ -10,8 +10,8 @@ use axum::routing::post;
 use axum::{Json, Router};
 use common::{Binary, create};
 use serde_json::{Value, json};
-use stickslip::client::Options;
-use stickslip::wire::Move;
+use stickslip_wire::Move;
+use stickslip_wire::client::Options;
 use tokio::net::TcpListener;
 
 /// What posts to a collector brought.

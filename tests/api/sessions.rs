@@ -8,9 +8,9 @@ use common::{Server, ball, create, problem};
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use stickslip::client::Options;
 use stickslip::store::MemoryStore;
-use stickslip::wire::{ForkRequest, Move, Path, PathRequest, Steps};
+use stickslip_wire::client::Options;
+use stickslip_wire::{ForkRequest, Move, Path, PathRequest, Steps};
 
 fn along(moves: Vec<Move>) -> PathRequest {
     PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::All, tolerance: None }

@@ -10,9 +10,9 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use futures::future::join_all;
-use stickslip::client::{Client, Error, Options};
-use stickslip::mechanics::{Contact, DEFAULT_TOLERANCE};
-use stickslip::wire::{Document as _, HistoryItem, Move, MoveReply, State};
+use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE};
+use stickslip_wire::client::{Client, Error, Options};
+use stickslip_wire::{Document as _, HistoryItem, Move, MoveReply, State};
 use tokio::sync::watch;
 use uuid::Uuid;
 

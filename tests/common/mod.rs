@@ -14,13 +14,13 @@ use std::sync::Arc;
 
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
+use stickslip::admission::Pool;
 use stickslip::api::{self, Access, App};
-use stickslip::client::Client;
 use stickslip::jobs::Jobs;
 use stickslip::sessions::{CAPACITY, Sessions};
-use stickslip::simulation::Pool;
 use stickslip::store::{MemoryStore, Store};
-use stickslip::wire::{CreateRequest, ProblemDocument};
+use stickslip_wire::client::Client;
+use stickslip_wire::{CreateRequest, ProblemDocument};
 use tokio::net::TcpListener;
 
 /// A server; it ends with the runtime of its test.

@@ -4,7 +4,7 @@ use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
-use stickslip::client::Client;
+use stickslip_wire::client::Client;
 
 /// A server that can be killed. What still runs at the end of a test is killed too.
 pub struct Process {

@@ -3,8 +3,8 @@
 //! While the indenter moves one way under a constant load, the slip ring grows and the tangential stiffness 2 G* c, c the stick
 //! radius, falls. So the force over the displacement lies above its chords and below its tangents, and so does its work.
 
-use stickslip::wire::simulate::Simulation;
-use stickslip::wire::{Path, SimulateReply, SimulateRequest, SolverKind, State};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{Path, SimulateReply, SimulateRequest, SolverKind, State};
 
 use super::laws::{again, largest_load};
 

@@ -14,7 +14,7 @@ pub enum Damage {
     /// A stretch is cut out.
     Cut(f64, usize),
     /// A stretch is there twice.
-    Double(f64, usize),
+    DoubleDouble(f64, usize),
     /// A word is put in.
     Insert(f64, &'static str),
     /// The n-th number becomes something else.
@@ -58,7 +58,7 @@ fn damage() -> impl Strategy<Value = Damage> {
     prop_oneof![
         2 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
         1 => (place(), 1..20_usize).prop_map(|(place, length)| Damage::Cut(place, length)),
-        1 => (place(), 1..40_usize).prop_map(|(place, length)| Damage::Double(place, length)),
+        1 => (place(), 1..40_usize).prop_map(|(place, length)| Damage::DoubleDouble(place, length)),
         1 => (place(), word()).prop_map(|(place, word)| Damage::Insert(place, word)),
         4 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Number(index, word)),
         3 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Replace(index, word)),
@@ -82,7 +82,7 @@ impl Damage {
             _ if text.is_empty() => {}
             Damage::Byte(place, byte) => text[at(place)] = byte,
             Damage::Cut(place, count) => drop(text.drain(at(place)..(at(place) + count).min(length))),
-            Damage::Double(place, count) => {
+            Damage::DoubleDouble(place, count) => {
                 let stretch = text[at(place)..(at(place) + count).min(length)].to_vec();
                 text.splice(at(place)..at(place), stretch);
             }

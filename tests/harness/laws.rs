@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 use stickslip::simulation::Failure;
-use stickslip::wire::simulate::Simulation;
-use stickslip::wire::{Move, Path, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::{Move, Path, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps};
 
 use super::{Refusal, ask, balance};
 
@@ -331,7 +331,7 @@ fn repeat(request: &SimulateRequest, reply: &SimulateReply) {
         Ok(longer) => longer,
         // In gross slip a force is at its limit to round-off, on either side of it.
         Err(Refusal::ByTheEngine(Failure::Refused {
-            error: stickslip::mechanics::Error::ForceExceedsFriction { .. },
+            error: stickslip_mechanics::Error::ForceExceedsFriction { .. },
             ..
         })) if last.relative && last.force.is_some() => {
             return;

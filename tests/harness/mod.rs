@@ -4,11 +4,12 @@ mod balance;
 mod laws;
 mod refusals;
 
-use stickslip::simulation::{Failure, Stop, cost, simulate};
-use stickslip::wire::{Document as _, Profile, Rejection, SimulateReply, SimulateRequest, parse};
+use stickslip::admission::Stop;
+use stickslip::simulation::{Failure, cost, simulate};
+use stickslip_wire::{Document as _, Profile, Rejection, SimulateReply, SimulateRequest, parse};
 
 /// What a body may cost to be tried, estimated nanoseconds: each that is answered runs several times.
-const DEAREST: cost::Nanoseconds = 30_000_000;
+const DEAREST: stickslip::admission::Nanoseconds = 30_000_000;
 
 /// What came of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,10 @@
 use proptest::prelude::*;
 use proptest::sample::select;
 use serde_json::{Map, Value, json};
-use stickslip::mechanics::range::{self, Range};
-use stickslip::simulation::{Stop, simulate};
-use stickslip::wire::{SimulateRequest, read};
+use stickslip::admission::Stop;
+use stickslip::simulation::simulate;
+use stickslip_mechanics::range::{self, Range};
+use stickslip_wire::{SimulateRequest, read};
 
 /// A number of a path, in units of what the contact at hand can bear, or as it stands.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,7 @@ use common::kill::{PATIENCE, Random, exact, history, replays_to_the_last_bit};
 use common::process::Process;
 use common::{create, run};
 use rusqlite::Connection;
-use stickslip::client::Options;
+use stickslip_wire::client::Options;
 use tempfile::tempdir;
 use uuid::Uuid;
 

@@ -12,8 +12,8 @@ use common::postgres::Cluster;
 use common::process::Process;
 use common::{create, run};
 use rusqlite::Connection;
-use stickslip::client::{Client, Options};
-use stickslip::wire::{ForkRequest, Move, Path as Moves, PathRequest, Steps};
+use stickslip_wire::client::{Client, Options};
+use stickslip_wire::{ForkRequest, Move, Path as Moves, PathRequest, Steps};
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 

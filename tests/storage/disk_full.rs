@@ -11,8 +11,8 @@ use common::create;
 use common::kill::{Random, exact, history, replays_to_the_last_bit};
 use common::process::Process;
 use futures::future::join_all;
-use stickslip::client::{Client, Error, Options};
-use stickslip::wire::{Move, MoveReply, Path as Moves, PathRequest, Steps};
+use stickslip_wire::client::{Client, Error, Options};
+use stickslip_wire::{Move, MoveReply, Path as Moves, PathRequest, Steps};
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 

@@ -9,7 +9,7 @@ use common::postgres::Cluster;
 use futures::future::join_all;
 use jiff::Timestamp;
 use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError, Tenant};
-use stickslip::wire::{ContactDefinition, Move, Regime, State};
+use stickslip_wire::{ContactDefinition, Move, Regime, State};
 use uuid::Uuid;
 
 fn session() -> Session {

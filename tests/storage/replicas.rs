@@ -14,11 +14,12 @@ use futures::StreamExt as _;
 use futures::future::join_all;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use stickslip::client::{Client, Error, Event, Options};
+use stickslip::admission::Stop;
 use stickslip::sessions::CAPACITY;
-use stickslip::simulation::{self, Stop};
+use stickslip::simulation;
 use stickslip::store::PostgresStore;
-use stickslip::wire::{self, ForkRequest, HistoryItem, Move, MoveReply, SimulateRequest, State};
+use stickslip_wire::client::{Client, Error, Event, Options};
+use stickslip_wire::{self as wire, ForkRequest, HistoryItem, Move, MoveReply, SimulateRequest, State};
 use uuid::Uuid;
 
 const SESSIONS: usize = 5;

@@ -11,12 +11,12 @@ use futures::StreamExt as _;
 use futures::future::join_all;
 use reqwest::Method;
 use serde_json::json;
-use stickslip::client::{Client, Event, Options};
-use stickslip::mechanics::Contact;
+use stickslip::admission::Pool;
 use stickslip::sessions::Sessions;
-use stickslip::simulation::Pool;
 use stickslip::store::{MemoryStore, Snapshot, Store};
-use stickslip::wire::{
+use stickslip_mechanics::Contact;
+use stickslip_wire::client::{Client, Event, Options};
+use stickslip_wire::{
     At, CreateRequest, EndReason, Faults, ForkRequest, Move, Path, PathRequest, State, Steps, StressRequest,
 };
 use uuid::Uuid;

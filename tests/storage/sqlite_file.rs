@@ -10,9 +10,9 @@ use common::create;
 use common::kill::{PATIENCE, exact, history};
 use common::process::{Process, refused};
 use rusqlite::Connection;
-use stickslip::client::Options;
 use stickslip::store::{SqliteStore, Store as _, StoreError, Tenant};
-use stickslip::wire::{Move, Path as Moves, PathRequest, Steps};
+use stickslip_wire::client::Options;
+use stickslip_wire::{Move, Path as Moves, PathRequest, Steps};
 use tempfile::tempdir;
 use uuid::Uuid;
 

@@ -11,8 +11,8 @@ use hyper::body::Incoming;
 use tokio::time::{Sleep, sleep};
 
 use super::Activity;
+use crate::admission::{Place, Reservation};
 use crate::api::limits::PIECE;
-use crate::simulation::{Place, Reservation};
 
 /// The body of a request did not arrive in time.
 #[derive(Debug, thiserror::Error)]

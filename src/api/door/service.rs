@@ -11,7 +11,7 @@ use tower_service::Service as _;
 
 use super::Activity;
 use super::bodies::{Busy, Timed, Watched};
-use crate::simulation::{Pool, PoolError, Reservation};
+use crate::admission::{Pool, PoolError, Reservation};
 
 /// Paths that are answered however busy the server is.
 const ALWAYS: [&str; 3] = ["/healthz", "/readyz", "/metrics"];

@@ -29,7 +29,7 @@ use jiff::Timestamp;
 use tokio::task::AbortHandle;
 use uuid::Uuid;
 
-use crate::wire::SessionSummary;
+use stickslip_wire::SessionSummary;
 
 use super::{
     Answer, Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant,

@@ -10,7 +10,7 @@ use tokio_postgres::Row;
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError, Tenant};
-use crate::wire::{Move, Regime, SessionSummary, State};
+use stickslip_wire::{Move, Regime, SessionSummary, State};
 
 /// A timestamp as two columns.
 pub(super) fn split(at: Timestamp) -> (SystemTime, i16) {

@@ -31,10 +31,10 @@ use uuid::Uuid;
 
 use super::jobs::Board;
 use super::{Answer, Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
-use crate::wire::SessionSummary;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
 use rusqlite::Connection;
+use stickslip_wire::SessionSummary;
 use writer::{Request, Writer};
 
 /// Requests that may wait for the writer; further ones wait for a place.

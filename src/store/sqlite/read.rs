@@ -5,7 +5,7 @@ use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Session, Snapshot, Tenant};
-use crate::wire::SessionSummary;
+use stickslip_wire::SessionSummary;
 
 use super::change::missing;
 use super::readers::ReadError;

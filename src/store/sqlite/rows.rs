@@ -8,7 +8,7 @@ use rusqlite::{CachedStatement, Row, params, types::Type};
 use uuid::Uuid;
 
 use crate::store::{Receipt, Record, Reply, RequestKey, Session, Tenant};
-use crate::wire::{Move, Regime, SessionSummary, State};
+use stickslip_wire::{Move, Regime, SessionSummary, State};
 
 /// The columns of a move beside its session, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, relative, \

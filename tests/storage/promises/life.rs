@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use futures::future::join_all;
 use stickslip::store::{Session, Store, StoreError};
-use stickslip::wire::SessionSummary;
+use stickslip_wire::SessionSummary;
 use uuid::Uuid;
 
 use super::{exact, record, records, session, snapshot, stored};

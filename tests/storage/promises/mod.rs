@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant};
-use stickslip::wire::{CreateRequest, Document as _, Move, Regime, State};
+use stickslip_wire::{CreateRequest, Document as _, Move, Regime, State};
 use uuid::Uuid;
 
 use crate::common;

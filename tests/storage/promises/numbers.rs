@@ -2,7 +2,7 @@
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Record, Session, Store};
-use stickslip::wire::{Move, State};
+use stickslip_wire::{Move, State};
 
 use super::{exact, record, session, stored};
 use crate::common::kill::Random;

@@ -1,0 +1,139 @@
+//! What the solver costs: `cargo bench -p stickslip-mechanics --bench solver`. Read the figures as ratios to each other.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use stickslip_mechanics::profile::{ExactSphere, Tabulated};
+use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Springs, Tangential};
+
+const REVERSALS: usize = 20;
+const RADII: usize = 200;
+
+fn setup() -> Setup {
+    Setup {
+        profile: Profile::Sphere(Sphere::new(0.01).expect("a valid radius")),
+        elasticity: Elasticity::effective(1.15e11, 8.5e10).expect("valid moduli"),
+        friction: 0.3,
+        preload: Preload::NormalForce(10.0),
+    }
+}
+
+fn virgin() -> Contact {
+    Contact::new(setup()).expect("a valid contact")
+}
+
+fn to(displacement: f64) -> Move {
+    Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() }
+}
+
+fn exact_scene() -> f64 {
+    let mut contact = virgin();
+    let figures = contact.figures();
+    for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
+        contact.apply(&to(target)).expect("a displacement has no limit");
+    }
+    let radii: Vec<f64> = (0..RADII).map(|index| figures.contact_radius * index as f64 / RADII as f64).collect();
+    contact.shears(&radii).into_iter().sum()
+}
+
+fn springs_scene(count: usize) -> f64 {
+    let figures = virgin().figures();
+    let mut springs = Springs::new(setup(), count, figures.contact_radius).expect("a valid count");
+    for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
+        springs.apply(&to(target)).expect("a displacement has no limit");
+    }
+    (0..RADII).map(|index| springs.shear(figures.contact_radius * index as f64 / RADII as f64)).sum()
+}
+
+/// Random positions within gross slip, the same in every run.
+fn positions(count: usize, unit: f64) -> Vec<f64> {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..count).map(|_| (2.0 * next() - 1.0) * unit).collect()
+}
+
+fn moves(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("move at constant load");
+    for history in [1_000, 10_000_000] {
+        let mut contact = virgin();
+        let path = positions(history, contact.figures().gross_slip_displacement);
+        for &target in &path {
+            contact.apply(&to(target)).expect("a displacement has no limit");
+        }
+        let mut targets = path.iter().cycle();
+        group.bench_function(format!("after {history} moves"), |bencher| {
+            bencher.iter(|| contact.apply(&to(*targets.next().expect("the cycle is endless"))));
+        });
+    }
+    group.finish();
+}
+
+/// The same moves, with the force after each, on a sphere, on its closed form and on a table of its points.
+fn profiles(criterion: &mut Criterion) {
+    const POINTS: usize = 1_000;
+    const BALL: f64 = 0.01;
+    let radii: Vec<f64> = (0..POINTS).map(|index| 2e-4 * index as f64 / (POINTS - 1) as f64).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / (BALL + ((BALL - r) * (BALL + r)).sqrt())).collect();
+    let mut group = criterion.benchmark_group("move and force by profile");
+    for (name, profile) in [
+        ("sphere", setup().profile),
+        ("exact sphere", Profile::ExactSphere(ExactSphere::new(BALL).expect("a valid radius"))),
+        ("table of 1000 points", Profile::Tabulated(Tabulated::new(&radii, &heights).expect("a convex table"))),
+    ] {
+        let mut contact = Contact::new(Setup { profile, ..setup() }).expect("a valid contact");
+        let path = positions(1_000, contact.figures().gross_slip_displacement);
+        let mut targets = path.iter().cycle();
+        group.bench_function(name, |bencher| {
+            bencher
+                .iter(|| contact.apply(&to(*targets.next().expect("the cycle is endless"))).map(|()| contact.force()));
+        });
+    }
+    group.finish();
+}
+
+fn scenes(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("20 reversals and 200 radii");
+    group.sample_size(20);
+    group.bench_function("exact", |bencher| bencher.iter(|| black_box(exact_scene())));
+    for count in [100, 1_000, 10_000] {
+        group.bench_function(format!("{count} springs"), |bencher| bencher.iter(|| black_box(springs_scene(count))));
+    }
+    group.finish();
+}
+
+/// A memory of so many pieces, asked at so many radii: beside it as many plain square roots.
+fn stresses(criterion: &mut Criterion) {
+    const MANY: usize = 1_000;
+    let mut group = criterion.benchmark_group("shear stress at 1000 radii under 1000 pieces");
+    let mut contact = virgin();
+    let figures = contact.figures();
+    for target in falling_amplitude(MANY, figures.gross_slip_displacement) {
+        contact.apply(&to(target)).expect("a displacement has no limit");
+    }
+    let radii: Vec<f64> = (0..MANY).map(|index| figures.contact_radius * index as f64 / MANY as f64).collect();
+    group.sample_size(20);
+    group.bench_function("all at once", |bencher| bencher.iter(|| black_box(contact.shears(&radii))));
+    group.bench_function("one by one", |bencher| {
+        bencher.iter(|| radii.iter().map(|&radius| contact.shear(radius)).sum::<f64>());
+    });
+    let terms: Vec<f64> = positions(MANY, 1.0).iter().map(|position| position * position).collect();
+    group.bench_function("a square root per term", |bencher| {
+        let mut roots = vec![0.0; MANY];
+        bencher.iter(|| {
+            for &radius in &radii {
+                for (root, term) in roots.iter_mut().zip(&terms) {
+                    *root = (term + radius).sqrt();
+                }
+                black_box(&roots);
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, moves, profiles, scenes, stresses);
+criterion_main!(benches);

@@ -1,0 +1,378 @@
+//! A contact with its history: what it is made of, how it moves, what state it is in.
+
+use std::sync::Arc;
+
+use super::double_double::DoubleDouble;
+use super::elasticity::Elasticity;
+use super::error::Error;
+use super::normal::{self, Figures, Preload};
+use super::profile::{At, Point, Profile};
+use super::range;
+use super::route::{Approach, DEFAULT_TOLERANCE, Route, Stop, Tangent};
+use super::slip_history::Memory;
+use super::state::{Move, Normal, Regime, Setup, State, Tangential};
+
+/// A frictional contact, solved exactly.
+///
+/// ```
+/// use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+///
+/// let mut contact = Contact::new(Setup {
+///     profile: Profile::Sphere(Sphere::new(0.01)?),
+///     elasticity: Elasticity::effective(1.15e11, 8.5e10)?,
+///     friction: 0.3,
+///     preload: Preload::NormalForce(10.0),
+/// })?;
+/// let half = 0.5 * contact.figures().gross_slip_displacement;
+/// contact.apply(&Move { tangential: Some(Tangential::Displacement(half)), ..Move::default() })?;
+/// // Cattaneo (1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
+/// assert!((contact.state().force - 3.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-14);
+/// # Ok::<(), stickslip_mechanics::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Shared by all copies: a table's is large.
+    pub(super) profile: Arc<Profile>,
+    pub(super) elasticity: Elasticity,
+    pub(super) friction: f64,
+    pub(super) memory: Memory,
+    pub(super) displacement: DoubleDouble,
+    /// As asked for or, under a prescribed indentation, as it follows: rounding it twice would move the friction limit.
+    pub(super) normal_force: f64,
+    pub(super) dissipated: DoubleDouble,
+    pub(super) initial: Figures,
+    pub(super) path_error: f64,
+    pub(super) path_kernel: f64,
+    /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
+    pub(super) inverse_scale: DoubleDouble,
+}
+
+impl Contact {
+    /// The virgin contact of a definition: displacement and tangential force are nought.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
+    /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for.
+    pub fn new(setup: Setup) -> Result<Contact, Error> {
+        let Setup { profile, elasticity, friction, preload } = setup;
+        range::check_friction(friction)?;
+        let indentation = match preload {
+            Preload::NormalForce(force) => {
+                normal::indentation(&profile, &elasticity, range::check_normal_force(force)?)
+            }
+            Preload::Indentation(depth) => range::PRELOAD_INDENTATION.check(depth)?,
+            Preload::ContactRadius(radius) => normal::indentation_at(&profile, range::CONTACT_RADIUS.check(radius)?)?,
+        };
+        range::PRELOAD_INDENTATION.check(indentation)?;
+        range::CONTACT_RADIUS.check(profile.check_radius(profile.radius(indentation))?)?;
+        let memory = Memory::new(&profile, DoubleDouble::from(indentation));
+        let normal_force = match preload {
+            Preload::NormalForce(force) => force,
+            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, memory.edge()),
+        };
+        let initial = figures(&profile, &elasticity, friction, memory.edge(), normal_force);
+        let inverse_scale = if friction > 0.0 {
+            DoubleDouble::from(elasticity.g_star()).over(DoubleDouble::from(elasticity.e_star()) * friction)
+        } else {
+            DoubleDouble::ZERO
+        };
+        Ok(Contact {
+            profile: Arc::new(profile),
+            elasticity,
+            friction,
+            memory,
+            displacement: DoubleDouble::ZERO,
+            normal_force,
+            dissipated: DoubleDouble::ZERO,
+            initial,
+            path_error: 0.0,
+            path_kernel: 0.0,
+            inverse_scale,
+        })
+    }
+
+    /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
+    ///
+    /// # Errors
+    /// As [`Contact::apply_within`].
+    pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
+        self.apply_within(step, DEFAULT_TOLERANCE)
+    }
+
+    /// Moves along a line that is straight in the quantities named. What is straight in displacement and indentation is
+    /// exact; what is straight in a force while the other quantity changes is followed to `tolerance`, relative to mu F_N.
+    /// Nothing has changed when an error is returned.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a target outside [`range`]; [`Error::ForceExceedsFriction`] for a tangential force that
+    /// friction cannot hold all the way.
+    pub fn apply_within(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
+        self.apply_while(step, tolerance, &|| true)
+    }
+
+    /// As [`Contact::apply_within`], for as long as `go_on` says so: a curved move can take seconds.
+    ///
+    /// # Errors
+    /// As [`Contact::apply_within`], and [`Error::BrokenOff`].
+    pub fn apply_while(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
+        let approach = self.approach(step)?;
+        let tangent = self.tangent(step)?;
+        // Without a tangential target the displacement stays, and any way to the new indentation is the same.
+        let straight = match (step.tangential, step.normal) {
+            (None, _) => true,
+            (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
+            (Some(Tangential::Force(_)), _) => false,
+        };
+        if let (true, Tangent::Displacement { to: displacement, .. }) = (straight, tangent) {
+            let (indentation, normal_force) = match approach {
+                Approach::Indentation { from, to } if from == to => (to, self.normal_force),
+                Approach::Indentation { to, .. } => (to, self.normal_force_at(to)),
+                Approach::Force { to, .. } => (self.indentation_for(to), to),
+            };
+            self.advance(&Stop { indentation, normal_force, displacement });
+            return Ok(());
+        }
+        // Only a way of many chords can be broken off half-way; a copy is nothing beside it.
+        let before = self.clone();
+        let followed = self.follow(&Route { tangent, approach }, tolerance, go_on);
+        if followed.is_err() {
+            *self = before;
+        }
+        followed
+    }
+
+    fn approach(&self, step: &Move) -> Result<Approach, Error> {
+        let here = self.memory.edge().level;
+        Ok(match step.normal {
+            None => Approach::Indentation { from: here, to: here },
+            Some(Normal::Indentation(depth)) => {
+                let depth = DoubleDouble::from(depth);
+                let to = if step.relative { here + depth } else { depth };
+                self.check_indentation(to.value())?;
+                Approach::Indentation { from: here, to }
+            }
+            Some(Normal::NormalForce(force)) => {
+                let from = self.normal_force();
+                let to = range::check_normal_force(if step.relative { from + force } else { force })?;
+                self.check_indentation(self.indentation_for(to).value())?;
+                Approach::Force { from, to }
+            }
+        })
+    }
+
+    /// Whether the profile has a contact of this indentation, m.
+    fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
+        range::INDENTATION.check(indentation)?;
+        if indentation > 0.0 {
+            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.radius(indentation))?)?;
+        }
+        Ok(())
+    }
+
+    fn tangent(&self, step: &Move) -> Result<Tangent, Error> {
+        let here = self.displacement;
+        Ok(match step.tangential {
+            None => Tangent::Displacement { from: here, to: here },
+            Some(Tangential::Displacement(target)) => {
+                let target = DoubleDouble::from(target);
+                let to = if step.relative { here + target } else { target };
+                range::DISPLACEMENT.check(to.value())?;
+                Tangent::Displacement { from: here, to }
+            }
+            Some(Tangential::Force(target)) => {
+                let from = self.force();
+                let to = range::FORCE.check(if step.relative { from + target } else { target })?;
+                Tangent::Force { from, to }
+            }
+        })
+    }
+
+    /// The straight move in displacement and indentation that every other move is made of.
+    pub(super) fn advance(&mut self, stop: &Stop) {
+        self.displacement = stop.displacement;
+        self.normal_force = stop.normal_force;
+        let passage = self.memory.advance(&self.profile, stop.indentation, self.scaled(stop.displacement));
+        let scale = self.scale();
+        let work = 2.0 * self.elasticity.g_star() * scale * scale * passage.work;
+        self.dissipated = self.dissipated + DoubleDouble::from(work);
+        if self.memory.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
+            // What gross slip wipes out takes its errors with it.
+            self.path_error = 0.0;
+            self.path_kernel = 0.0;
+        }
+    }
+
+    /// W = U/m, m.
+    pub(super) fn scaled(&self, displacement: DoubleDouble) -> DoubleDouble {
+        displacement * self.inverse_scale
+    }
+
+    /// U = m W, m.
+    pub(super) fn unscaled(&self, position: DoubleDouble) -> DoubleDouble {
+        if self.friction > 0.0 { position.over(self.inverse_scale) } else { DoubleDouble::ZERO }
+    }
+
+    pub(super) fn displacement(&self) -> DoubleDouble {
+        self.displacement
+    }
+
+    /// Notes what a chord has cost: errors of the force add up, those of the stress are local.
+    pub(super) fn add_path_error(&mut self, force: f64, kernel: f64) {
+        self.path_error += force;
+        self.path_kernel = self.path_kernel.max(kernel);
+    }
+
+    /// Normal force, N, at an indentation, m.
+    pub(super) fn normal_force_at(&self, indentation: DoubleDouble) -> f64 {
+        if indentation.value() <= 0.0 {
+            return 0.0;
+        }
+        normal::force(&self.profile, &self.elasticity, &self.profile.point(indentation))
+    }
+
+    /// m = mu E*/G*: displacement of the surface where it slips, over its normal displacement.
+    pub(super) fn scale(&self) -> f64 {
+        self.friction * self.elasticity.e_star() / self.elasticity.g_star()
+    }
+
+    /// Tangential force, N.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        2.0 * self.elasticity.g_star() * self.scale() * self.memory.force()
+    }
+
+    /// Indentation, m, that carries a normal force, N.
+    pub(super) fn indentation_for(&self, normal_force: f64) -> DoubleDouble {
+        DoubleDouble::from(normal::indentation(&self.profile, &self.elasticity, normal_force))
+    }
+
+    /// Normal force, N: the one asked for, to the bit, where one was.
+    #[must_use]
+    pub fn normal_force(&self) -> f64 {
+        self.normal_force
+    }
+
+    /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
+    #[must_use]
+    pub fn pressure(&self, radius: f64) -> f64 {
+        normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &At::radius(radius))
+    }
+
+    /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
+    #[must_use]
+    pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
+        normal::pressures(&self.profile, &self.elasticity, self.memory.edge(), radii)
+    }
+
+    /// The shape of the indenter.
+    #[must_use]
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// The elastic constants.
+    #[must_use]
+    pub fn elasticity(&self) -> Elasticity {
+        self.elasticity
+    }
+
+    /// The error that curved moves have left in the tangential force, relative to mu F_N: an estimate from above.
+    #[must_use]
+    pub fn path_error(&self) -> f64 {
+        self.path_error
+    }
+
+    /// Contact radius a, m.
+    #[must_use]
+    pub fn contact_radius(&self) -> f64 {
+        self.memory.edge().radius
+    }
+
+    /// Indentation d, m; below nought a gap.
+    #[must_use]
+    pub fn indentation(&self) -> f64 {
+        self.memory.edge().level.value()
+    }
+
+    /// Displacement of gross slip on first loading, m, at the present load.
+    #[must_use]
+    pub fn gross_slip_displacement(&self) -> f64 {
+        self.scale() * self.indentation().max(0.0)
+    }
+
+    /// How many straight pieces the history has left.
+    #[must_use]
+    pub fn memory_depth(&self) -> usize {
+        self.memory.pieces().len()
+    }
+
+    /// Bytes that the contact takes, its history included.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Contact>() + self.memory.heap_bytes()
+    }
+
+    /// The figures of the present normal load.
+    #[must_use]
+    pub fn figures(&self) -> Figures {
+        figures(&self.profile, &self.elasticity, self.friction, self.memory.edge(), self.normal_force)
+    }
+
+    /// The figures of the definition's preload.
+    #[must_use]
+    pub fn initial_figures(&self) -> Figures {
+        self.initial
+    }
+
+    /// The state after the last move.
+    #[must_use]
+    pub fn state(&self) -> State {
+        #[cfg(test)]
+        super::profile::count::add(|calls| &mut calls.states);
+        let edge = self.memory.edge();
+        let scale = self.scale();
+        let (stick_radius, regime) = self.stick();
+        State {
+            displacement: self.displacement.value(),
+            force: self.force(),
+            indentation: edge.level.value(),
+            normal_force: self.normal_force(),
+            contact_radius: edge.radius,
+            stick_radius,
+            regime,
+            dissipated_energy: self.dissipated.value(),
+            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.memory.energy()).max(0.0),
+            memory_depth: self.memory_depth(),
+        }
+    }
+
+    fn stick(&self) -> (f64, Regime) {
+        let edge = self.memory.edge();
+        if edge.level.value() < 0.0 {
+            return (0.0, Regime::Separated);
+        }
+        if self.friction <= 0.0 {
+            return (0.0, Regime::GrossSlip);
+        }
+        match self.memory.slip_from() {
+            None => (edge.radius, Regime::Stick),
+            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
+            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
+            Some(_) => (edge.radius, Regime::Stick),
+        }
+    }
+}
+
+fn figures(profile: &Profile, elasticity: &Elasticity, friction: f64, edge: &Point, normal_force: f64) -> Figures {
+    let indentation = edge.level.value();
+    Figures {
+        e_star: elasticity.e_star(),
+        g_star: elasticity.g_star(),
+        indentation,
+        contact_radius: edge.radius,
+        normal_force,
+        max_pressure: normal::max_pressure(profile, elasticity, edge),
+        gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
+        gross_slip_force: friction * normal_force,
+    }
+}

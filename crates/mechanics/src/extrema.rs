@@ -1,0 +1,353 @@
+//! The extrema of the shear stress.
+//!
+//! Just inside a kink of the memory, where the slope changes by gamma, tau falls off like -gamma sqrt(x - r), so that its
+//! derivative is infinite there with a known sign; where f'' of the profile jumps it is log-infinite with one sign on both
+//! sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled between these radii, ever
+//! closer to those it is infinite at, and an extremum is where its sign changes: within a stretch a root, between two the
+//! radius they meet at. Signs alternate from one to the next, so none is found twice.
+
+use super::contact::Contact;
+use super::double_double::DoubleDouble;
+use super::profile::At;
+use super::traction::Peak;
+
+/// Towards a kink of the memory each distance is smaller by this factor, as a logarithm: beneath a thin ring the derivative
+/// has structure of every size from the whole stretch down to the ring's depth.
+const STEP: f64 = 0.511;
+/// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
+const FINEST: f64 = 1e-3;
+/// The same where the profile makes the derivative infinite: at this part of the square of the radius, half that of the radius.
+const FLOOR: f64 = 1e-14;
+/// Beyond this place a distance is below the round-off of twice the digits.
+const LAST: f64 = 72.0;
+/// Towards a knot a logarithm is followed by places that grow by this factor.
+const STRIDE: f64 = 2.0;
+/// With more stretches than this between the knots of a table, each is looked at in its middle and at its ends alone.
+const MANY: usize = 100;
+
+/// A derivative below this share of what it is the sum of is nought: the kernels of some families are good to 1e-13.
+const NOISE: f64 = 1e-12;
+
+/// How the derivative behaves at the end of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum End {
+    /// It is smooth, or ends there.
+    Smooth,
+    /// It is infinite as the inverse root of the distance; the difference of the squares of the ring beyond, m^2.
+    Root(f64),
+    /// It is infinite as the logarithm of the distance, or a power nearly so.
+    Logarithm,
+    /// It is infinite as the inverse of the distance.
+    Inverse,
+}
+
+/// A stretch of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end to
+/// infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their squares.
+struct Stretch {
+    inner: At,
+    outer: At,
+    /// How it begins, and the sign of the derivative there, nought if unknown.
+    start: (End, f64),
+    /// How it ends, likewise.
+    end: (End, f64),
+    /// One of so many that a few looks must do.
+    brief: bool,
+}
+
+/// The derivative at a place.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    place: f64,
+    value: f64,
+}
+
+impl Stretch {
+    fn half(&self) -> f64 {
+        0.5 * (self.outer.square - self.inner.square).value()
+    }
+
+    fn at(&self, place: f64) -> At {
+        if place.is_infinite() {
+            return if place > 0.0 { self.outer } else { self.inner };
+        }
+        let distance = DoubleDouble::from(self.half() * (-place.abs()).exp());
+        let square = if place > 0.0 { self.outer.square - distance } else { self.inner.square + distance };
+        At { radius: square.value().max(0.0).sqrt(), square }
+    }
+
+    /// What dips stand out by: the derivative grows with the inverse of this.
+    fn weight(&self, place: f64) -> f64 {
+        let end = if place > 0.0 { self.end.0 } else { self.start.0 };
+        match end {
+            End::Smooth | End::Logarithm => 1.0,
+            End::Root(_) => (-0.5 * place.abs()).exp(),
+            End::Inverse => (-place.abs()).exp(),
+        }
+    }
+
+    /// The place nearest to an end that is sampled where the profile makes the derivative infinite, without the sign.
+    fn floor(&self) -> f64 {
+        (self.half() / (FLOOR * self.outer.square.value())).ln().clamp(0.0, LAST)
+    }
+
+    /// Where the sign at an end is taken to hold, likewise: about a knot as far as the floor.
+    fn limit(&self, end: End) -> f64 {
+        if end == End::Logarithm { self.floor() } else { f64::INFINITY }
+    }
+
+    /// Places from the middle towards an end, likewise.
+    fn places(&self, (end, sign): (End, f64)) -> Vec<f64> {
+        let (half, floor) = (self.half(), self.floor());
+        let by_steps = |step: f64, last: f64| {
+            let steps = (1..).map(move |index| step * f64::from(index));
+            let mut places: Vec<f64> = steps.take_while(|&place| place < last).collect();
+            if last > 0.0 {
+                places.push(last);
+            }
+            places
+        };
+        match end {
+            End::Smooth => vec![0.6, 1.6, 4.0],
+            End::Root(beyond) => {
+                let least = if beyond > 0.0 { FINEST * beyond.min(2.0 * half) } else { FINEST * half };
+                by_steps(STEP, (half / least).ln().min(0.5 * LAST))
+            }
+            End::Logarithm if self.brief && sign.abs() > 0.0 => Vec::new(),
+            End::Logarithm if self.brief => vec![floor],
+            End::Logarithm => {
+                let mut places = vec![0.25, 0.5];
+                places.extend(
+                    std::iter::successors(Some(1.0), |place| Some(place * STRIDE)).take_while(|&place| place < floor),
+                );
+                places.retain(|&place| place < floor);
+                places.push(floor);
+                places
+            }
+            End::Inverse => by_steps(1.0, floor),
+        }
+    }
+}
+
+impl Contact {
+    /// d tau/d(r^2) but for a positive factor, from the right at a kink; nought where it is nought to round-off or unknown.
+    fn trend(&self, at: &At) -> f64 {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for (ring, line) in self.memory.rings() {
+            if ring.outer.radius < at.radius {
+                break;
+            }
+            let slope = line.slope.value();
+            // What is stuck since it was touched adds nothing, even where the kernel is infinite.
+            if slope.abs() > 0.0 {
+                let term = slope * self.profile.kernel_slope(at, &ring);
+                sum -= term;
+                size += term.abs();
+            }
+        }
+        if sum.is_infinite() || sum.abs() > NOISE * size { sum } else { 0.0 }
+    }
+
+    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `go_on` said no.
+    pub(super) fn peaks(&self, go_on: impl Fn() -> bool) -> Option<Vec<Peak>> {
+        let edge = At::point(self.memory.edge());
+        let bends = self.bends();
+        let settled = self.settled_from(&bends);
+        let pieces = self.memory.pieces();
+        let knots = self.profile.knots_below(edge.radius);
+        let singular = self.profile.singular_radii();
+        let mut search = Search { contact: self, sign: 0.0, peaks: Vec::new() };
+        for (index, &bend) in bends.iter().enumerate() {
+            if !go_on() {
+                return None;
+            }
+            // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
+            let from = if index == 0 { At::radius(0.0) } else { At::point(&pieces[index].inner) };
+            if from.square >= edge.square {
+                // The rest lies at a vertical edge.
+                break;
+            }
+            let outer = pieces.get(index + 1).map_or(*self.memory.edge(), |next| next.inner);
+            let to = At::point(&outer);
+            if settled[index] {
+                search.pass(&from, -bend);
+                continue;
+            }
+            let beyond = pieces.get(index + 2).map_or(*self.memory.edge(), |next| next.inner);
+            let last = if to.square >= edge.square && self.memory.edge().level.value() > self.profile.level(edge.radius)
+            {
+                (End::Logarithm, 0.0)
+            } else {
+                (End::Root((beyond.square - outer.square).value()), -bend)
+            };
+            let begins = knots.partition_point(|&knot| knot <= from.radius);
+            let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
+            let brief = ends - begins > MANY;
+            let within = knots[begins..ends].iter().map(|&knot| {
+                let at = At::radius(knot);
+                let rim = singular.contains(&knot);
+                // At the same distance on either side a logarithm has the same value: one look serves both.
+                let beside = DoubleDouble::square_of(knot) * (1.0 + FLOOR);
+                let infinite = if rim {
+                    self.trend(&at)
+                } else if brief {
+                    self.trend(&At { radius: knot, square: beside })
+                } else {
+                    0.0
+                };
+                if rim && infinite.is_infinite() {
+                    // Where tau is infinite its derivative has one sign on the one side and the other on the other.
+                    (at, (End::Inverse, -infinite), (End::Inverse, infinite))
+                } else {
+                    (at, (End::Logarithm, infinite), (End::Logarithm, infinite))
+                }
+            });
+            let mut start = self.start(index, &from, &knots);
+            let mut inner = from;
+            for (outer, end, next) in within.chain([(to, last, last)]) {
+                if !go_on() {
+                    return None;
+                }
+                search.through(&Stretch { inner, outer, start, end, brief });
+                (inner, start) = (outer, next);
+            }
+        }
+        let spike = |peak: &Peak| singular.contains(&peak.radius) || peak.radius >= edge.radius;
+        search.peaks.retain(|peak| !spike(peak) && peak.radius > 0.0);
+        Some(search.peaks)
+    }
+
+    /// How the derivative begins beyond kink `index` of the memory, the centre for the first.
+    fn start(&self, index: usize, from: &At, knots: &[f64]) -> (End, f64) {
+        let sign = self.trend(from);
+        let end = if index == 0 {
+            let slips = self.memory.pieces()[0].line.slope.value().abs() > 0.0;
+            if !slips || self.profile.smooth_centre() { End::Smooth } else { End::Inverse }
+        } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
+            return (End::Logarithm, 0.0);
+        } else {
+            End::Smooth
+        };
+        (end, sign)
+    }
+
+    /// Change of slope at each kink, from the first beyond the centre to the edge.
+    fn bends(&self) -> Vec<f64> {
+        let slope = |index: usize| self.memory.pieces().get(index).map_or(0.0, |piece| piece.line.slope.value());
+        (0..self.memory.pieces().len()).map(|index| slope(index + 1) - slope(index)).collect()
+    }
+
+    /// Whether the derivative keeps one sign in the interval inside each kink, known without a search: where all bends from
+    /// there on alternate and do not grow, and the kernel falls, the sum is an alternating one led by its first term.
+    fn settled_from(&self, bends: &[f64]) -> Vec<bool> {
+        let mut settled = vec![false; bends.len()];
+        for index in (0..bends.len()).rev() {
+            let bend = bends[index];
+            settled[index] = match bends.get(index + 1) {
+                Some(next) => settled[index + 1] && bend * next < 0.0 && bend.abs() >= next.abs(),
+                // A straight end carries nothing on: there is no first term to lead.
+                None => bend.abs() > 0.0 && self.profile.kernel_falls(),
+            };
+        }
+        settled
+    }
+}
+
+/// The search on its way from the centre outward.
+struct Search<'a> {
+    contact: &'a Contact,
+    /// The sign that the derivative had last, nought before the first.
+    sign: f64,
+    peaks: Vec<Peak>,
+}
+
+impl Search<'_> {
+    fn found(&mut self, at: &At) {
+        self.peaks.push(Peak { radius: at.radius, shear: self.contact.shear_at(at) });
+    }
+
+    /// Crosses a radius beyond which the derivative has the sign of `value`.
+    fn pass(&mut self, at: &At, value: f64) {
+        if self.sign * value.signum() < 0.0 {
+            self.found(at);
+        }
+        self.sign = value.signum();
+    }
+
+    fn sample(&self, stretch: &Stretch, place: f64) -> Sample {
+        Sample { place, value: self.contact.trend(&stretch.at(place)) * stretch.weight(place) }
+    }
+
+    /// Goes through a stretch from its inner end to its outer.
+    fn through(&mut self, stretch: &Stretch) {
+        if stretch.half() <= 0.0 {
+            return;
+        }
+        let inward = stretch.places(stretch.start).into_iter().rev().map(|place| -place);
+        let outward = stretch.places(stretch.end);
+        let mut samples = vec![Sample { place: -stretch.limit(stretch.start.0), value: stretch.start.1 }];
+        samples.extend(inward.chain([0.0]).chain(outward).map(|place| self.sample(stretch, place)));
+        samples.push(Sample { place: stretch.limit(stretch.end.0), value: stretch.end.1 });
+        samples.retain(|sample| sample.value.abs() > 0.0);
+        let Some(first) = samples.first() else { return };
+        self.pass(&stretch.inner, first.value);
+        for (index, pair) in samples.windows(2).enumerate() {
+            let (before, after) = (pair[0], pair[1]);
+            if before.value * after.value < 0.0 {
+                self.turn(stretch, before, after.place);
+            } else if let Some(&next) = samples.get(index + 2)
+                && after.value * next.value > 0.0
+                && before.place.is_finite()
+                && next.place.is_finite()
+                && after.value.abs() < before.value.abs().min(next.value.abs())
+                && let Some(dip) = self.dip(stretch, before, next)
+            {
+                // Two roots between samples of one sign.
+                self.turn(stretch, before, dip.place);
+                self.turn(stretch, dip, next.place);
+            }
+        }
+    }
+
+    /// Where the derivative dips through nought between two samples of one sign, if it does.
+    fn dip(&self, stretch: &Stretch, mut low: Sample, mut high: Sample) -> Option<Sample> {
+        let sign = low.value.signum();
+        for _ in 0..48 {
+            let third = (high.place - low.place) / 3.0;
+            let (lower, upper) = (self.sample(stretch, low.place + third), self.sample(stretch, high.place - third));
+            if let Some(&through) = [lower, upper].iter().find(|sample| sample.value * sign < 0.0) {
+                return Some(through);
+            }
+            let [a, b, c, d] = [low, lower, upper, high].map(|sample| sample.value.abs());
+            // A curve that is bent upward stays above the lines drawn on from either side, which meet at this value.
+            let (fall, rise) = (a - b, d - c);
+            let least = if fall + rise > 0.0 { (b * rise + c * fall - fall * rise) / (fall + rise) } else { b.min(c) };
+            if least > 0.0 {
+                return None;
+            }
+            if b < c { high = upper } else { low = lower }
+        }
+        None
+    }
+
+    /// Bisects for the change of sign between a sample and a place: the derivative ends in an inverse root, which nothing
+    /// quicker takes without care, and there are few of these.
+    fn turn(&mut self, stretch: &Stretch, from: Sample, to: f64) {
+        let (mut low, mut high) = (from.place.max(-LAST), to.min(LAST));
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.contact.trend(&stretch.at(middle)) * from.value.signum() > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        self.sign = -from.value.signum();
+        // So near to the centre there is no telling it from the centre.
+        if stretch.inner.square.value() > 0.0 || low > -LAST {
+            self.found(&stretch.at(high));
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The mechanics of a frictional contact, in plain numbers: no HTTP, no serialisation, no concurrency.
+//!
+//! # The theory in a page
+//!
+//! Two elastic bodies, rotationally symmetric about the z axis, are pressed together over a circle of radius a and moved
+//! sideways by U. Coulomb friction bounds the shear stress by mu times the pressure. By the method of dimensionality
+//! reduction (Popov & Hess 2015) the contact is that of a row of independent springs along x with a plane profile g(x):
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | f(r), g(x) | gap of the undeformed bodies; g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr | m |
+//! | d = g(a), a, F_N | indentation, contact radius, normal force | m, m, N |
+//! | E*, G*, mu | reduced modulus, reduced shear modulus, coefficient of friction | Pa, Pa, – |
+//! | m = mu E*/G* | scale of tangential against normal displacement | – |
+//! | U, W = U/m | tangential displacement of the indenter, and scaled | m |
+//! | u_x, w = u_x/m | tangential displacement of a spring, and scaled | m |
+//! | y = g(x), X(y) | level of a spring, and its radius | m |
+//!
+//! A spring at level y is pressed in by d - y, and slips where |w| = d - y. The memory holds w over y as a stack of
+//! straight pieces, which is exact for every path that is straight in (d, U) from move to move. From the pieces follow
+//!
+//! - the tangential force F_x = 2 G* m int_0^a w dx,
+//! - the shear stress tau(r) = -(G*/pi) int_r^a u_x'(x)/sqrt(x^2 - r^2) dx,
+//! - the elastic energy G* m^2 int_0^a w^2 dx, and the friction work of each move,
+//!
+//! all as sums over pieces of a few integrals that each [`Profile`] knows in closed form.
+//!
+//! Positive displacement gives positive force and positive shear stress. Energies are of the tangential problem alone.
+//!
+//! # The map
+//!
+//! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
+//! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `extrema`, `surface`, `accuracy`: what is
+//! asked of it. `waypoint`: where a move is on its way. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
+//! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
+
+mod accuracy;
+mod contact;
+mod double_double;
+pub mod elasticity;
+mod error;
+mod extrema;
+mod force;
+mod normal;
+mod packed;
+pub mod profile;
+pub mod protocol;
+pub mod range;
+mod release;
+mod route;
+mod slip_history;
+pub mod springs;
+mod state;
+mod surface;
+mod traction;
+mod waypoint;
+
+pub use accuracy::Estimate;
+pub use contact::Contact;
+pub use double_double::DoubleDouble;
+pub use elasticity::{Body, Elasticity};
+pub use error::Error;
+pub use normal::{Figures, Preload};
+pub use packed::ENGINE;
+pub use profile::{Profile, Sphere};
+pub use route::{DEFAULT_TOLERANCE, MAX_CHORDS};
+pub use springs::Springs;
+pub use state::{Move, Normal, Regime, Setup, State, Tangential};
+pub use traction::{Peak, Residual};

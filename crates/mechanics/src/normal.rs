@@ -1,0 +1,181 @@
+//! Normal contact: indentation, contact radius, normal force and pressure, each from the others.
+//!
+//! d = g(a), F_N = 2 E* int_0^a (d - g) dx = 2 E* int_0^d X(y) dy, p(r) = (E*/pi) int dy/sqrt(X(y)^2 - r^2) over X(y) > r
+//! (Popov & Hess 2015; the last form takes in a vertical edge as well).
+
+use super::elasticity::Elasticity;
+use super::error::Error;
+use super::profile::{At, Point, Profile, Ring};
+use super::range::short;
+
+/// Radii at which the largest pressure is looked for first.
+const PRESSURE_SCAN: usize = 64;
+
+/// What presses the bodies together at the start. Zero is a contact just touching.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preload {
+    /// F_N, N.
+    NormalForce(f64),
+    /// d, m.
+    Indentation(f64),
+    /// a, m.
+    ContactRadius(f64),
+}
+
+/// The figures that follow from a definition and a normal load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Reduced modulus E*, Pa.
+    pub e_star: f64,
+    /// Reduced shear modulus G*, Pa.
+    pub g_star: f64,
+    /// Indentation d, m; below nought a gap.
+    pub indentation: f64,
+    /// Contact radius a, m.
+    pub contact_radius: f64,
+    /// Normal force F_N, N.
+    pub normal_force: f64,
+    /// Largest pressure, Pa; `None` where it is infinite.
+    pub max_pressure: Option<f64>,
+    /// Displacement of gross slip on first loading, u_max = mu (E*/G*) d, m.
+    pub gross_slip_displacement: f64,
+    /// Tangential force of gross slip, mu F_N, N.
+    pub gross_slip_force: f64,
+}
+
+impl Figures {
+    /// The pressure that stresses are compared with, Pa: the largest, or where that is infinite the mean.
+    #[must_use]
+    pub fn unit_pressure(&self) -> f64 {
+        self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))
+    }
+}
+
+/// F_N/(pi a^2), Pa; not finite without a contact.
+pub(super) fn mean_pressure(normal_force: f64, contact_radius: f64) -> f64 {
+    normal_force / (std::f64::consts::PI * contact_radius * contact_radius)
+}
+
+/// The ring from the centre to `edge`: the whole contact.
+pub(super) fn whole(profile: &Profile, edge: &Point) -> Ring {
+    Ring::between(profile.point(super::double_double::DoubleDouble::ZERO), *edge)
+}
+
+/// int_0^d X dy = F_N/(2 E*), m^2, over a ring: what its levels add to the load.
+pub(super) fn load(profile: &Profile, ring: &Ring) -> f64 {
+    if ring.depth <= 0.0 {
+        return 0.0;
+    }
+    ring.inner.radius * ring.depth + profile.moments(ring).first
+}
+
+/// Normal force, N, of the contact that ends at `edge`.
+pub(super) fn force(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> f64 {
+    2.0 * elasticity.e_star() * load(profile, &whole(profile, edge))
+}
+
+/// Indentation, m, that carries `normal_force`, N.
+pub(super) fn indentation(profile: &Profile, elasticity: &Elasticity, normal_force: f64) -> f64 {
+    profile.indentation_for(normal_force / (2.0 * elasticity.e_star()))
+}
+
+/// Indentation, m, at which the contact has this radius, m.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a radius that is not that of one load alone: below a flat end, or from a vertical edge on.
+pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Error> {
+    let allowed = |allowed: String| Error::OutOfRange { quantity: "contact_radius", value: radius, allowed };
+    profile.check_radius(radius)?;
+    let flat = profile.radius(0.0);
+    if radius < flat {
+        return Err(allowed(format!("from the radius of the flat end, {} m, on", short(flat))));
+    }
+    if let Some(rim) = profile.rim_radius()
+        && radius >= rim
+    {
+        return Err(allowed(format!(
+            "below the radius of the punch, {} m, where it says nothing of the load",
+            short(rim)
+        )));
+    }
+    Ok(profile.level(radius))
+}
+
+/// Pressure, Pa, at radius r; nought outside the contact.
+pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point, at: &At) -> f64 {
+    let ring = whole(profile, edge);
+    if ring.depth <= 0.0 {
+        return 0.0;
+    }
+    elasticity.e_star() / std::f64::consts::PI * profile.kernel(at, &ring)
+}
+
+/// [`pressure`] at each of `radii`, m: quicker than one by one.
+pub(super) fn pressures(profile: &Profile, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
+    let ring = whole(profile, edge);
+    if ring.depth <= 0.0 {
+        return vec![0.0; radii.len()];
+    }
+    let unit = elasticity.e_star() / std::f64::consts::PI;
+    profile.kernel_sums(&[(ring, 1.0)], radii).into_iter().map(|sum| unit * sum).collect()
+}
+
+/// The largest pressure, Pa; `None` where it is infinite.
+pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
+    let at = |radius: f64| pressure(profile, elasticity, edge, &At::radius(radius));
+    let inside = |radius: &f64| *radius <= edge.radius;
+    let spikes = profile.singular_radii().into_iter().filter(inside).chain([edge.radius]);
+    if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {
+        return None;
+    }
+    if profile.kernel_falls() {
+        return Some(at(0.0));
+    }
+    // The largest of a scan, then thirds about it: a profile that is steep outside has its maximum off the centre.
+    let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
+    let scan: Vec<f64> = (0..PRESSURE_SCAN).map(|index| at(radius(index))).collect();
+    let best = (0..PRESSURE_SCAN).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
+    let (mut low, mut high) = (radius(best.saturating_sub(1)), radius(best + 1));
+    // At a maximum, half the digits of the radius are all that count.
+    for _ in 0..40 {
+        let third = (high - low) / 3.0;
+        if at(low + third) >= at(high - third) { high -= third } else { low += third }
+    }
+    Some(at(0.5 * (low + high)).max(scan[best]))
+}
+
+/// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.
+///
+/// The load is concave in the depth from the outside and convex from the inside, so Newton's step from the side of the
+/// smaller slope never passes the root: it converges from any start, even where X vanishes and the slope with it.
+pub(super) fn depth_for(profile: &Profile, ring: &Ring, upward: bool, wanted: f64) -> f64 {
+    use super::double_double::DoubleDouble;
+    let part = |depth: f64| {
+        let depth = DoubleDouble::from(depth);
+        if upward {
+            Ring::between(ring.inner, profile.point(ring.inner.level + depth))
+        } else {
+            Ring::between(profile.point(ring.outer.level - depth), ring.outer)
+        }
+    };
+    if wanted <= 0.0 {
+        return 0.0;
+    }
+    let start_radius = if upward { ring.inner.radius } else { ring.outer.radius };
+    let mut depth = if start_radius > 0.0 { (wanted / start_radius).min(ring.depth) } else { ring.depth };
+    // Newton gains two thirds of the remaining logarithm a step at the worst (X ~ sqrt(y)); 200 steps span all doubles.
+    for _ in 0..200 {
+        let tried = part(depth);
+        let slope = if upward { tried.outer.radius } else { tried.inner.radius };
+        let step = (wanted - load(profile, &tried)) / slope;
+        let next = (depth + step).clamp(0.0, ring.depth);
+        let done = !next.is_finite() || (next - depth).abs() <= 2.0 * f64::EPSILON * depth;
+        if next.is_finite() {
+            depth = next;
+        }
+        if done {
+            break;
+        }
+    }
+    depth
+}

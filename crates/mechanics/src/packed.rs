@@ -1,0 +1,158 @@
+//! A contact as bytes, and back to the last bit: what a replay can begin at.
+//!
+//! Everything that moves is written as it is, sums included; what follows from the definition is not, since whoever reads
+//! the bytes has made the contact from it. Little-endian `f64` throughout:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 4 | [`LAYOUT`] and, in the upper half, [`ENGINE`] |
+//! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
+//! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
+//! | the rest | the memory, see `memory/packed.rs` |
+
+use super::contact::Contact;
+use super::double_double::DoubleDouble;
+use super::profile::Point;
+use super::slip_history::Memory;
+
+/// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for whatever
+/// contact: bytes of another version are not read, so that states packed by an older engine are computed anew from their
+/// moves and agree with those that never were packed. `tests/packed.rs` holds a digest of results to this number.
+pub const ENGINE: u16 = 2;
+
+/// The version of the arrangement of the bytes.
+const LAYOUT: u16 = 1;
+
+/// Writes numbers one after the other.
+pub(super) struct Writer(Vec<u8>);
+
+/// Takes numbers one after the other; nothing once the bytes are used up.
+pub(super) struct Reader<'a>(&'a [u8]);
+
+impl Writer {
+    pub(super) fn number(&mut self, value: f64) {
+        self.0.extend_from_slice(&value.to_le_bytes());
+    }
+
+    pub(super) fn double(&mut self, value: DoubleDouble) {
+        let (hi, lo) = value.parts();
+        self.number(hi);
+        self.number(lo);
+    }
+
+    pub(super) fn point(&mut self, point: &Point) {
+        self.double(point.level);
+        self.number(point.radius);
+        self.double(point.square);
+    }
+}
+
+impl Reader<'_> {
+    fn version(&mut self) -> Option<u16> {
+        let (head, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(u16::from_le_bytes(*head))
+    }
+
+    /// Takes the versions at the beginning; whether they are those of this program.
+    fn is_ours(&mut self) -> bool {
+        self.version() == Some(LAYOUT) && self.version() == Some(ENGINE)
+    }
+
+    /// A number whatever its bits.
+    fn any(&mut self) -> Option<f64> {
+        let (head, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(f64::from_le_bytes(*head))
+    }
+
+    pub(super) fn number(&mut self) -> Option<f64> {
+        self.any().filter(|value| value.is_finite())
+    }
+
+    pub(super) fn double(&mut self) -> Option<DoubleDouble> {
+        Some(DoubleDouble::from_parts(self.number()?, self.number()?))
+    }
+
+    pub(super) fn point(&mut self) -> Option<Point> {
+        Some(Point { level: self.double()?, radius: self.number()?, square: self.double()? })
+    }
+
+    /// How many items of `size` bytes the rest is, if it is a whole number of them.
+    pub(super) fn count(&self, size: usize) -> Option<usize> {
+        self.0.len().is_multiple_of(size).then_some(self.0.len() / size)
+    }
+}
+
+impl Contact {
+    /// How many bytes [`Contact::pack`] makes.
+    #[must_use]
+    pub fn packed_length(&self) -> usize {
+        2 * size_of::<u16>() + 11 * size_of::<f64>() + self.memory.packed_length()
+    }
+
+    /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another version
+    /// of the engine or of the layout refuses them.
+    #[must_use]
+    pub fn pack(&self) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.packed_length());
+        bytes.extend_from_slice(&LAYOUT.to_le_bytes());
+        bytes.extend_from_slice(&ENGINE.to_le_bytes());
+        let mut writer = Writer(bytes);
+        for value in self.marks() {
+            writer.number(value);
+        }
+        writer.double(self.displacement);
+        writer.number(self.normal_force);
+        writer.double(self.dissipated);
+        writer.number(self.path_error);
+        writer.number(self.path_kernel);
+        self.memory.pack(&mut writer);
+        writer.0
+    }
+
+    /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are sound.
+    #[must_use]
+    pub fn packs_like(bytes: &[u8]) -> bool {
+        Reader(bytes).is_ours()
+    }
+
+    /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a contact of
+    /// the same definition, such as the virgin one. `None` for bytes that are cut short, of another version, of a contact
+    /// with another preload, or no state of a contact at all; damage that leaves sound numbers goes unnoticed.
+    #[must_use]
+    pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
+        let mut reader = Reader(bytes);
+        if !reader.is_ours() {
+            return None;
+        }
+        for value in self.marks() {
+            reader.any().filter(|found| found.to_bits() == value.to_bits())?;
+        }
+        let displacement = reader.double()?;
+        let normal_force = reader.number()?;
+        let dissipated = reader.double()?;
+        // The error of a stress may be without bound.
+        let (path_error, path_kernel) = (reader.any()?, reader.any()?);
+        let memory = Memory::unpack(&mut reader)?;
+        Some(Contact {
+            profile: self.profile.clone(),
+            elasticity: self.elasticity,
+            friction: self.friction,
+            memory,
+            displacement,
+            normal_force,
+            dissipated,
+            initial: self.initial,
+            path_error,
+            path_kernel,
+            inverse_scale: self.inverse_scale,
+        })
+    }
+
+    /// What tells contacts of different definitions apart well enough, and machines that compute a preload differently.
+    fn marks(&self) -> [f64; 4] {
+        let (hi, lo) = self.inverse_scale.parts();
+        [self.initial.indentation, self.initial.normal_force, hi, lo]
+    }
+}

@@ -1,0 +1,127 @@
+//! Cone f = T r: g(x) = (pi/2) T x, K(r, c) = (pi/2) T arcosh(c/r) (Love 1939; Sneddon 1965).
+//!
+//! Radii are proportional to levels, so nothing can cancel. Pressure and shear are log-infinite at the tip.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::super::error::Error;
+use super::super::range;
+use super::shape::Shape;
+use super::{At, DoubleDouble, Moments, Ring, Span};
+
+/// A cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// g', pi T/2.
+    rise: f64,
+}
+
+impl Cone {
+    /// The cone of slope T = dz/dr.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::SLOPE`].
+    pub fn new(slope: f64) -> Result<Cone, Error> {
+        Ok(Cone { rise: FRAC_PI_2 * range::SLOPE.check(slope)? })
+    }
+}
+
+impl Shape for Cone {
+    fn level(&self, radius: f64) -> f64 {
+        self.rise * radius
+    }
+
+    fn slope(&self, _radius: f64) -> f64 {
+        self.rise
+    }
+
+    fn radius(&self, level: f64) -> f64 {
+        level / self.rise
+    }
+
+    fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        let radius = level.over(DoubleDouble::from(self.rise));
+        radius * radius
+    }
+
+    fn load(&self, radius: f64) -> f64 {
+        0.5 * self.rise * radius * radius
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        (2.0 * self.rise * load).sqrt()
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        self.rise * span.width()
+    }
+
+    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        depth / self.rise * (ring.inner.radius + ring.outer.radius)
+    }
+
+    fn power(&self) -> f64 {
+        1.0
+    }
+
+    fn moments(&self, span: &Span) -> Moments {
+        let width = span.width();
+        let depth = self.rise * width;
+        Moments { width, first: 0.5 * depth * width, second: depth * depth * width / 3.0 }
+    }
+
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            return 0.0;
+        }
+        // arcosh(c/r) = ln((c + sqrt(c^2 - r^2))/r); the difference of two is a logarithm of nearly one.
+        let (low, v_low, gap) =
+            if inner > 0.0 { (span.inner_radius, inner.sqrt(), span.gap) } else { (at.radius, 0.0, outer) };
+        let step = gap / (low + span.outer_radius) + gap / (v_low + outer.sqrt());
+        self.rise * (step / (low + v_low)).ln_1p()
+    }
+
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            return 0.0;
+        }
+        // d arcosh(c/r)/d(r^2) = -1/(2 r^2) * c/v, v = sqrt(c^2 - r^2), of which the part -1/(2 r^2) is common: c/v - 1 = r^2/(v (c + v)).
+        let share = |radius: f64, v: f64| 0.5 / (v * (radius + v));
+        let v = outer.sqrt();
+        let end = share(span.outer_radius, v);
+        if inner <= 0.0 {
+            return -self.rise * (end + 0.5 / at.square.value());
+        }
+        let (low, v_low) = (span.inner_radius, inner.sqrt());
+        if v > 2.0 * v_low {
+            return self.rise * (share(low, v_low) - end);
+        }
+        let dx = span.gap / (low + span.outer_radius);
+        let dv = span.gap / (v_low + v);
+        let (ends, starts) = (v * (span.outer_radius + v), v_low * (low + v_low));
+        // The difference of the reciprocals, from that of v (x + v).
+        self.rise * 0.5 * (dv * (span.outer_radius + v) + v_low * (dx + dv)) / (ends * starts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{At, DoubleDouble, Ring};
+    use super::{Cone, Shape};
+
+    #[test]
+    fn only_the_ring_at_the_tip_is_infinite_there() {
+        let cone = Cone::new(0.4).unwrap();
+        let point = |level: f64| {
+            let square = cone.square(DoubleDouble::from(level));
+            super::super::Point { level: level.into(), radius: cone.radius(level), square }
+        };
+        let tip = At::radius(0.0);
+        let inner = cone.span(&Ring::between(point(0.0), point(0.1)));
+        let outer = cone.span(&Ring::between(point(0.1), point(0.2)));
+        assert_eq!(cone.kernel(&tip, &inner).to_bits(), f64::INFINITY.to_bits());
+        assert!((cone.kernel(&tip, &outer) / (0.4 * std::f64::consts::FRAC_PI_2 * 2f64.ln()) - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,280 @@
+//! Sphere as it is, f = R - sqrt(R^2 - r^2): g(x) = x artanh(x/R), int x dg = ((R^2 + x^2) artanh(x/R) - x R)/2 (Segedin 1957).
+//!
+//! With x = R tanh(sigma): g = R sigma tanh(sigma), all of it smooth for |Im sigma| < pi/2. For the kernel let C = sqrt(R^2 - x^2),
+//! D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
+//! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R.
+
+use super::super::error::Error;
+use super::super::range;
+use super::chart::{self, Chart};
+use super::gauss::{Singular, along_strip};
+use super::roots::increasing;
+use super::shape::Shape;
+use super::{At, DoubleDouble, Moments, Ring, Span};
+
+/// A sphere, not its osculating paraboloid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExactSphere {
+    radius: f64,
+}
+
+/// A radius x in the coordinate sigma.
+#[derive(Clone, Copy)]
+struct Place {
+    x: f64,
+    /// sqrt(R^2 - x^2), m.
+    height: f64,
+    sigma: f64,
+}
+
+impl ExactSphere {
+    /// The sphere of radius R, m.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    pub fn new(radius: f64) -> Result<ExactSphere, Error> {
+        Ok(ExactSphere { radius: range::RADIUS.check(radius)? })
+    }
+
+    /// What every contact radius must stay below, m: R less a millionth of a millionth, nearer to which X says nothing of the level.
+    pub(super) fn limit(&self) -> f64 {
+        self.radius * (1.0 - 1e-12)
+    }
+
+    /// x/R, below one even where rounding has x = R, so that levels stay finite.
+    fn share(&self, radius: f64) -> f64 {
+        (radius / self.radius).min(1.0 - 0.5 * f64::EPSILON)
+    }
+
+    /// R^2 less a square, kept off nought where rounding has x = R.
+    fn height_square(&self, square: DoubleDouble) -> f64 {
+        let whole = self.radius * self.radius;
+        (DoubleDouble::square_of(self.radius) - square).value().max(1e-30 * whole)
+    }
+
+    fn place(&self, radius: f64, square: DoubleDouble) -> Place {
+        let height = self.height_square(square).sqrt();
+        Place { x: radius, height, sigma: (radius / height).asinh() }
+    }
+
+    fn ends(&self, span: &Span) -> (Place, Place, f64) {
+        let inner = self.place(span.inner_radius, span.inner);
+        let outer = self.place(span.outer_radius, span.outer);
+        let turn = (self.radius * span.width() / (inner.height * outer.height)).asinh();
+        (inner, outer, turn.min(outer.sigma))
+    }
+
+    /// x_outer - x and g_outer - g where sigma is smaller by `turn`.
+    fn below(&self, outer: Place, turn: f64) -> (f64, f64) {
+        let sigma = outer.sigma - turn;
+        let dx = outer.height * turn.sinh() / sigma.cosh();
+        (dx, turn * outer.x + sigma * dx)
+    }
+
+    /// The sigma of a level.
+    fn sigma(&self, level: f64) -> f64 {
+        if level <= 0.0 {
+            return 0.0;
+        }
+        let y = level / self.radius;
+        let guess = if y < 1.0 { y.sqrt() * (1.0 + y / 6.0) } else { y + 0.2 };
+        increasing(guess, |s| (s * s.tanh() - y, s.tanh() + s / s.cosh().powi(2)))
+    }
+}
+
+/// (s - tanh s)/s.
+fn shortfall(s: f64) -> f64 {
+    let u = s * s;
+    if u < 4e-3 {
+        u * (1.0 / 3.0 - u * (2.0 / 15.0 - u * (17.0 / 315.0 - u * (62.0 / 2835.0 - u * (1382.0 / 155_925.0)))))
+    } else {
+        (s - s.tanh()) / s
+    }
+}
+
+impl Chart for ExactSphere {
+    fn core(&self) -> f64 {
+        0.0
+    }
+
+    fn level_at(&self, t: f64) -> f64 {
+        self.level(t)
+    }
+
+    fn slope_at(&self, t: f64) -> f64 {
+        self.slope(t)
+    }
+
+    fn bend_at(&self, t: f64) -> f64 {
+        let u = self.share(t);
+        let square = u * u;
+        if square > 0.1 {
+            let rest = 1.0 - square;
+            return 2.0 * u / (rest * rest) - u / rest - u.atanh();
+        }
+        // sum over k of (4 k (k + 1)/(2k + 1)) u^(2k+1).
+        let sum =
+            (1..=16).rev().map(f64::from).fold(0.0, |sum, k| square * (sum + 4.0 * k * (k + 1.0) / (2.0 * k + 1.0)));
+        u * sum
+    }
+
+    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
+        self.rise(&Span::under(DoubleDouble::square_of(top), top, dt * (t + top)))
+    }
+
+    fn start(&self, level: f64) -> f64 {
+        self.radius(level)
+    }
+
+    fn ceiling(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Shape for ExactSphere {
+    fn level(&self, radius: f64) -> f64 {
+        radius * self.share(radius).atanh()
+    }
+
+    fn slope(&self, radius: f64) -> f64 {
+        let u = self.share(radius);
+        u.atanh() + u / ((1.0 - u) * (1.0 + u))
+    }
+
+    fn radius(&self, level: f64) -> f64 {
+        self.radius * self.sigma(level).tanh()
+    }
+
+    fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        let sigma = self.sigma(level.value());
+        if sigma > 1.0 {
+            return DoubleDouble::square_of(self.radius * sigma.tanh());
+        }
+        // R y tanh(sigma)/sigma: where a << R the factor is so near to one that its rounding does not count.
+        let factor = DoubleDouble::from(1.0) - DoubleDouble::from(shortfall(sigma.max(f64::MIN_POSITIVE)));
+        level * self.radius * factor
+    }
+
+    fn load(&self, radius: f64) -> f64 {
+        let sigma = self.share(radius).atanh();
+        0.5 * (self.radius * self.radius * sigma * shortfall(sigma.max(f64::MIN_POSITIVE)) + radius * radius * sigma)
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        if load <= 0.0 {
+            return 0.0;
+        }
+        let target = 2.0 * load / self.radius / self.radius;
+        let guess = (0.75 * target).cbrt().min(0.5 * target + 1.0);
+        let sigma = increasing(guess, |s| {
+            let tanh = s.tanh();
+            (s * shortfall(s) + tanh * tanh * s - target, 2.0 * tanh * (s / s.cosh().powi(2) + tanh))
+        });
+        self.radius * sigma * sigma.tanh()
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        let (inner, outer, turn) = self.ends(span);
+        turn * outer.x + inner.sigma * span.width()
+    }
+
+    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        let plain = (ring.outer.square - ring.inner.square).value();
+        if plain > 0.5 * ring.outer.square.value() {
+            return plain;
+        }
+        let outer = self.place(ring.outer.radius, ring.outer.square);
+        let steepness = |sigma: f64| self.radius * (sigma.tanh() + sigma / sigma.cosh().powi(2));
+        let mut turn = (depth / steepness(outer.sigma)).min(0.5 * outer.sigma);
+        for _ in 0..8 {
+            let step = (depth - self.below(outer, turn).1) / steepness(outer.sigma - turn);
+            turn = (turn + step).clamp(0.5 * turn, outer.sigma);
+            if step.abs() <= 1e-9 * turn {
+                break;
+            }
+        }
+        let width = self.below(outer, turn).0;
+        width * (2.0 * outer.x - width)
+    }
+
+    fn ceiling(&self) -> f64 {
+        self.radius
+    }
+
+    fn moments(&self, span: &Span) -> Moments {
+        let (_, outer, length) = self.ends(span);
+        // Poles of the fourth order at i pi/2: kept at arm's length.
+        let singular = Singular { below: 1.1, above: f64::INFINITY };
+        let (mut done, mut first, mut second) = (0.0, 0.0, 0.0);
+        while done < length {
+            let panel = singular.panel(outer.sigma - done, length - done);
+            panel.visit(|below, weight| {
+                let turn = done + below;
+                let (_, h) = self.below(outer, turn);
+                let area = weight * h * self.radius / (outer.sigma - turn).cosh().powi(2);
+                first += area;
+                second += area * h;
+            });
+            done += panel.width;
+        }
+        Moments { width: span.width(), first, second }
+    }
+
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            return 0.0;
+        }
+        let height = self.height_square(at.square).sqrt();
+        let square_outer = self.height_square(span.outer);
+        let (v_low, gap) = if inner > 0.0 { (inner.sqrt(), span.gap) } else { (0.0, outer) };
+        let step = gap / (v_low + outer.sqrt());
+        let length = (step / (v_low + height)).ln_1p() + 0.5 * (gap / square_outer).ln_1p();
+        let top = (outer / square_outer).sqrt().asinh();
+        let (square, stretch) = (at.square.value() / (height * height), self.radius / height);
+        // Inward from the outer end, where asinh(q)/(q cosh s) is least: the panels must not end early, so from s = low on.
+        let low = (top - length).max(0.0);
+        let curved = along_strip(length, 1.0, f64::INFINITY, |s| {
+            let s = low + s;
+            let q = (square + (stretch * s.sinh()).powi(2)).sqrt();
+            let angle = if q > 1e-8 { q.asinh() / q } else { 1.0 };
+            angle / s.cosh()
+        });
+        stretch * length + curved
+    }
+
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        if at.radius > 0.0 || span.inner_radius > 0.0 {
+            return chart::kernel_slope(self, at, span);
+        }
+        // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
+        let start = 1e-9 * span.outer_radius;
+        let (radius, square) = (start, DoubleDouble::square_of(start));
+        chart::kernel_slope(self, &At { radius, square }, span)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::shape::Shape;
+    use super::{DoubleDouble, ExactSphere};
+
+    #[test]
+    fn far_from_the_limit_it_is_the_paraboloid() {
+        let sphere = ExactSphere::new(2.0).unwrap();
+        // R y (1 - y/(3R)) to second order.
+        let square = sphere.square(DoubleDouble::from(1e-20));
+        let rest = (square - DoubleDouble::from(1e-20) * 2.0).value() / (2e-20 * -1e-20 / 6.0) - 1.0;
+        assert!(rest.abs() < 1e-6, "{rest:e}");
+    }
+
+    #[test]
+    fn any_level_has_a_radius_below_the_limit() {
+        let sphere = ExactSphere::new(1e-3).unwrap();
+        for level in [1e-30, 1e-9, 1e-3, 1.0, 1e9] {
+            let radius = sphere.radius(level);
+            assert!(radius > 0.0 && radius <= 1e-3, "{level} {radius}");
+            assert!(sphere.square(DoubleDouble::from(level)).value() <= 1e-6 * (1.0 + 1e-15));
+        }
+    }
+}

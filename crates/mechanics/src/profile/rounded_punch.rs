@@ -1,0 +1,80 @@
+//! Flat punch with a rounded edge, f = (r - b)^2/(2R) for r > b: g = (x/R)(t - b phi), phi = atan(t/b), t = sqrt(x^2 - b^2).
+//!
+//! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999). All stays
+//! positive through t - b phi = b (u - atan u), u = t/b.
+
+use super::super::error::Error;
+use super::super::range;
+use super::angle::tangent_less_angle;
+use super::chart::{self, Chart, flat_core};
+use super::{At, DoubleDouble, Moments, Ring, Span};
+
+/// A flat punch with a rounded edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundedPunch {
+    flat_radius: f64,
+    edge_radius: f64,
+}
+
+impl RoundedPunch {
+    /// Flat up to the radius b, then a parabola of curvature radius R, both in m.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::FLAT_RADIUS`] and [`range::EDGE_RADIUS`].
+    pub fn new(flat_radius: f64, edge_radius: f64) -> Result<RoundedPunch, Error> {
+        Ok(RoundedPunch {
+            flat_radius: range::FLAT_RADIUS.check(flat_radius)?,
+            edge_radius: range::EDGE_RADIUS.check(edge_radius)?,
+        })
+    }
+
+    /// t - b phi.
+    fn excess(&self, t: f64) -> f64 {
+        self.flat_radius * tangent_less_angle(t / self.flat_radius)
+    }
+
+    fn load_at(&self, t: f64) -> f64 {
+        let b = self.flat_radius;
+        (3.0 * (b * b + t * t) * self.excess(t) + t * t * t) / (6.0 * self.edge_radius)
+    }
+}
+
+impl Chart for RoundedPunch {
+    fn core(&self) -> f64 {
+        self.flat_radius
+    }
+
+    fn level_at(&self, t: f64) -> f64 {
+        self.radius_at(t) * self.excess(t) / self.edge_radius
+    }
+
+    fn slope_at(&self, t: f64) -> f64 {
+        t * (t + self.excess(t)) / (self.radius_at(t) * self.edge_radius)
+    }
+
+    fn bend_at(&self, t: f64) -> f64 {
+        // t gamma' - gamma = (t^2/(R x)) (1 - (t - b phi) t/x^2), in which the bracket is above nought.
+        let (x, excess) = (self.radius_at(t), self.excess(t));
+        t * t * (1.0 - excess * t / (x * x)) / (x * self.edge_radius)
+    }
+
+    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
+        let b = self.flat_radius;
+        let (x, x_top) = (self.radius_at(t), self.radius_at(top));
+        let both = b * b + t * top;
+        // The angle between t and top is atan(b dt/both): what it falls short of dt/b is of third order.
+        let step = dt * t * top / both + b * tangent_less_angle(b * dt / both);
+        (x_top * step + self.excess(t) * dt * (t + top) / (x + x_top)) / self.edge_radius
+    }
+
+    fn start(&self, level: f64) -> f64 {
+        // t - b phi is above t - b pi/2; for t < b it is above t^3/(6 b^2).
+        let (b, area) = (self.flat_radius, level * self.edge_radius);
+        let quarter = std::f64::consts::FRAC_PI_4 * b;
+        let far = quarter + (quarter * quarter + area).sqrt();
+        let near = (6.0 * b * area).cbrt();
+        if near < b { near.min(far) } else { far }
+    }
+}
+
+flat_core!(RoundedPunch);

@@ -1,0 +1,154 @@
+//! What a family must offer, and what follows for all of them.
+
+use super::roots::increasing;
+use super::zone::{Node, Zone};
+use super::{At, DoubleDouble, Moments, Ring, Span};
+
+/// The functions of one family. Radii in m, levels in m; a span's vertical edge is the caller's affair, not theirs.
+pub(super) trait Shape {
+    /// g(x).
+    fn level(&self, radius: f64) -> f64;
+
+    /// g'(x).
+    fn slope(&self, radius: f64) -> f64;
+
+    /// X(y).
+    fn radius(&self, level: f64) -> f64;
+
+    /// X(y)^2, as exact as can be.
+    fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        DoubleDouble::square_of(self.radius(level.value()))
+    }
+
+    /// int_0^x t g'(t) dt = F_N/(2 E*), m^2.
+    fn load(&self, radius: f64) -> f64;
+
+    /// The level at which [`Shape::load`] has this value.
+    fn indentation_for(&self, load: f64) -> f64;
+
+    /// g(x_outer) - g(x_inner), to round-off of itself.
+    fn rise(&self, span: &Span) -> f64;
+
+    /// Difference of the squares of the radii of a ring of this depth. [`Shape::rise`] undone, by Newton's steps.
+    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        let outer = ring.outer;
+        let plain = (outer.square - ring.inner.square).value();
+        if plain > 0.3 * outer.square.value() || ring.inner.level <= DoubleDouble::ZERO {
+            return plain;
+        }
+        // No ring reaches into a flat core, over which the rise tells nothing.
+        let square = (outer.square - DoubleDouble::square_of(self.radius(0.0))).value();
+        let steepness = |radius: f64| self.slope(radius) / (2.0 * radius);
+        let start = depth / steepness(outer.radius);
+        let start = if plain > 1e-6 * square { plain } else { start.min(0.5 * square) };
+        increasing(start, |gap| {
+            let span = Span::under(outer.square, outer.radius, gap.min(square));
+            let (rise, steepness) = (self.rise(&span), steepness(span.inner_radius.max(f64::MIN_POSITIVE)));
+            // Where f' jumps the slope is infinite, and beyond the centre it is none: a step of Newton's would go nowhere.
+            (rise - depth, if steepness.is_finite() && gap < square { steepness } else { rise / gap })
+        })
+        .min(square)
+    }
+
+    /// Radius and level at which the profile ends in a vertical edge.
+    fn rim(&self) -> Option<(f64, f64)> {
+        None
+    }
+
+    /// The largest kink below `radius`; nought, the tip, if there is none.
+    fn kink_below(&self, _radius: f64) -> f64 {
+        0.0
+    }
+
+    /// Whether g is analytic in x at the tip.
+    fn analytic_tip(&self) -> bool {
+        true
+    }
+
+    /// The radius at which g ceases to be analytic, never reached by a contact.
+    fn ceiling(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// g changes no faster than x to this power.
+    fn power(&self) -> f64 {
+        2.0
+    }
+
+    /// The span of a ring.
+    fn span(&self, ring: &Ring) -> Span {
+        let (mut depth, mut edge) = (ring.depth, 0.0);
+        if let Some((_, top)) = self.rim() {
+            let top = DoubleDouble::from(top);
+            if ring.inner.level >= top {
+                (depth, edge) = (0.0, depth);
+            } else if ring.outer.level > top {
+                edge = (ring.outer.level - top).value();
+                depth = (top - ring.inner.level).value();
+            }
+        }
+        let gap = if depth > 0.0 { self.gap(ring, depth) } else { 0.0 };
+        Span::of(ring, gap, edge)
+    }
+
+    /// The outermost zone of a span, and what is left inside it.
+    fn zone(&self, span: &Span) -> (Zone, Span, Option<Span>) {
+        let base = self.kink_below(span.outer_radius);
+        let square = DoubleDouble::square_of(base);
+        let (Some(outer), rest) = (span.above(square, base), span.below(square, base)) else {
+            return (Zone::new(span, 0.0, 0.0, self.ceiling(), self.power()), *span, None);
+        };
+        let reach = if base > 0.0 {
+            let next = self.kink_below(base);
+            ((base - next) * (base + next)).sqrt()
+        } else if self.analytic_tip() {
+            f64::INFINITY
+        } else {
+            0.0
+        };
+        (Zone::new(&outer, base, reach, self.ceiling(), self.power()), outer, rest)
+    }
+
+    /// The moments of h = g(x_outer) - g(x).
+    fn moments(&self, span: &Span) -> Moments {
+        let (mut sum, mut above) = (Moments::default(), 0.0);
+        let mut rest = Some(*span);
+        while let Some(span) = rest.filter(|span| span.gap > 0.0) {
+            let (zone, outer, inner) = self.zone(&span);
+            let part = zone.moments(|node| self.rise(&under(&outer, &zone, node)));
+            sum = Moments::stack(part, sum, above);
+            above += self.rise(&outer);
+            rest = inner;
+        }
+        sum
+    }
+
+    /// int h dx / sqrt(r^2 - x^2) below r, with h = g(x_outer) - g(x).
+    fn lift(&self, at: &At, span: &Span) -> f64 {
+        let (mut sum, mut above) = (0.0, 0.0);
+        let mut rest = Some(*span);
+        while let Some(span) = rest.filter(|span| span.gap > 0.0) {
+            let (zone, outer, inner) = self.zone(&span);
+            sum += zone.lift(&outer, at, above, |node| self.rise(&under(&outer, &zone, node)));
+            above += self.rise(&outer);
+            rest = inner;
+        }
+        sum
+    }
+
+    /// int g'(x) dx / sqrt(x^2 - r^2) over the radii of the span above r.
+    fn kernel(&self, at: &At, span: &Span) -> f64;
+
+    /// Its derivative with respect to r^2, from the right.
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64;
+}
+
+/// The stretch from a node of a zone up to the zone's top.
+fn under(top: &Span, zone: &Zone, node: Node) -> Span {
+    if node.dt < 0.5 * zone.high {
+        return Span::under(top.outer, top.outer_radius, node.dt * (zone.high + node.t));
+    }
+    // Low in the zone its own square is what must be exact, not how much it lacks.
+    let inner = DoubleDouble::square_of(zone.base) + DoubleDouble::square_of(node.t);
+    Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
+}

@@ -1,0 +1,129 @@
+//! A ring seen as a stretch of radii: where the families do their work.
+//!
+//! Differences of squares decide everything: x^2 - r^2 under the roots of the kernels, x^2 - b^2 beside a kink at b. So a span
+//! carries the squares with twice the digits and their difference on its own, since that comes from the depth of the ring.
+
+use super::super::double_double::DoubleDouble;
+use super::{At, Moments, Ring};
+
+/// The radii of a ring, and the levels it crosses at a vertical edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    /// Square of the inner radius, m^2.
+    pub(super) inner: DoubleDouble,
+    /// Square of the outer radius, m^2.
+    pub(super) outer: DoubleDouble,
+    /// The inner radius, m.
+    pub(super) inner_radius: f64,
+    /// The outer radius, m.
+    pub(super) outer_radius: f64,
+    /// Difference of the squares, m^2, to round-off of itself.
+    pub(super) gap: f64,
+    /// Levels crossed at the outer radius, where the profile rises vertically, m.
+    pub(super) edge: f64,
+}
+
+impl Span {
+    /// The ring's radii, given the difference of their squares and the levels that a vertical edge takes.
+    pub(super) fn of(ring: &Ring, gap: f64, edge: f64) -> Span {
+        Span {
+            inner: ring.inner.square,
+            outer: ring.outer.square,
+            inner_radius: ring.inner.radius,
+            outer_radius: ring.outer.radius,
+            gap,
+            edge,
+        }
+    }
+
+    /// The span that ends at `outer` and whose square is smaller by `gap` at its inner end.
+    pub(super) fn under(outer: DoubleDouble, outer_radius: f64, gap: f64) -> Span {
+        let inner = outer - DoubleDouble::from(gap);
+        let inner = if inner.value() > 0.0 { inner } else { DoubleDouble::ZERO };
+        Span { inner, outer, inner_radius: inner.value().sqrt(), outer_radius, gap, edge: 0.0 }
+    }
+
+    /// Difference of the radii, m.
+    pub(super) fn width(&self) -> f64 {
+        if self.gap > 0.0 { self.gap / (self.inner_radius + self.outer_radius) } else { 0.0 }
+    }
+
+    /// Both squares less `square`. The two sides agree to round-off, and the difference is small where it ought to be.
+    pub(super) fn excess(&self, square: DoubleDouble) -> (f64, f64) {
+        let inner = self.inner - square;
+        let outer =
+            if inner.value() > -0.5 * self.gap { inner + DoubleDouble::from(self.gap) } else { self.outer - square };
+        (inner.value(), outer.value())
+    }
+
+    /// What lies inside the radius whose square is given.
+    pub(super) fn below(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
+        let (inner, outer) = self.excess(square);
+        if inner >= 0.0 {
+            None
+        } else if outer <= 0.0 {
+            Some(Span { edge: 0.0, ..*self })
+        } else {
+            Some(Span { outer: square, outer_radius: radius, gap: -inner, edge: 0.0, ..*self })
+        }
+    }
+
+    /// What lies outside the radius whose square is given.
+    pub(super) fn above(&self, square: DoubleDouble, radius: f64) -> Option<Span> {
+        let (inner, outer) = self.excess(square);
+        if outer <= 0.0 {
+            None
+        } else if inner >= 0.0 {
+            Some(*self)
+        } else {
+            Some(Span { inner: square, inner_radius: radius, gap: outer, ..*self })
+        }
+    }
+
+    /// int dx/sqrt(r^2 - x^2) over the radii of the span below r (pure number).
+    pub(super) fn arc(&self, at: &At) -> f64 {
+        let (inner, outer) = self.excess(at.square);
+        if inner >= 0.0 {
+            return 0.0;
+        }
+        let (low, high) = ((-inner).sqrt(), (-outer).max(0.0).sqrt());
+        let top = self.outer_radius.min(at.radius);
+        let gap = if outer < 0.0 { self.gap } else { -inner };
+        // Sine and cosine of the difference of the two angles asin(x/r).
+        let sine = gap * at.square.value() / (top * low + self.inner_radius * high);
+        sine.atan2(low * high + self.inner_radius * top)
+    }
+}
+
+impl Moments {
+    /// The moments of two adjacent rings together; `depth` is that of the outer one, which lifts all of the inner.
+    pub(super) fn stack(inner: Moments, outer: Moments, depth: f64) -> Moments {
+        Moments {
+            width: inner.width + outer.width,
+            first: inner.first + depth * inner.width + outer.first,
+            second: inner.second + depth * (2.0 * inner.first + depth * inner.width) + outer.second,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{At, DoubleDouble};
+    use super::Span;
+
+    #[test]
+    fn the_arc_of_a_sliver_keeps_its_digits() {
+        let gap = 1e-20;
+        let sliver = Span::under(DoubleDouble::from(0.25), 0.5, gap);
+        // dx / sqrt(r^2 - x^2) with dx = gap / (2 x) and r = 1.
+        let exact = gap / (2.0 * 0.5) / 0.75f64.sqrt();
+        assert!((sliver.arc(&At::radius(1.0)) / exact - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_arc_up_to_r_is_a_quarter_turn() {
+        let whole = Span::under(DoubleDouble::from(4.0), 2.0, 4.0);
+        assert!((whole.arc(&At::radius(1.5)) - std::f64::consts::FRAC_PI_2).abs() < 1e-16);
+        assert!((whole.arc(&At::radius(4.0)) - 0.5f64.asin()).abs() < 1e-16);
+    }
+}

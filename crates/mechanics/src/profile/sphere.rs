@@ -1,0 +1,131 @@
+//! Hertz's parabola f = r^2/(2R), the paper's sphere: g(x) = x^2/R, K(r, c) = (2/R) sqrt(c^2 - r^2).
+//!
+//! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
+//! rounded radii (Hertz 1881; Popov & Hess 2015).
+
+use super::super::error::Error;
+use super::super::range;
+use super::shape::Shape;
+use super::{At, DoubleDouble, Moments, Ring, Span};
+
+/// A paraboloid of revolution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    curvature_radius: f64,
+}
+
+impl Sphere {
+    /// The paraboloid with curvature radius R, m, at its tip.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::RADIUS`].
+    pub fn new(radius: f64) -> Result<Sphere, Error> {
+        Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
+    }
+
+    /// Curvature radius R, m.
+    pub(super) fn curvature_radius(&self) -> f64 {
+        self.curvature_radius
+    }
+
+    /// The same where R follows from other, checked numbers.
+    pub(super) fn of_curvature(radius: f64) -> Sphere {
+        Sphere { curvature_radius: radius }
+    }
+}
+
+impl Shape for Sphere {
+    fn level(&self, radius: f64) -> f64 {
+        radius * radius / self.curvature_radius
+    }
+
+    fn slope(&self, radius: f64) -> f64 {
+        2.0 * radius / self.curvature_radius
+    }
+
+    fn radius(&self, level: f64) -> f64 {
+        (level * self.curvature_radius).sqrt()
+    }
+
+    fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        level * self.curvature_radius
+    }
+
+    fn load(&self, radius: f64) -> f64 {
+        2.0 * radius * radius * radius / (3.0 * self.curvature_radius)
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        let radius = (1.5 * load * self.curvature_radius).cbrt();
+        self.level(radius)
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        span.gap / self.curvature_radius
+    }
+
+    fn gap(&self, _ring: &Ring, depth: f64) -> f64 {
+        self.curvature_radius * depth
+    }
+
+    fn moments(&self, span: &Span) -> Moments {
+        let (outer, width) = (span.outer_radius, span.width());
+        let area = width * width / self.curvature_radius;
+        Moments {
+            width,
+            first: area * (outer - width / 3.0),
+            second: area
+                * (width / self.curvature_radius)
+                * ((4.0 / 3.0 * outer - width) * outer + width * width / 5.0),
+        }
+    }
+
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            0.0
+        } else if inner > 0.0 {
+            2.0 * span.gap / ((outer.sqrt() + inner.sqrt()) * self.curvature_radius)
+        } else {
+            2.0 * outer.sqrt() / self.curvature_radius
+        }
+    }
+
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            0.0
+        } else if inner > 0.0 {
+            let (outer, inner) = (outer.sqrt(), inner.sqrt());
+            span.gap / (outer * inner * (outer + inner) * self.curvature_radius)
+        } else {
+            -1.0 / (self.curvature_radius * outer.sqrt())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Profile, Ring};
+    use super::{DoubleDouble, Sphere};
+
+    #[test]
+    fn moments_of_a_thin_ring_keep_their_digits() {
+        let sphere = Profile::Sphere(Sphere::new(2.0).unwrap());
+        let edge = DoubleDouble::from(0.5);
+        for depth in [0.5, 1e-3, 1e-8, 1e-14] {
+            let ring = Ring::between(sphere.point(edge - DoubleDouble::from(depth)), sphere.point(edge));
+            let m = sphere.moments(&ring);
+            // Series about the edge: X(y) = sqrt(2 y), X' = 1/X.
+            if depth < 1e-7 {
+                assert!((m.width / depth - 1.0).abs() < 1e-7);
+                assert!((m.first / (depth * depth / 2.0) - 1.0).abs() < 1e-7);
+                assert!((m.second / (depth.powi(3) / 3.0) - 1.0).abs() < 1e-7);
+            } else {
+                let (x1, x2) = (ring.inner.radius, ring.outer.radius);
+                let first = 0.5 * (x2 - x1) - (x2.powi(3) - x1.powi(3)) / 6.0;
+                assert!((m.first - first).abs() < 1e-15);
+            }
+        }
+    }
+}

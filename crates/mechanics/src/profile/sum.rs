@@ -1,0 +1,269 @@
+//! A profile made of several: g, its slope, its loads and its kernels add up, since g is linear in f.
+//!
+//! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there by a
+//! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
+//! the others make up for it: X(y) then lies between the foot of the sum and where it ends or falls.
+
+use super::super::double_double::DoubleDouble;
+use super::super::error::Error;
+use super::super::range;
+use super::roots::increasing;
+use super::shape::Shape;
+use super::{At, Point, Profile, Ring, Span, Tabulated};
+
+/// How far beyond a kink, relative to its radius, a radius still lacks digits that a level has.
+const NEAR: f64 = 1e-2;
+/// Newton's steps for the level that carries a load there, each of which gains two digits at the least.
+const POLISH: usize = 5;
+/// How far, of itself, they may move an indentation.
+const FARTHEST: f64 = 1e-3;
+
+/// A sum of profiles, none of them a sum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sum {
+    parts: Vec<Profile>,
+    /// Radii at which one of the parts is not smooth, rising.
+    kinks: Vec<f64>,
+    rim: Option<(f64, f64)>,
+    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
+    limit: Option<(f64, bool)>,
+    /// Where X(y) is sought if a part's own inverse is of no help: from the foot of the sum to its rim, m.
+    bracket: Option<(f64, f64)>,
+    ceiling: f64,
+    power: f64,
+    analytic_tip: bool,
+}
+
+impl Sum {
+    /// The sum of `parts`; sums among them are taken apart.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen.
+    pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
+        let mut flat = Vec::with_capacity(parts.len());
+        for part in parts {
+            match part {
+                Profile::Sum(sum) => flat.extend(sum.parts),
+                other => flat.push(other),
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
+        range::PARTS.check(flat.len() as f64)?;
+        let mut kinks = Vec::new();
+        for part in &flat {
+            let mut kink = part.kink_below(f64::INFINITY);
+            while kink > 0.0 {
+                kinks.push(kink);
+                kink = part.kink_below(kink);
+            }
+        }
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        let limit = flat.iter().filter_map(Profile::reach).reduce(|a, b| if b.0 < a.0 { b } else { a });
+        let mut sum = Sum {
+            rim: None,
+            limit,
+            bracket: None,
+            ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
+            power: flat.iter().map(Shape::power).fold(1.0, f64::max),
+            analytic_tip: flat.iter().all(Shape::analytic_tip),
+            parts: flat,
+            kinks,
+        };
+        let rim = sum.parts.iter().filter_map(Shape::rim).map(|(radius, _)| radius).fold(f64::INFINITY, f64::min);
+        let falls = sum.first_fall(rim);
+        if let Some(radius) = falls {
+            sum.limit = Some((radius, true));
+        }
+        let rim = falls.unwrap_or(rim);
+        if rim < sum.ceiling {
+            sum.rim = Some((rim, sum.level(rim)));
+        }
+        if sum.parts.iter().any(Profile::falls_within) {
+            let foot = sum.parts.iter().map(Profile::foot).fold(rim, f64::min);
+            if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
+                return Err(Error::NotConvexEnough { radius: foot });
+            }
+            sum.bracket = Some((foot, rim));
+        }
+        Ok(sum)
+    }
+
+    /// The first radius below `rim` at which the sum falls, where a part of it does, m.
+    fn first_fall(&self, rim: f64) -> Option<f64> {
+        let tables = self.parts.iter().filter(|part| part.falls_within()).filter_map(|part| match part {
+            Profile::Tabulated(table) => Some(table),
+            _ => None,
+        });
+        let mut looks: Vec<f64> = tables.flat_map(Tabulated::looks).filter(|&radius| radius < rim).collect();
+        looks.sort_by(f64::total_cmp);
+        let sizes = |x: f64| self.total(|part| part.slope(x).abs());
+        // Parts that cancel leave their rounding.
+        let falls = |x: f64| Shape::slope(self, x) < -1e-12 * sizes(x);
+        let index = looks.iter().position(|&x| falls(x))?;
+        let (mut low, mut high) = (index.checked_sub(1).map_or(0.0, |before| looks[before]), looks[index]);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if falls(middle) { high = middle } else { low = middle }
+        }
+        Some(low)
+    }
+
+    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
+    pub(super) fn limit(&self) -> Option<(f64, bool)> {
+        self.limit
+    }
+
+    /// The parts, none of them a sum.
+    #[must_use]
+    pub fn parts(&self) -> &[Profile] {
+        &self.parts
+    }
+
+    /// The kink that a radius is so little beyond that what it is beyond it must be known on its own.
+    fn near_kink(&self, radius: f64) -> Option<f64> {
+        let above = self.kinks.partition_point(|&kink| kink <= radius);
+        let kink = *self.kinks.get(above.checked_sub(1)?)?;
+        (radius - kink < NEAR * kink).then_some(kink)
+    }
+
+    /// The stretch from a kink outward whose squares differ by `gap`.
+    fn beyond(kink: f64, gap: f64) -> Span {
+        let inner = DoubleDouble::square_of(kink);
+        let outer = inner + DoubleDouble::from(gap);
+        Span { inner, outer, inner_radius: kink, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
+    }
+
+    fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
+        self.parts.iter().map(f).sum()
+    }
+
+    /// The radius at which an additive function has the value `target`; `radius` inverts it for a single part.
+    fn inverse(
+        &self,
+        target: f64,
+        radius: impl Fn(&Profile, f64) -> f64,
+        f: impl Fn(&Profile, f64) -> f64,
+        slope: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let least = |target: f64| self.parts.iter().map(|part| radius(part, target)).fold(f64::INFINITY, f64::min);
+        if target <= 0.0 {
+            return self.bracket.map_or_else(|| least(target), |(foot, _)| foot);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
+        let (low, high) = self.bracket.unwrap_or_else(|| (least(target / self.parts.len() as f64), least(target)));
+        let reach = high - low;
+        if reach <= 1e-15 * high {
+            return high;
+        }
+        // Measured from below, so that a flat core does not hide how far beyond it the root lies.
+        low + increasing(0.5 * reach, |step| {
+            let x = low + step.min(reach);
+            (self.total(|part| f(part, x)) - target, slope(x))
+        })
+        .min(reach)
+    }
+}
+
+impl Shape for Sum {
+    fn level(&self, radius: f64) -> f64 {
+        self.total(|part| part.level(radius))
+    }
+
+    fn slope(&self, radius: f64) -> f64 {
+        self.total(|part| part.slope(radius))
+    }
+
+    fn radius(&self, level: f64) -> f64 {
+        match self.rim {
+            Some((rim, top)) if level >= top => rim,
+            _ => self.inverse(level, Shape::radius, Shape::level, |x| Shape::slope(self, x)),
+        }
+    }
+
+    fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        let radius = self.radius(level.value());
+        let plain = DoubleDouble::square_of(radius);
+        let at_rim = self.rim.is_some_and(|(_, top)| level.value() >= top);
+        let Some(kink) = self.near_kink(radius).filter(|_| !at_rim) else { return plain };
+        let above = (level - DoubleDouble::from(self.level(kink))).value();
+        if above <= 0.0 {
+            return plain;
+        }
+        let gap = increasing((radius - kink) * (radius + kink), |gap| {
+            let span = Sum::beyond(kink, gap);
+            let rise = self.rise(&span);
+            let steepness = Shape::slope(self, span.outer_radius) / (2.0 * span.outer_radius);
+            (rise - above, if steepness.is_finite() { steepness } else { rise / gap })
+        });
+        Sum::beyond(kink, gap).outer
+    }
+
+    fn load(&self, radius: f64) -> f64 {
+        self.total(|part| part.load(radius))
+    }
+
+    fn indentation_for(&self, load: f64) -> f64 {
+        if let Some((rim, top)) = self.rim {
+            let face = self.load(rim);
+            if load >= face {
+                return top + (load - face) / rim;
+            }
+        }
+        let radius = |part: &Profile, load: f64| part.radius(part.indentation_for(load));
+        let found = self.inverse(load, radius, Shape::load, |x| x * Shape::slope(self, x));
+        let mut level = self.level(found);
+        if load > 0.0 && self.near_kink(found).is_some() {
+            // int_0^d X dy, whose slope X hardly changes here.
+            let core = self.radius(0.0);
+            let point = |level: f64| {
+                let (level, square) = (DoubleDouble::from(level), self.square(DoubleDouble::from(level)));
+                Point { level, radius: square.value().sqrt(), square }
+            };
+            let mut polished = level;
+            for _ in 0..POLISH {
+                let ring = Ring::between(point(0.0), point(polished));
+                let carried = core * polished + self.moments(&self.span(&ring)).first;
+                polished = (polished + (load - carried) / ring.outer.radius).max(0.0);
+            }
+            // Beyond the end of a part the search has gone as far as it can, and there is nothing to polish.
+            if (polished - level).abs() <= FARTHEST * level {
+                level = polished;
+            }
+        }
+        level
+    }
+
+    fn rise(&self, span: &Span) -> f64 {
+        self.total(|part| part.rise(span))
+    }
+
+    fn rim(&self) -> Option<(f64, f64)> {
+        self.rim
+    }
+
+    fn kink_below(&self, radius: f64) -> f64 {
+        let above = self.kinks.partition_point(|&kink| kink < radius);
+        above.checked_sub(1).map_or(0.0, |index| self.kinks[index])
+    }
+
+    fn analytic_tip(&self) -> bool {
+        self.analytic_tip
+    }
+
+    fn ceiling(&self) -> f64 {
+        self.ceiling
+    }
+
+    fn power(&self) -> f64 {
+        self.power
+    }
+
+    fn kernel(&self, at: &At, span: &Span) -> f64 {
+        self.total(|part| Shape::kernel(part, at, span))
+    }
+
+    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+        self.total(|part| Shape::kernel_slope(part, at, span))
+    }
+}

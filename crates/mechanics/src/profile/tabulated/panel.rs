@@ -1,0 +1,244 @@
+//! One stretch of a table between two knots, as Chebyshev series in t = sqrt(x^2 - k^2), k the knot beneath.
+//!
+//! Stored are q = g'/x and its primitive P = int t q dt (Clenshaw 1955; Mason & Handscomb 2003): g' is analytic in t, though not
+//! in x, and q keeps gamma = dg/dt = t q exact as t goes to nought.
+
+use super::super::super::double_double::DoubleDouble;
+use super::super::chart::Chart;
+use super::super::zone::Zone;
+use super::super::{At, Moments, Span};
+
+/// Values that fix a series.
+pub(super) const POINTS: usize = 24;
+
+/// A stretch of radii.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Panel {
+    /// k, m.
+    pub(super) base: f64,
+    /// Distance in t, along the imaginary axis, at which g is singular, m.
+    pub(super) reach: f64,
+    /// t where it begins and where it ends, m.
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// x where it begins and x^2.
+    pub(super) radius: f64,
+    pub(super) square: DoubleDouble,
+    /// g and int x dg where it begins.
+    pub(super) level: f64,
+    pub(super) load: f64,
+    /// Coefficients of q and, for u from -1 on, of P.
+    slope: Box<[f64]>,
+    primitive: Box<[f64]>,
+}
+
+/// Where the values that fix a series on low..high must be taken.
+pub(super) fn places(low: f64, high: f64) -> [f64; POINTS] {
+    let mut places = [0.0; POINTS];
+    for (index, place) in places.iter_mut().enumerate() {
+        *place = 0.5 * (low + high) + 0.5 * (high - low) * cosine(2 * index + 1);
+    }
+    places
+}
+
+/// cos(pi index/48).
+fn cosine(index: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "an index below 48^2")]
+    let index = (index % (4 * POINTS)) as f64;
+    (std::f64::consts::PI * index / 48.0).cos()
+}
+
+/// The series with these values; what rounding alone keeps from nought is cut off.
+fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
+    let mut series = Vec::with_capacity(POINTS);
+    for order in 0..POINTS {
+        let sum: f64 =
+            values.iter().enumerate().map(|(i, value)| value * cosines[order * (2 * i + 1) % (4 * POINTS)]).sum();
+        series.push(sum / if order == 0 { 24.0 } else { 12.0 });
+    }
+    let size = series.iter().fold(0.0f64, |size, a| size.max(a.abs()));
+    while series.last().is_some_and(|a| a.abs() <= 1e-16 * size) {
+        series.pop();
+    }
+    series
+}
+
+/// The cosines that all series need.
+pub(super) fn cosines() -> [f64; 4 * POINTS] {
+    let mut cosines = [0.0; 4 * POINTS];
+    for (index, value) in cosines.iter_mut().enumerate() {
+        *value = cosine(index);
+    }
+    cosines
+}
+
+impl Panel {
+    /// The panel on low..high in t above the knot `base`, by the values of q at its [`places`].
+    pub(super) fn new(
+        (base, reach): (f64, f64),
+        (low, high): (f64, f64),
+        values: &[f64; POINTS],
+        cosines: &[f64; 4 * POINTS],
+    ) -> Panel {
+        let slope = series(values, cosines);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        // t q in the same terms, t = middle + half u and 2 u T_k = T_(k+1) + T_(k-1), then its primitive.
+        let term = |k: usize| slope.get(k).copied().unwrap_or(0.0);
+        let product = |k: usize| match k {
+            0 => middle * term(0) + 0.5 * half * term(1),
+            1 => middle * term(1) + half * (term(0) + 0.5 * term(2)),
+            _ => middle * term(k) + 0.5 * half * (term(k - 1) + term(k + 1)),
+        };
+        let mut primitive = vec![0.0];
+        let mut order = 0.0;
+        for k in 1..=slope.len() + 1 {
+            order += 1.0;
+            let before = if k == 1 { 2.0 * product(0) } else { product(k - 1) };
+            primitive.push(0.5 * half * (before - product(k + 1)) / order);
+        }
+        let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
+        Panel {
+            base,
+            reach,
+            low,
+            high,
+            radius: square.value().sqrt(),
+            square,
+            level: 0.0,
+            load: 0.0,
+            slope: slope.into(),
+            primitive: primitive.into(),
+        }
+    }
+
+    fn place(&self, t: f64) -> f64 {
+        ((t - self.low) - (self.high - t)) / (self.high - self.low)
+    }
+
+    /// q at t.
+    pub(super) fn slope_over_radius(&self, t: f64) -> f64 {
+        let u = self.place(t);
+        let (mut b1, mut b2) = (0.0, 0.0);
+        for &a in self.slope.iter().skip(1).rev() {
+            (b1, b2) = (a + 2.0 * u * b1 - b2, b1);
+        }
+        self.slope.first().copied().unwrap_or(0.0) + u * b1 - b2
+    }
+
+    /// The square of the radius where it ends, and that radius.
+    pub(super) fn end(&self) -> (DoubleDouble, f64) {
+        let square = DoubleDouble::square_of(self.base) + DoubleDouble::square_of(self.high);
+        (square, square.value().sqrt())
+    }
+
+    /// g from the beginning to the end.
+    pub(super) fn depth(&self) -> f64 {
+        self.rise_at(self.low, self.high, self.high - self.low)
+    }
+
+    /// All of it.
+    pub(super) fn span(&self) -> Span {
+        let (outer, outer_radius) = self.end();
+        let gap = (self.high - self.low) * (self.high + self.low);
+        Span { inner: self.square, outer, inner_radius: self.radius, outer_radius, gap, edge: 0.0 }
+    }
+
+    /// The t of a radius that lies in it.
+    pub(super) fn t_of(&self, square: DoubleDouble) -> f64 {
+        (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
+    }
+
+    fn zone(&self, span: &Span) -> Zone {
+        Zone::new(span, self.base, self.reach, f64::INFINITY, 2.0)
+    }
+
+    /// The moments of a span within.
+    pub(super) fn moments(&self, span: &Span) -> Moments {
+        let zone = self.zone(span);
+        zone.moments(|node| self.rise_at(node.t, zone.high, node.dt))
+    }
+
+    /// The lift of a span within, `above` the level added to h.
+    pub(super) fn lift(&self, at: &At, span: &Span, above: f64) -> f64 {
+        let zone = self.zone(span);
+        zone.lift(span, at, above, |node| self.rise_at(node.t, zone.high, node.dt))
+    }
+
+    /// int x dg from the beginning to t.
+    pub(super) fn load_to(&self, t: f64) -> f64 {
+        let mut load = 0.0;
+        super::super::gauss::Panel::fine(t - self.low).visit(|below, weight| {
+            let t = t - below;
+            load += weight * self.slope_at(t) * self.radius_at(t);
+        });
+        load
+    }
+
+    /// The t at which a rising function of t, given with its slope, is nought: Newton's steps inside a bracket. `share` is how
+    /// much of the function's rise over the panel lies below the root, and `power` how it begins at the foot of a table, where a
+    /// root can be as small as numbers are and no bisection would get there.
+    pub(super) fn find(&self, share: f64, power: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let (mut low, mut high) = (self.low, self.high);
+        let share = if low > 0.0 { share } else { share.powf(power.recip()) };
+        let mut t = (low + (high - low) * share).clamp(low, high);
+        for _ in 0..100 {
+            let (value, slope) = f(t);
+            if value > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let newton = t - value / slope;
+            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            let step = (next - t).abs();
+            t = next;
+            if step <= 3e-16 * t || high - low <= 3e-16 * high {
+                break;
+            }
+        }
+        t
+    }
+}
+
+impl Chart for Panel {
+    fn core(&self) -> f64 {
+        self.base
+    }
+
+    fn level_at(&self, t: f64) -> f64 {
+        self.level + self.rise_at(self.low, t, t - self.low)
+    }
+
+    fn slope_at(&self, t: f64) -> f64 {
+        t * self.slope_over_radius(t)
+    }
+
+    fn bend_at(&self, t: f64) -> f64 {
+        // t gamma' - gamma = t^2 q', by the divided difference of the series at one place.
+        let u = self.place(t);
+        t * t * divided_difference(&self.slope, u, u) * 2.0 / (self.high - self.low)
+    }
+
+    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
+        let difference = divided_difference(&self.primitive, self.place(top), self.place(t));
+        dt * difference * 2.0 / (self.high - self.low)
+    }
+
+    fn start(&self, _level: f64) -> f64 {
+        self.high
+    }
+
+    fn jumps(&self) -> bool {
+        false
+    }
+}
+
+/// (p(u) - p(v))/(u - v), also at u = v, by Clenshaw's recurrence carried for both.
+fn divided_difference(series: &[f64], u: f64, v: f64) -> f64 {
+    let (mut b1, mut b2, mut d1, mut d2) = (0.0, 0.0, 0.0, 0.0);
+    for &a in series.iter().skip(1).rev() {
+        (d1, d2) = (2.0 * (u * d1 + b1) - d2, d1);
+        (b1, b2) = (a + 2.0 * v * b1 - b2, b1);
+    }
+    u * d1 + b1 - d2
+}

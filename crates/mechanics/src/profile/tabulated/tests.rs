@@ -1,0 +1,141 @@
+//! A table against the sum of a sphere and rounded punches that it is.
+
+use super::super::{At, Profile, Ring, RoundedPunch, Sphere, Sum};
+use super::*;
+
+/// Radii and jumps of f'' of a convex profile, the first at the centre.
+const BENDS: [(f64, f64); 8] =
+    [(0.0, 0.7), (0.013, 2.0), (0.0131, 0.4), (0.2, 1.0), (0.35, 9.0), (0.36, 0.1), (0.9, 3.0), (0.99, 5.0)];
+
+fn sum() -> Profile {
+    let mut parts = vec![Profile::Sphere(Sphere::new(1.0 / BENDS[0].1).unwrap())];
+    for (radius, bend) in &BENDS[1..] {
+        parts.push(Profile::RoundedPunch(RoundedPunch::new(*radius, 1.0 / bend).unwrap()));
+    }
+    Profile::Sum(Sum::new(parts).unwrap())
+}
+
+/// The same as a table with `idle` knots where nothing happens between any two, up to the radius 1.3.
+fn table(idle: u32) -> Profile {
+    let mut radii: Vec<f64> = BENDS.iter().map(|bend| bend.0).chain([1.3]).collect();
+    for pair in radii.clone().windows(2) {
+        for i in 1..=idle {
+            radii.push(pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(idle + 1));
+        }
+    }
+    radii.sort_by(f64::total_cmp);
+    let slope = |r: f64| BENDS.iter().map(|bend| bend.1 * (r - bend.0).max(0.0)).sum();
+    let knots: Vec<Knot> = radii.iter().map(|&radius| Knot { radius, slope: slope(radius) }).collect();
+    Profile::Tabulated(Tabulated::from_knots(&knots, false).unwrap())
+}
+
+fn worst(pairs: &[(f64, f64)]) -> f64 {
+    pairs.iter().map(|(ours, exact)| ((ours - exact) / exact).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_table_is_a_sum_of_rounded_punches() {
+    let sum = sum();
+    for idle in [0, 3, 40] {
+        let table = table(idle);
+        let mut pairs = Vec::new();
+        for i in 1..200 {
+            let x = 0.0064 * f64::from(i);
+            let y = sum.level(x);
+            pairs.push((table.level(x), y));
+            pairs.push((table.slope(x), sum.slope(x)));
+            pairs.push((table.radius(y), x));
+            pairs.push((Shape::load(&table, x), Shape::load(&sum, x)));
+            pairs.push((table.indentation_for(Shape::load(&sum, x)), y));
+        }
+        assert!(worst(&pairs) < 3e-14, "{idle}: {:e}", worst(&pairs));
+    }
+}
+
+#[test]
+fn rings_of_a_table_are_those_of_the_sum() {
+    let sum = sum();
+    for idle in [0, 40] {
+        let table = table(idle);
+        for (inner, outer) in [(0.0, 1.2), (0.3, 1.1), (0.357, 0.358), (0.0130, 0.0132), (0.95, 0.95 + 1e-9)] {
+            let ring = |profile: &Profile| {
+                let level = |x: f64| DoubleDouble::from(sum.level(x));
+                Ring::between(profile.point(level(inner)), profile.point(level(outer)))
+            };
+            let (ours, exact) = (ring(&table), ring(&sum));
+            let (m, n) = (table.moments(&ours), sum.moments(&exact));
+            let error = worst(&[(m.width, n.width), (m.first, n.first), (m.second, n.second)]);
+            assert!(error < 1e-12, "{idle} {inner} {outer}: {error:e}");
+            for share in [0.2, 0.45, 0.999, 1.0, 1.2] {
+                let at = At::radius(inner + share * (outer - inner));
+                let mut pairs = vec![(table.lift(&at, &ours), sum.lift(&at, &exact))];
+                if share < 1.0 {
+                    pairs.push((table.kernel(&at, &ours), sum.kernel(&at, &exact)));
+                    pairs.push((table.kernel_slope(&at, &ours), sum.kernel_slope(&at, &exact)));
+                }
+                // x^2 is known to round-off of x^2: in a ring of 1e-9 of it, near an edge, little of x^2 - r^2 is left.
+                let allowed = if outer - inner > 1e-5 { 1e-10 } else { 1e-3 };
+                assert!(worst(&pairs) < allowed, "{idle} {inner} {outer} {share}: {:e} {pairs:?}", worst(&pairs));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tabulated_parabola_is_the_sphere() {
+    let radii: Vec<f64> = (0..60u32).map(|i| 1e-5 * f64::from(i) * (1.0 + 0.3 * f64::from(i).sin())).collect();
+    let mut radii = radii;
+    radii.sort_by(f64::total_cmp);
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
+    let table = Tabulated::new(&radii, &heights).unwrap();
+    let sphere = Sphere::new(0.01).unwrap();
+    for share in [1e-3, 0.1, 0.5, 0.99] {
+        let x = share * radii[59];
+        assert!((table.level(x) / sphere.level(x) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_hollow_is_refused_where_g_falls() {
+    let radii: Vec<f64> = (0..100u32).map(|i| 0.01 * f64::from(i)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r - 0.9 * r.powi(4)).collect();
+    let table = Tabulated::new(&radii, &heights).unwrap();
+    let (limit, falls) = table.limit();
+    // g = 2 x^2 - 0.9 (8/3) x^4: g' = 0 at x^2 = 4/9.6.
+    assert!(falls && (limit - (4.0f64 / 9.6).sqrt()).abs() < 2e-3, "{limit}");
+    let hole: Vec<f64> = radii.iter().map(|r| -r * r).collect();
+    assert!(matches!(Tabulated::new(&radii, &hole), Err(Error::NotConvexEnough { radius }) if radius <= 0.0));
+}
+
+#[test]
+fn the_interpolation_converges() {
+    // f = cosh r - 1; g to 17 digits by quadrature of f'(x sin q) at x = 1: sum over n of x^(2n) (2n)!!/(2n - 1)!!/(2n)!.
+    let exact: f64 = (1..12u32)
+        .map(|n| {
+            (1..=n).map(|k| f64::from(2 * k) / f64::from(2 * k - 1)).product::<f64>()
+                / (1..=2 * n).map(f64::from).product::<f64>()
+        })
+        .sum();
+    let error = |n: u32| {
+        let radii: Vec<f64> = (0..=n).map(|i| 1.5 * f64::from(i) / f64::from(n)).collect();
+        let heights: Vec<f64> = radii.iter().map(|r| r.cosh() - 1.0).collect();
+        (Tabulated::new(&radii, &heights).unwrap().level(1.0) / exact - 1.0).abs()
+    };
+    let errors: Vec<f64> = [15, 30, 60, 120, 240].into_iter().map(error).collect();
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.19 * pair[0]), "{errors:?}");
+}
+
+#[test]
+fn amplified_noise() {
+    let radii: Vec<f64> = (0..=500u32).map(|i| 2e-6 * f64::from(i)).collect();
+    let mut seed = 1u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(seed >> 33).unwrap()) / f64::from(1u32 << 31) - 0.5
+    };
+    let sigma = 1e-12 / 12f64.sqrt();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 + 1e-12 * random()).collect();
+    let table = Tabulated::new(&radii, &heights).unwrap();
+    assert!((table.noise() / sigma - 1.0).abs() < 0.1, "{}", table.noise() / sigma);
+    assert!((20.0..50.0).contains(&table.noise_amplification(1e-3)), "{}", table.noise_amplification(1e-3));
+}

@@ -1,0 +1,98 @@
+//! Worn sphere, f' = r/R for r > b: g = x t/R, t = sqrt(x^2 - b^2).
+//!
+//! gamma = dg/dt = (b^2 + 2 t^2)/(R x), int x dg = t (3 b^2 + 2 t^2)/(3R), and X follows from a quadratic in t^2 (Ejike 1981;
+//! Popov & Hess 2015). f' jumps at b: pressure and shear are log-infinite there.
+
+use super::super::error::Error;
+use super::super::range;
+use super::chart::{self, Chart, flat_core};
+use super::{At, DoubleDouble, Moments, Ring, Span};
+
+/// A paraboloid with a flat end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TruncatedSphere {
+    curvature_radius: f64,
+    flat_radius: f64,
+}
+
+impl TruncatedSphere {
+    /// The paraboloid of curvature radius R, m, worn flat up to the radius b, m.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::RADIUS`] and [`range::FLAT_RADIUS`].
+    pub fn new(radius: f64, flat_radius: f64) -> Result<TruncatedSphere, Error> {
+        Ok(TruncatedSphere {
+            curvature_radius: range::RADIUS.check(radius)?,
+            flat_radius: range::FLAT_RADIUS.check(flat_radius)?,
+        })
+    }
+
+    /// The radius b at which the slope jumps, m.
+    pub(super) fn kink(&self) -> f64 {
+        self.flat_radius
+    }
+
+    fn load_at(&self, t: f64) -> f64 {
+        let b = self.flat_radius;
+        t * (3.0 * b * b + 2.0 * t * t) / (3.0 * self.curvature_radius)
+    }
+}
+
+impl Chart for TruncatedSphere {
+    fn core(&self) -> f64 {
+        self.flat_radius
+    }
+
+    fn level_at(&self, t: f64) -> f64 {
+        self.radius_at(t) * t / self.curvature_radius
+    }
+
+    fn slope_at(&self, t: f64) -> f64 {
+        let b = self.flat_radius;
+        (b * b + 2.0 * t * t) / (self.radius_at(t) * self.curvature_radius)
+    }
+
+    fn bend_at(&self, t: f64) -> f64 {
+        let (b, x) = (self.flat_radius, self.radius_at(t));
+        -b * b * b * b / (x * x * x * self.curvature_radius)
+    }
+
+    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
+        let (x, x_top) = (self.radius_at(t), self.radius_at(top));
+        dt * (x_top + t * (t + top) / (x + x_top)) / self.curvature_radius
+    }
+
+    fn start(&self, level: f64) -> f64 {
+        self.square_above(level.into()).value().sqrt()
+    }
+
+    fn solve(&self, level: f64) -> f64 {
+        self.start(level)
+    }
+
+    fn square_above(&self, level: DoubleDouble) -> DoubleDouble {
+        let reach = level * self.curvature_radius;
+        let (b, four) = (DoubleDouble::square_of(self.flat_radius), reach * reach * 4.0);
+        let root = (b * b + four).sqrt() + b;
+        if four.value() > 0.0 { (four * 0.5).over(root) } else { DoubleDouble::ZERO }
+    }
+}
+
+flat_core!(TruncatedSphere);
+
+#[cfg(test)]
+mod tests {
+    use super::super::shape::Shape;
+    use super::{DoubleDouble, TruncatedSphere};
+
+    #[test]
+    fn the_square_solves_its_equation_to_thirty_digits() {
+        let sphere = TruncatedSphere::new(3.0, 0.25).unwrap();
+        for level in [1e-9, 1e-3, 0.7] {
+            let square = sphere.square(DoubleDouble::from(level));
+            let excess = square - DoubleDouble::from(0.0625);
+            let rest = square * excess - DoubleDouble::square_of(level) * 9.0;
+            assert!(rest.value().abs() < 1e-29 * (square * excess).value() + 1e-33, "{level}: {rest:?}");
+        }
+    }
+}

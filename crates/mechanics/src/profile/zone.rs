@@ -1,0 +1,132 @@
+//! Integrals over a zone: a stretch of radii without a kink inside.
+//!
+//! Beside a kink at k, g is smooth not in x but in t = sqrt(x^2 - k^2), so every integral here runs over t (k = 0: t = x).
+//! The one thing asked of a profile is its rise from a radius up to the zone's top, to round-off of itself: then
+//! h = y_outer - g is a sum of positive terms and nothing cancels, however thin the ring.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::gauss::{Panel, Singular};
+use super::{At, DoubleDouble, Moments, Span};
+
+/// A stretch of radii in the coordinate t of the kink beneath it.
+#[derive(Clone, Copy)]
+pub(super) struct Zone {
+    /// The kink's radius k, m.
+    pub(super) base: f64,
+    /// t at the outer end, m.
+    pub(super) high: f64,
+    /// Difference of t over the zone, m, exact.
+    pub(super) drop: f64,
+    /// Where g, as a function of t, is singular.
+    pub(super) singular: Singular,
+    /// g changes no faster than x to this power.
+    pub(super) power: f64,
+    /// t at the inner end, m.
+    low: f64,
+    /// Sum of the radii at both ends, m.
+    radii: f64,
+    /// Difference of their squares, m^2.
+    gap: f64,
+}
+
+/// A point of a zone, t below its top by `dt`.
+#[derive(Clone, Copy)]
+pub(super) struct Node {
+    pub(super) t: f64,
+    pub(super) dt: f64,
+}
+
+impl Zone {
+    /// `span` above a kink at `base`. `reach` is the distance in t to the next singularity beneath the kink, along the imaginary
+    /// axis; g is analytic up to the radius `ceiling`.
+    pub(super) fn new(span: &Span, base: f64, reach: f64, ceiling: f64, power: f64) -> Zone {
+        let (low, high) = span.excess(DoubleDouble::square_of(base));
+        let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
+        let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
+        // Far beyond the ceiling there is no contact, only steps of a search that went astray: any finite effort will do.
+        let above = ((ceiling - base) * (ceiling + base)).sqrt();
+        let above = if above > 0.99 * high { above } else { f64::INFINITY };
+        let singular = Singular { below: reach, above };
+        Zone { base, high, drop, singular, power, low, radii: span.inner_radius + span.outer_radius, gap: span.gap }
+    }
+
+    /// dx/dt = t/x.
+    fn stretch(&self, t: f64) -> f64 {
+        if self.base > 0.0 { t / (self.base * self.base + t * t).sqrt() } else { 1.0 }
+    }
+
+    /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows. At a distance s below the top
+    /// ln t has fallen by at least rate s + bend s^2/2.
+    fn sweep(&self, singular: Singular, top: f64, length: f64, fall: (f64, f64), mut visit: impl FnMut(f64, f64)) {
+        let (rate, bend) = (self.power * fall.0, self.power * fall.1);
+        let mut done = 0.0;
+        while done < length {
+            let (high, left) = (top - done, length - done);
+            if high <= 1e-14 * top {
+                // So low that any rule will do, and that `done` would soon stand still.
+                Panel::coarse(left).visit(|below, weight| visit(done + below, weight));
+                break;
+            }
+            let mut panel = singular.panel(high, left);
+            if self.power > 10.0 && done * (rate + 0.5 * bend * done) < 40.0 {
+                // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
+                let steep = rate + bend * done;
+                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the sweep stand still.
+                let reach = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
+                if reach > 0.0 && reach < panel.width {
+                    panel = Panel::fine(reach);
+                }
+            }
+            panel.visit(|below, weight| visit(done + below, weight));
+            done += panel.width;
+        }
+    }
+
+    /// int dx, int h dx and int h^2 dx with h the rise from x to the top of the zone.
+    pub(super) fn moments(&self, rise: impl Fn(Node) -> f64) -> Moments {
+        if self.gap <= 0.0 {
+            return Moments::default();
+        }
+        let (mut first, mut second) = (0.0, 0.0);
+        self.sweep(self.singular, self.high, self.drop, (self.high.recip(), 0.0), |dt, weight| {
+            let t = (self.high - dt).max(0.0);
+            let h = rise(Node { t, dt });
+            let area = weight * h * self.stretch(t);
+            first += area;
+            second += area * h;
+        });
+        Moments { width: self.gap / self.radii, first, second }
+    }
+
+    /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the zone below r, with t = tau sin(theta), tau^2 = r^2 - k^2.
+    pub(super) fn lift(&self, span: &Span, at: &At, above: f64, rise: impl Fn(Node) -> f64) -> f64 {
+        let (inner, outer) = span.excess(at.square);
+        if inner >= 0.0 || self.gap <= 0.0 {
+            return 0.0;
+        }
+        let low = self.low;
+        let tau_square = (at.square - DoubleDouble::square_of(self.base)).value();
+        let (w_low, w_top) = ((-inner).sqrt(), (-outer).max(0.0).sqrt());
+        let (top, missing, gap) = if outer > 0.0 {
+            let tau = tau_square.sqrt();
+            (tau, outer / (self.high + tau), -inner)
+        } else {
+            (self.high, 0.0, self.gap)
+        };
+        let angle = (gap * tau_square / (top * w_low + low * w_top)).atan2(w_low * w_top + low * top);
+        let tau = tau_square.sqrt();
+        // A singularity on the axis of t lies beyond the top in theta, or beside pi/2, where it counts as half as far.
+        let beyond = self.singular.above / tau;
+        let beyond = if beyond < 1.0 { beyond.asin() } else { FRAC_PI_2 + 0.5 * beyond.acosh().min(3.0) };
+        let singular = Singular { below: (self.singular.below / tau).asinh(), above: beyond };
+        let mut total = 0.0;
+        self.sweep(singular, top.atan2(w_top), angle, (w_top / top, 1.0), |turn, weight| {
+            let half = (0.5 * turn).sin();
+            let dt = 2.0 * top * half * half + w_top * turn.sin();
+            let t = (top - dt).max(0.0);
+            total += weight * (above + rise(Node { t, dt: missing + dt })) * self.stretch(t);
+        });
+        total
+    }
+}

@@ -1,0 +1,332 @@
+//! Paths that leave little stress, from a start, in a number of reversals, to an end; and what they leave.
+
+use super::super::contact::Contact;
+use super::super::double_double::DoubleDouble;
+use super::super::error::Error;
+use super::super::state::{Move, Regime, Tangential};
+use super::super::traction::Residual;
+use super::relief::Relief;
+use super::{
+    DEFAULT_CUTOFF, alternating, cutoff_of, ending, equal_peaks, falling_amplitude, outermost_singular, spread::Spread,
+};
+
+/// What rounding may leave of a displacement, relative to that of gross slip.
+const ROUNDED: f64 = 1e-9;
+/// A memory deeper than this is not judged before it is moved: its extrema cost its square.
+const DEEPEST: usize = 256;
+
+/// A law for the amplitudes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// They fall linearly (eq. 20).
+    Linear,
+    /// They leave equal peaks on the profile at hand.
+    EqualPeaks,
+    /// They leave the smallest largest stress that is found, by equal alternating extrema.
+    Minimax,
+}
+
+/// Where the path is to end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// At displacement nought.
+    DisplacementZero,
+    /// Without a tangential force.
+    ForceZero,
+    /// Anywhere.
+    Free,
+}
+
+/// What the reversals begin from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Start {
+    /// This displacement, m, of the contact as it is, which has never moved; the path begins with it.
+    Displacement(f64),
+    /// The contact as it is, whatever its history; the path begins with a stroke of its own.
+    Here,
+}
+
+/// How a path begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// With the displacement that was asked for.
+    Given,
+    /// With a stroke to gross slip, which wipes out the whole history.
+    GrossSlip,
+    /// With a stroke that wipes out the outer part of the history alone.
+    Partial,
+    /// Not at all: less stress is there already than any other path would leave.
+    Stay,
+}
+
+/// A path and what it comes to.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// The displacements, m.
+    pub displacements: Vec<f64>,
+    /// How it begins.
+    pub way: Way,
+    /// By how much the smallest of the alternating extrema falls short of the largest, where they are all to be equal.
+    pub spread: Option<f64>,
+    /// The contact at the end.
+    pub contact: Contact,
+    /// Its extrema.
+    pub residual: Residual,
+    /// The largest shear stress, Pa, where it is judged; infinite at a vertical edge that carries some.
+    pub largest: f64,
+}
+
+/// The radii, m, between which the stress is judged: all of them but where it is infinite whatever is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// From this radius on.
+    pub from: f64,
+    /// Up to this one.
+    pub to: f64,
+    /// Whether the contact ends at a vertical edge, which only the end of a path can free of stress.
+    pub vertical: bool,
+}
+
+impl Judged {
+    /// Where the stress of a contact is judged at its present load.
+    #[must_use]
+    pub fn of(contact: &Contact) -> Judged {
+        let edge = contact.contact_radius();
+        let from = cutoff_of(outermost_singular(&contact.profile, edge), edge);
+        let vertical = contact.profile.rim_radius().is_some_and(|rim| edge >= rim);
+        Judged { from, to: if vertical { edge - DEFAULT_CUTOFF * (edge - from) } else { edge }, vertical }
+    }
+
+    /// The largest magnitude of the shear stress there, Pa; infinite if a vertical edge carries some.
+    #[must_use]
+    pub fn largest(&self, contact: &Contact, residual: &Residual) -> f64 {
+        if self.vertical && edge_load(contact) > ROUNDED {
+            return f64::INFINITY;
+        }
+        let inside = residual.peaks.iter().filter(|peak| (self.from..=self.to).contains(&peak.radius));
+        let ends = [contact.shear(self.from), if self.vertical { contact.shear(self.to) } else { 0.0 }];
+        let largest = inside.map(|peak| peak.shear.abs()).chain(ends.map(f64::abs)).fold(0.0, f64::max);
+        if largest.is_nan() { f64::INFINITY } else { largest }
+    }
+}
+
+/// What a vertical edge carries, over the most that it can.
+fn edge_load(contact: &Contact) -> f64 {
+    let (profile, memory) = (&*contact.profile, &contact.memory);
+    let level = profile.rim_radius().map_or(0.0, |rim| profile.level(rim));
+    let piece = memory.rings().find(|(ring, _)| ring.inner.level.value() <= level);
+    let carried = piece.map_or(0.0, |(_, line)| (line.at(DoubleDouble::from(level)) + memory.shift()).value());
+    carried.abs() / (memory.edge().level.value() - level)
+}
+
+/// What is asked of every path of a family.
+struct Task<'a> {
+    contact: &'a Contact,
+    reversals: usize,
+    end: End,
+    judged: Judged,
+    go_on: &'a dyn Fn() -> bool,
+}
+
+/// The path of a kind. From [`Start::Here`] a path of minimax may have fewer reversals than allowed.
+///
+/// # Errors
+/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::BrokenOff`] if
+/// `go_on` said no.
+pub fn design(
+    contact: &Contact,
+    start: Start,
+    kind: Kind,
+    reversals: usize,
+    end: End,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Design, Error> {
+    let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
+    if contact.friction <= 0.0 {
+        return Err(above("friction", contact.friction, "nothing holds without friction"));
+    }
+    if contact.indentation() <= 0.0 {
+        return Err(above("indentation", contact.indentation(), "bodies that do not touch carry no stress"));
+    }
+    let task = Task { contact, reversals, end, judged: Judged::of(contact), go_on };
+    let (first, way) = match start {
+        Start::Displacement(first) => (first, Way::Given),
+        Start::Here => (task.gross(), Way::GrossSlip),
+    };
+    match kind {
+        Kind::Linear | Kind::EqualPeaks => task.by_law(kind, first, way),
+        Kind::Minimax => task.best(first, way),
+    }
+}
+
+impl Task<'_> {
+    /// The displacement of gross slip, m, in the direction in which it is one whatever the history.
+    fn gross(&self) -> f64 {
+        let memory = &self.contact.memory;
+        let carried = memory.pieces().first().map_or(0.0, |core| (core.line.offset + memory.shift()).value());
+        let apart = carried - memory.position().value();
+        // At the centre w - W is `apart`: +d is gross slip forwards if that is not below nought, else -d is backwards.
+        let full = self.contact.gross_slip_displacement();
+        if apart < 0.0 { -full } else { full }
+    }
+
+    /// A copy of the contact after a path.
+    fn after(&self, path: &[f64]) -> Result<Contact, Error> {
+        let mut contact = self.contact.clone();
+        for &target in path {
+            if !(self.go_on)() {
+                return Err(Error::BrokenOff);
+            }
+            contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
+        }
+        Ok(contact)
+    }
+
+    /// The path with its last displacement as the end wants it, and what it comes to.
+    fn judge(&self, mut path: Vec<f64>, way: Way, spread: Option<f64>) -> Result<Design, Error> {
+        let last = path.pop().unwrap_or_default();
+        let mut contact = self.after(&path)?;
+        let target = match self.end {
+            End::ForceZero => {
+                let mut freed = contact.clone();
+                freed.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
+                freed.state().displacement
+            }
+            End::DisplacementZero | End::Free => last,
+        };
+        path.push(target);
+        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
+        let residual = contact.residual_while(self.go_on).ok_or(Error::BrokenOff)?;
+        let largest = self.judged.largest(&contact, &residual);
+        Ok(Design { displacements: path, way, spread, contact, residual, largest })
+    }
+
+    fn by_law(&self, kind: Kind, first: f64, way: Way) -> Result<Design, Error> {
+        let path = match kind {
+            Kind::Linear => falling_amplitude(self.reversals, first).collect(),
+            Kind::EqualPeaks | Kind::Minimax => self.equal_from(first)?,
+        };
+        self.judge(path, way, None)
+    }
+
+    /// The law of equal peaks from an amplitude on, which may be less than gross slip.
+    fn equal_from(&self, first: f64) -> Result<Vec<f64>, Error> {
+        let full = self.contact.gross_slip_displacement();
+        let sign = if first < 0.0 { -1.0 } else { 1.0 };
+        if first.abs() >= full {
+            let mut path = equal_peaks(self.contact, self.reversals, None)?.displacements;
+            path.iter_mut().for_each(|target| *target *= sign);
+            path[0] = first;
+            return Ok(path);
+        }
+        let (profile, indentation) = (&*self.contact.profile, self.contact.indentation());
+        let inner = profile.radius(indentation * (1.0 - first.abs() / full));
+        let from = inner.max(self.judged.from);
+        let spread = Spread::new(profile, from, self.contact.contact_radius());
+        let size = |index: usize| {
+            let part = index as f64 / self.reversals.max(1) as f64;
+            match &spread {
+                _ if index == 0 => first.abs(),
+                _ if index == self.reversals => 0.0,
+                Some(spread) => full * (1.0 - profile.level(spread.radius(part)) / indentation).max(0.0),
+                None => first.abs() * (1.0 - part),
+            }
+        };
+        Ok((0..=self.reversals).map(|index| sign * alternating(index, size(index))).collect())
+    }
+
+    /// The best of what there is: equal alternating extrema, and the laws, which win where those cannot be had.
+    fn best(&self, first: f64, way: Way) -> Result<Design, Error> {
+        let mut best: Option<Design> = None;
+        let mut offer = |design: Result<Design, Error>| match design {
+            Ok(design) => {
+                if best.as_ref().is_none_or(|best| design.largest < best.largest * (1.0 - ROUNDED)) {
+                    best = Some(design);
+                }
+                Ok(())
+            }
+            Err(Error::BrokenOff) => Err(Error::BrokenOff),
+            // What a law or a construction cannot have is no candidate.
+            Err(_) => Ok(()),
+        };
+        if way == Way::GrossSlip && self.contact.memory_depth() <= DEEPEST && self.at_an_end() {
+            let stay = self.judge(vec![self.contact.state().displacement], Way::Stay, None)?;
+            if stay.largest <= 0.0 {
+                return Ok(stay);
+            }
+            offer(Ok(stay))?;
+        }
+        let full = self.contact.gross_slip_displacement();
+        let sign = if first < 0.0 { -1.0 } else { 1.0 };
+        // The smallest of the extrema is nowhere near the largest where the end is prescribed.
+        let spread = |found: &super::Minimax| (self.end == End::Free).then_some(found.gap);
+        let found = if first.abs() >= full {
+            super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.go_on)
+        } else {
+            Vec::new()
+        };
+        for found in &found {
+            let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
+            offer(self.judge(self.ended(path), way, spread(found)))?;
+        }
+        if found.is_empty() || (self.end != End::Free && self.reversals <= ending::FEW) {
+            let begun = self.after(&[first])?;
+            // The first of the strokes goes back.
+            let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
+            if let Some(path) = self.relieved(&begun, self.reversals, last) {
+                offer(self.judge([vec![first], path].concat(), way, None))?;
+            }
+        }
+        if way == Way::GrossSlip {
+            for last in [1.0, -1.0] {
+                if let Some(path) = self.relieved(self.contact, self.reversals + 1, last) {
+                    let wiped = self.after(&path[..1])?.state().regime == Regime::GrossSlip;
+                    offer(self.judge(path, if wiped { Way::GrossSlip } else { Way::Partial }, None))?;
+                }
+            }
+        }
+        for kind in [Kind::EqualPeaks, Kind::Linear] {
+            offer(self.by_law(kind, first, way))?;
+        }
+        if self.judged.vertical && self.end != End::DisplacementZero {
+            // Without a force a punch carries nothing at all.
+            let path = falling_amplitude(self.reversals, first).collect();
+            offer(Task { end: End::ForceZero, ..*self }.judge(path, way, None))?;
+        }
+        if (self.go_on)() { best.ok_or(Error::BrokenOff) } else { Err(Error::BrokenOff) }
+    }
+
+    /// The path with its last displacement nought if it is to be and nearly is.
+    fn ended(&self, mut path: Vec<f64>) -> Vec<f64> {
+        if let (End::DisplacementZero, Some(last)) = (self.end, path.last_mut())
+            && last.abs() <= ROUNDED * self.contact.gross_slip_displacement()
+        {
+            *last = 0.0;
+        }
+        path
+    }
+
+    /// Whether the contact stands where a path may end.
+    fn at_an_end(&self) -> bool {
+        let state = self.contact.state();
+        match self.end {
+            End::Free => true,
+            End::DisplacementZero => state.displacement.abs() <= 0.0,
+            End::ForceZero => state.force.abs() <= ROUNDED * self.contact.figures().gross_slip_force,
+        }
+    }
+
+    /// Strokes by [`Relief`], m, if they end where they are to.
+    fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Option<Vec<f64>> {
+        let mut path = Relief::new(from, strokes, last, self.end)?.solve(self.go_on)?;
+        path.iter_mut().for_each(|position| *position *= from.scale());
+        let end = path.last_mut()?;
+        if self.end == End::DisplacementZero {
+            if end.abs() > ROUNDED * from.gross_slip_displacement() {
+                return None;
+            }
+            *end = 0.0;
+        }
+        Some(path)
+    }
+}

@@ -1,0 +1,168 @@
+//! Equal alternating extrema with a prescribed end.
+//!
+//! The kinks of the smallest E lead somewhere. To lead elsewhere one extremum must stay below the others. If it is one of
+//! the kinks, its share and E are the two unknowns of two equations, the end and the stress of the core, solved by Broyden's
+//! method from the free optimum. If it is the core, E alone is sought. Among few kinks each is tried, else the outermost: of
+//! many extrema it matters little which one stays below.
+
+use super::super::profile::{Point, Ring};
+use super::minimax::{Marched, Problem};
+use super::{DoubleDouble, End};
+
+/// So many kinks are tried one by one.
+pub(super) const FEW: usize = 8;
+/// Looks at the kinks, at the most.
+const LOOKS: usize = 40;
+/// What the two equations may miss, relative to the indentation and to E.
+const TOLERANCE: f64 = 1e-11;
+/// The first steps, relative, and, over the number of kinks, those by which E is raised.
+const PROBE: f64 = 1e-4;
+const PACE: f64 = 0.1;
+/// The smallest share, and how often a step is halved that loses a kink.
+const LEAST: f64 = 1e-3;
+const RETRIES: usize = 8;
+
+/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence for
+/// each extremum that may stay below the others.
+pub(super) fn kinks(
+    problem: &Problem<'_>,
+    limit: f64,
+    first: f64,
+    end: End,
+    go_on: &dyn Fn() -> bool,
+) -> Vec<Vec<Point>> {
+    let tried = if problem.reversals <= FEW { problem.reversals } else { 1 };
+    let equations = Equations { problem, limit, first, end, go_on };
+    (0..tried).filter_map(|index| equations.by_share(index)).chain(equations.by_core()).collect()
+}
+
+/// What is to be solved.
+struct Equations<'a> {
+    problem: &'a Problem<'a>,
+    limit: f64,
+    first: f64,
+    end: End,
+    go_on: &'a dyn Fn() -> bool,
+}
+
+impl Equations<'_> {
+    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with what they miss.
+    fn look(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], Marched)> {
+        let marched = self.problem.march_with(self.limit * stress, (index, share), self.go_on)?;
+        Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
+    }
+
+    /// The kinks if the extremum of this index stays below the others.
+    fn by_share(&self, index: usize) -> Option<Vec<Point>> {
+        let mut at = [1.0, 1.0];
+        let (mut missed, mut marched) = self.look(index, at)?;
+        // The Jacobian by differences once, then kept up.
+        let (by_stress, _) = self.look(index, [1.0 + PROBE, 1.0])?;
+        let (by_share, _) = self.look(index, [1.0, 1.0 - PROBE])?;
+        let row = |row: usize| [(by_stress[row] - missed[row]) / PROBE, (missed[row] - by_share[row]) / PROBE];
+        let mut jacobian = [row(0), row(1)];
+        for _ in 0..LOOKS {
+            if missed.iter().all(|miss| miss.abs() <= TOLERANCE) {
+                return (at[1] <= 1.0 + TOLERANCE).then_some(marched.kinks);
+            }
+            let [[a, b], [c, d]] = jacobian;
+            let determinant = a * d - b * c;
+            let mut step =
+                [(b * missed[1] - d * missed[0]) / determinant, (c * missed[0] - a * missed[1]) / determinant];
+            // Not so far that the kinks get lost.
+            let far = (step[0].abs() / 0.1).max(step[1].abs() / 0.25);
+            if !far.is_finite() {
+                return None;
+            }
+            if far > 1.0 {
+                step = step.map(|part| part / far);
+            }
+            step[1] = step[1].max(LEAST - at[1]);
+            let mut found = None;
+            for _ in 0..RETRIES {
+                found = self.look(index, [at[0] + step[0], at[1] + step[1]]);
+                if found.is_some() {
+                    break;
+                }
+                step = step.map(|part| 0.5 * part);
+            }
+            let (now, tried) = found?;
+            let size = step[0] * step[0] + step[1] * step[1];
+            if size <= 0.0 {
+                return None;
+            }
+            for (row, was, is) in [(0, missed[0], now[0]), (1, missed[1], now[1])] {
+                let expected = jacobian[row][0] * step[0] + jacobian[row][1] * step[1];
+                let off = (is - was - expected) / size;
+                jacobian[row][0] += off * step[0];
+                jacobian[row][1] += off * step[1];
+            }
+            at = [at[0] + step[0], at[1] + step[1]];
+            (missed, marched) = (now, tried);
+        }
+        None
+    }
+
+    /// The kinks of the smallest E above the free optimum that leads to the end by itself.
+    fn by_core(&self) -> Option<Vec<Point>> {
+        let look = |stress: f64| self.look(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
+        // At about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
+        let mut step = PACE / self.problem.reversals as f64;
+        let (mut low, mut at_low) = (1.0, look(1.0)?.0);
+        let (mut high, mut at_high) = (low, at_low);
+        for _ in 0..LOOKS {
+            match look(low + step) {
+                Some((value, _)) => {
+                    (high, at_high) = (low + step, value);
+                    if at_high * at_low <= 0.0 {
+                        break;
+                    }
+                    (low, at_low) = (high, at_high);
+                }
+                None => step *= 0.5,
+            }
+        }
+        if at_high * at_low > 0.0 {
+            return None;
+        }
+        // False position with the weight of an end halved that stays (Illinois).
+        for _ in 0..LOOKS {
+            let middle = (low * at_high - high * at_low) / (at_high - at_low);
+            let (value, kinks) = look(middle)?;
+            if value.abs() <= TOLERANCE || high - low <= TOLERANCE {
+                return Some(kinks);
+            }
+            if value * at_high > 0.0 {
+                (high, at_high, at_low) = (middle, value, 0.5 * at_low);
+            } else {
+                (low, at_low, at_high) = (middle, value, 0.5 * at_high);
+            }
+        }
+        None
+    }
+}
+
+/// What the end misses: of the displacement over the indentation, of the force over that of gross slip.
+fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: End) -> f64 {
+    let profile = problem.profile;
+    let alternating = |index: usize, size: f64| if index.is_multiple_of(2) { size } else { -size };
+    match end {
+        End::Free => 0.0,
+        End::DisplacementZero => {
+            let strokes = kinks.iter().rev().enumerate();
+            let way = strokes.map(|(index, kink)| alternating(index, 2.0 * (problem.edge.level - kink.level).value()));
+            (first - way.sum::<f64>()) / problem.edge.level.value()
+        }
+        End::ForceZero => {
+            let load = |ring: &Ring| ring.inner.radius * ring.depth + profile.moments(ring).first;
+            let zero = profile.point(DoubleDouble::ZERO);
+            let whole = load(&Ring::between(zero, problem.edge));
+            let (mut outer, mut sum) = (problem.edge, 0.0);
+            for (index, inner) in kinks.iter().chain([&zero]).enumerate() {
+                sum += alternating(index, load(&Ring::between(*inner, outer)));
+                outer = *inner;
+            }
+            sum / whole
+        }
+    }
+}

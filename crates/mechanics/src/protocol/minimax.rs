@@ -1,0 +1,267 @@
+//! The sequence of amplitudes whose largest remaining shear stress is smallest, by equal alternating extrema.
+//!
+//! After gross slip and N reversals the shear stress is an alternating sum of kernels between the radii where slip began. At
+//! such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the other from the edge
+//! inwards: each where the stress first meets E with the other sign. E is then lowered until the centre meets it too.
+
+use super::super::profile::{At, Point, Profile, Ring};
+use super::DoubleDouble;
+
+/// Looks at the level E at the most, after it has been bracketed.
+const LOOKS: usize = 80;
+/// Steps of one search for a kink, and of its refinement, at the most.
+const STEPS: usize = 400;
+/// Radii at which the core is looked at where its stress need not fall outwards.
+const CORE: usize = 32;
+/// Sections of the stretch about the largest of these, and their ratio.
+const SECTIONS: usize = 22;
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
+/// What E may be off, relative to itself.
+const TOLERANCE: f64 = 1e-13;
+/// How E is changed until it is bracketed.
+const STRIDE: f64 = 1.25;
+/// How often, and by which part, a lower E is tried than the one found.
+const BELOW: usize = 8;
+const STEP_BELOW: f64 = 0.01;
+
+/// The kinks for one E, the outermost first.
+pub(super) struct Marched {
+    pub(super) kinks: Vec<Point>,
+    /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
+    pub(super) excess: Option<f64>,
+}
+
+impl Marched {
+    fn fits(&self) -> bool {
+        self.excess.is_none_or(|excess| excess <= 0.0)
+    }
+}
+
+/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over the largest.
+pub(super) struct Equal {
+    pub(super) levels: Vec<f64>,
+    pub(super) ratio: f64,
+    /// The largest of them, over G* m/pi.
+    pub(super) limit: f64,
+}
+
+/// A contact that is judged from a cut-off radius outwards.
+pub(super) struct Problem<'a> {
+    pub(super) profile: &'a Profile,
+    pub(super) edge: Point,
+    pub(super) cutoff: f64,
+    pub(super) reversals: usize,
+}
+
+impl Problem<'_> {
+    /// Shear stress over G* m/pi after the kinks, but for the sign of the last stroke.
+    fn shear(&self, kinks: &[Point], at: &At) -> f64 {
+        self.shear_down_to(self.profile.point(DoubleDouble::ZERO), kinks, at)
+    }
+
+    /// The share of that of the rings beyond `least`.
+    pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &At) -> f64 {
+        let (mut outer, mut sign, mut sum) = (self.edge, 1.0, 0.0);
+        for inner in kinks.iter().copied().chain([least]) {
+            if outer.radius < at.radius {
+                break;
+            }
+            sum += sign * self.profile.kernel(at, &Ring::between(inner, outer));
+            (outer, sign) = (inner, -sign);
+        }
+        sum
+    }
+
+    /// The first level below the last kink where the stress meets `limit`, if there is one beyond the cut-off.
+    fn next(&self, kinks: &[Point], limit: f64) -> Option<Point> {
+        let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
+        let top = kinks.last().unwrap_or(&self.edge).level.value();
+        let least = if self.cutoff > 0.0 { self.profile.level(self.cutoff) } else { 0.0 };
+        let missing = |level: f64| {
+            let point = self.profile.point(DoubleDouble::from(level));
+            limit - sign * self.shear(kinks, &At::point(&point))
+        };
+        // Steps of a fraction of the last spacing, and ever longer ones: a stress that turns back is not stepped over.
+        let before = match kinks {
+            [.., beyond, last] => (beyond.level - last.level).value(),
+            [last] => (self.edge.level - last.level).value(),
+            [] => top / (64.0 * (self.reversals * self.reversals) as f64),
+        };
+        let mut step = (0.4 * before).max(4.0 * f64::EPSILON * top);
+        let (mut high, mut at_high) = (top, limit);
+        let mut low = high;
+        let mut at_low = at_high;
+        for _ in 0..STEPS {
+            if high <= least {
+                return None;
+            }
+            low = (high - step).max(least);
+            at_low = missing(low);
+            if at_low <= 0.0 {
+                break;
+            }
+            (high, at_high) = (low, at_low);
+            step *= 1.25;
+        }
+        if at_low > 0.0 || low <= 0.0 {
+            return None;
+        }
+        // False position with the weight of an end halved that stays (Illinois).
+        for _ in 0..STEPS {
+            let share = (at_high / (at_high - at_low)).clamp(0.0, 1.0);
+            let level = high + share * (low - high);
+            if level >= high || level <= low {
+                break;
+            }
+            let value = missing(level);
+            if value.abs() <= 1e-15 * limit || high - low <= 2.0 * f64::EPSILON * high {
+                low = level;
+                break;
+            }
+            if value > 0.0 {
+                (high, at_high, at_low) = (level, value, 0.5 * at_low);
+            } else {
+                (low, at_low, at_high) = (level, value, 0.5 * at_high);
+            }
+        }
+        Some(self.profile.point(DoubleDouble::from(low)))
+    }
+
+    /// The largest stress of the core, with the sign that the next kink would stop it at.
+    fn core(&self, kinks: &[Point]) -> f64 {
+        let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
+        let width = kinks.last().unwrap_or(&self.edge).radius - self.cutoff;
+        let looks = if self.profile.kernel_falls() { 1 } else { CORE };
+        let value = |part: f64| sign * self.shear(kinks, &At::radius(self.cutoff + width * part));
+        let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
+        let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
+        if looks > 1 {
+            // Between two looks it may be larger: golden sections about the best.
+            let (mut low, mut high) = ((best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0));
+            let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+            for _ in 0..SECTIONS {
+                let [left, right] = inner(low, high);
+                let (at_left, at_right) = (value(left), value(right));
+                largest = largest.max(at_left).max(at_right);
+                if at_left > at_right {
+                    high = right;
+                } else {
+                    low = left;
+                }
+            }
+        }
+        largest
+    }
+
+    pub(super) fn march(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Option<Marched> {
+        self.march_with(limit, (0, 1.0), go_on)
+    }
+
+    /// The same with a share of the limit for the extremum of this index, the outermost first.
+    pub(super) fn march_with(
+        &self,
+        limit: f64,
+        (index, share): (usize, f64),
+        go_on: &dyn Fn() -> bool,
+    ) -> Option<Marched> {
+        let mut kinks = Vec::with_capacity(self.reversals);
+        while kinks.len() < self.reversals {
+            if !go_on() {
+                return None;
+            }
+            match self.next(&kinks, if kinks.len() == index { share * limit } else { limit }) {
+                Some(kink) => kinks.push(kink),
+                None => return Some(Marched { kinks, excess: None }),
+            }
+        }
+        let excess = self.core(&kinks) / limit - 1.0;
+        Some(Marched { kinks, excess: Some(excess) })
+    }
+
+    /// Closes the bracket of an E that is too small and one that is not.
+    fn close(
+        &self,
+        mut low: f64,
+        mut under: Option<f64>,
+        high: &mut f64,
+        best: &mut Marched,
+        go_on: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        let mut over = best.excess;
+        for look in 0..LOOKS {
+            if *high - low <= TOLERANCE * *high || best.excess.is_some_and(|excess| excess.abs() <= TOLERANCE) {
+                break;
+            }
+            // Every fifth look halves, so that the bracket closes whatever the curve.
+            let share = match (under, over) {
+                (Some(above), Some(below)) if look % 5 != 4 && above > below => above / (above - below),
+                _ => 0.5,
+            };
+            let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (*high - low);
+            let marched = self.march(trial, go_on)?;
+            // The weight of an end that stays is halved (Illinois).
+            if marched.fits() {
+                (*high, over) = (trial, marched.excess);
+                *best = marched;
+                under = under.map(|excess| 0.5 * excess);
+            } else {
+                (low, under) = (trial, marched.excess);
+                over = over.map(|excess| 0.5 * excess);
+            }
+        }
+        Some(())
+    }
+
+    /// The smallest E, and its kinks; `None` if `go_on` said no, or there is no such E.
+    pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Equal> {
+        let middle = At::radius(0.5 * (self.cutoff + self.edge.radius));
+        let guess = self.shear(&[], &middle) / (self.reversals as f64).sqrt();
+        if !(guess > 0.0 && guess.is_finite()) {
+            return None;
+        }
+        let (mut low, mut high) = (guess, guess);
+        let mut best = self.march(high, go_on)?;
+        let mut under = best.excess;
+        for _ in 0..LOOKS {
+            if best.fits() {
+                break;
+            }
+            (low, under) = (high, best.excess);
+            high *= STRIDE;
+            best = self.march(high, go_on)?;
+        }
+        for _ in 0..LOOKS {
+            if low < high {
+                break;
+            }
+            let trial = self.march(low / STRIDE, go_on)?;
+            low /= STRIDE;
+            if trial.fits() {
+                (high, low, best) = (low, low, trial);
+            } else {
+                under = trial.excess;
+            }
+        }
+        if !best.fits() || low >= high {
+            return None;
+        }
+        self.close(low, under, &mut high, &mut best, go_on)?;
+        // The core need not fall all the way as E rises: a little lower there may be another one that fits.
+        for _ in 0..BELOW {
+            let trial = high * (1.0 - STEP_BELOW);
+            let marched = self.march(trial, go_on)?;
+            if marched.excess.is_some_and(|excess| excess <= 0.0) {
+                let lower = trial * (1.0 - STEP_BELOW);
+                let under = self.march(lower, go_on)?;
+                (high, best) = (trial, marched);
+                if !under.fits() {
+                    self.close(lower, under.excess, &mut high, &mut best, go_on)?;
+                }
+            } else {
+                break;
+            }
+        }
+        let ratio = (self.core(&best.kinks) / high).clamp(0.0, 1.0);
+        Some(Equal { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
+    }
+}

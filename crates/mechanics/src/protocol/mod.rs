@@ -1,0 +1,156 @@
+//! Paths that lower the residual shear stress.
+//!
+//! Each reversal leaves a kink of the shear stress at the radius where its slip began. Kraft & Pohrt (2016) let the amplitude
+//! fall linearly, which gives equal peaks on a sphere alone. For any profile the peaks are equal where the steps of the
+//! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
+//! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
+
+mod bound;
+mod design;
+mod ending;
+mod minimax;
+mod relief;
+mod robustness;
+mod spread;
+
+pub use bound::lower_bound;
+pub use design::{Design, End, Judged, Kind, Start, Way, design};
+pub use robustness::{Errors, trials};
+
+use minimax::Problem;
+use spread::Spread;
+
+use super::contact::Contact;
+use super::double_double::DoubleDouble;
+use super::error::Error;
+use super::profile::Profile;
+use super::range::short;
+
+/// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
+pub const DEFAULT_CUTOFF: f64 = 0.1;
+
+/// The linearly falling amplitude of Kraft & Pohrt (2016), eq. 20: the displacements
+/// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is nought.
+///
+/// `reversals` is N, `amplitude` is A, m.
+pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item = f64> {
+    (0..=reversals).map(move |index| {
+        let left = (reversals - index) as f64;
+        alternating(index, amplitude * (left / reversals.max(1) as f64))
+    })
+}
+
+/// The outermost radius inside `edge`, m, at which the stress is infinite whatever is done, if there is one.
+fn outermost_singular(profile: &Profile, edge: f64) -> Option<f64> {
+    profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max)
+}
+
+/// The radius, m, from which on the stress is judged.
+fn cutoff_of(singular: Option<f64>, edge: f64) -> f64 {
+    singular.map_or(0.0, |least| least + DEFAULT_CUTOFF * (edge - least))
+}
+
+/// `size` with the sign of the move `index`, the first of which goes forward.
+fn alternating(index: usize, size: f64) -> f64 {
+    if index.is_multiple_of(2) { size } else { 0.0 - size }
+}
+
+/// A path of equal peaks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EqualPeaks {
+    /// The displacements, m: `reversals` + 1 of them, the last nought.
+    pub displacements: Vec<f64>,
+    /// The radius, m, from which on the peaks are equal; nought if all are.
+    pub cutoff_radius: f64,
+}
+
+/// The law of equal peaks for the profile and the present load of `contact`, from gross slip to rest.
+///
+/// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made equal
+/// from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge. Profiles that
+/// need none have none unless it is given.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
+pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
+    let (edge, indentation) = (contact.contact_radius(), contact.indentation());
+    let singular = outermost_singular(&contact.profile, edge);
+    let least = singular.unwrap_or(0.0);
+    let cutoff = match cutoff_radius {
+        Some(given) if !(least..=edge).contains(&given) => {
+            let allowed = format!("{} to {} m, the contact radius", short(least), short(edge));
+            return Err(Error::OutOfRange { quantity: "cutoff_radius", value: given, allowed });
+        }
+        Some(given) => given,
+        None => cutoff_of(singular, edge),
+    };
+    // At the very radius where s diverges there is no law.
+    let spread = (singular.is_none() || cutoff > least).then(|| Spread::new(&contact.profile, cutoff, edge)).flatten();
+    let full = contact.gross_slip_displacement();
+    let size = |index: usize| {
+        let part = index as f64 / reversals.max(1) as f64;
+        match &spread {
+            // The first stroke slips as a whole, so that nothing before it matters.
+            _ if index == 0 => full,
+            _ if index == reversals => 0.0,
+            Some(spread) => full * (1.0 - contact.profile.level(spread.radius(part)) / indentation).max(0.0),
+            None => full * (1.0 - part),
+        }
+    };
+    let displacements = (0..=reversals).map(|index| alternating(index, size(index))).collect();
+    Ok(EqualPeaks { displacements, cutoff_radius: cutoff })
+}
+
+/// A path with equal alternating extrema.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Minimax {
+    /// The displacements, m: that of gross slip, and one a reversal; the last is not nought.
+    pub displacements: Vec<f64>,
+    /// The radius, m, from which on the stress is minimised; nought if it is over the whole contact.
+    pub cutoff_radius: f64,
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: nought where all are
+    /// equal.
+    pub gap: f64,
+}
+
+/// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end left free.
+///
+/// Where the stress is infinite whatever is done (the tip of a cone, the rim of a truncated profile) it is minimised from
+/// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `go_on` is asked before each kink that is sought.
+///
+/// `None` if `go_on` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
+/// vertical edge, where the stress stays infinite.
+pub fn minimax(contact: &Contact, reversals: usize, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
+    minimax_to(contact, reversals, contact.gross_slip_displacement(), End::Free, go_on).pop()
+}
+
+/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then,
+/// and there is a path for each that may be. None without an answer.
+fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: &dyn Fn() -> bool) -> Vec<Minimax> {
+    let edge = *contact.memory.edge();
+    let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
+    if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
+        return Vec::new();
+    }
+    let cutoff_radius = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
+    let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
+    let Some(equal) = problem.solve(go_on) else { return Vec::new() };
+    let levels: Vec<Vec<f64>> = if end == End::Free {
+        vec![equal.levels]
+    } else {
+        let found = ending::kinks(&problem, equal.limit, first / contact.scale(), end, go_on);
+        found.iter().map(|kinks| kinks.iter().map(|kink| kink.level.value()).collect()).collect()
+    };
+    let path = |levels: Vec<f64>| {
+        let mut displacements = vec![first];
+        let mut here = DoubleDouble::from(first);
+        for (index, level) in levels.iter().rev().enumerate() {
+            // A stroke slips from the level on where it is twice the bound there.
+            let stroke = DoubleDouble::from(2.0 * contact.scale()) * (edge.level - DoubleDouble::from(*level)).value();
+            here = if index.is_multiple_of(2) { here - stroke } else { here + stroke };
+            displacements.push(here.value());
+        }
+        Minimax { displacements, cutoff_radius, gap: 1.0 - equal.ratio }
+    };
+    levels.into_iter().map(path).collect()
+}

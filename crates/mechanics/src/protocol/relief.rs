@@ -1,0 +1,333 @@
+//! The best strokes from any state: alternating extrema outside, and inside what the history has left.
+//!
+//! The first stroke slips down to a cut, and the strokes after it to kinks ever nearer to the edge. For a largest stress E the
+//! kinks follow from the edge inwards as in `minimax`; they do not depend on what lies inside the cut. The cut is then
+//! where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is lowered until the
+//! inside would be above it.
+//!
+//! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and a last
+//! stroke, during which nothing slips but the edge itself, takes the load off it.
+
+use super::super::contact::Contact;
+use super::super::profile::{At, Point, Ring};
+use super::super::slip_history::Line;
+use super::minimax::Problem;
+use super::{DoubleDouble, End, cutoff_of, outermost_singular};
+
+/// More pieces than this inside are not looked at one by one for every E.
+const DEEPEST: usize = 256;
+/// Radii that are looked at beside the kinks of the history, and cuts that are tried.
+const GRID: usize = 64;
+const CUTS: usize = 16;
+/// Among the cuts tried none is this much above the best there is.
+const COARSE: f64 = 1.1;
+/// Halvings of a bracket.
+const HALVINGS: usize = 60;
+/// Looks at E, and how it is changed until it is bracketed.
+const LOOKS: usize = 48;
+const STRIDE: f64 = 1.6;
+const PACE: f64 = 1.06;
+/// What E may be off, relative to itself.
+const TOLERANCE: f64 = 1e-8;
+/// An E below this part of the first guess is as good as none.
+const LEAST: f64 = 1e-4;
+
+/// Strokes from the state of a contact.
+pub(super) struct Relief<'a> {
+    problem: Problem<'a>,
+    /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else nought.
+    edge: DoubleDouble,
+    rim: f64,
+    /// The history from the centre outward, and what turns a line into w - W.
+    history: Vec<(Ring, Line)>,
+    /// Where the inside is looked at, from the centre outward.
+    looks: Vec<Look>,
+    reference: DoubleDouble,
+    /// The direction of the last stroke that slips inside, and of the first.
+    last: f64,
+    first: f64,
+    end: End,
+}
+
+/// What the strokes of one E come to, all scaled by m and for a last stroke forwards.
+struct Strokes {
+    kinks: Vec<Point>,
+    /// Where the first stroke leads to.
+    first: f64,
+}
+
+impl<'a> Relief<'a> {
+    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or where
+    /// the memory is too deep.
+    pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: End) -> Option<Relief<'a>> {
+        let (profile, memory) = (&*contact.profile, &contact.memory);
+        let edge = *memory.edge();
+        if memory.pieces().len() > DEEPEST {
+            return None;
+        }
+        let mut history: Vec<_> = memory.rings().map(|(ring, line)| (ring, *line)).collect();
+        history.reverse();
+        let rim = profile.rim_radius().filter(|rim| edge.radius >= *rim).map(|rim| profile.level(rim));
+        let outer = rim.map_or(edge, |level| profile.point(DoubleDouble::from(level)));
+        let inner_strokes = strokes.checked_sub(usize::from(rim.is_some()))?;
+        if inner_strokes == 0 || outer.level.value() <= 0.0 {
+            return None;
+        }
+        let cutoff = cutoff_of(outermost_singular(profile, outer.radius), outer.radius);
+        let problem = Problem { profile, edge: outer, cutoff, reversals: inner_strokes - 1 };
+        let last = if rim.is_some() { -last } else { last };
+        let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
+        let height = rim.map_or(0.0, |level| (edge.level - DoubleDouble::from(level)).value());
+        let reference = memory.position() - memory.shift();
+        let looks = looks(&problem, &history, last);
+        Some(Relief { problem, edge: edge.level, rim: height, history, looks, reference, last, first, end })
+    }
+
+    /// w - W of the history at a level, for a last stroke forwards.
+    fn stuck(&self, level: DoubleDouble) -> f64 {
+        let line = self.history.iter().rfind(|(ring, _)| ring.inner.level <= level).map(|(_, line)| line);
+        self.last * line.map_or(DoubleDouble::ZERO, |line| line.at(level) - self.reference).value()
+    }
+
+    /// Where the first stroke must lead to so that it slips down to a level.
+    fn first_to(&self, level: DoubleDouble) -> f64 {
+        self.first * (self.edge - level).value() - self.stuck(level)
+    }
+
+    /// How far the strokes after the first lead.
+    fn way(&self, kinks: &[Point]) -> f64 {
+        let stroke = |(index, kink): (usize, &Point)| {
+            let size = 2.0 * (self.edge - kink.level).value();
+            if index.is_multiple_of(2) { size } else { -size }
+        };
+        kinks.iter().enumerate().map(stroke).sum::<f64>() - self.rim
+    }
+
+    /// int w dx at the end, m^2, for a cut at a point.
+    fn carried(&self, kinks: &[Point], cut: &Point) -> f64 {
+        let load = |ring: &Ring| ring.inner.radius * ring.depth + self.problem.profile.moments(ring).first;
+        let (mut outer, mut sign, mut sum) = (self.problem.edge, 1.0, 0.0);
+        for inner in kinks.iter().chain([cut]) {
+            sum += sign * load(&Ring::between(*inner, outer));
+            (outer, sign) = (*inner, -sign);
+        }
+        sum + self.inside(cut).map(|(ring, slope)| slope * load(&ring)).sum::<f64>()
+    }
+
+    /// The rings of the history inside a cut, with the sign of the stress that they make.
+    fn inside(&self, cut: &Point) -> impl Iterator<Item = (Ring, f64)> {
+        let kept = self.history.iter().filter(|(ring, _)| ring.inner.level < cut.level);
+        kept.map(|(ring, line)| {
+            let outer = if ring.outer.level < cut.level { ring.outer } else { *cut };
+            (Ring::between(ring.inner, outer), -self.last * line.slope.value())
+        })
+    }
+
+    /// What the end misses with a cut at a level, in the direction of the first stroke: it falls as the cut goes outwards.
+    fn miss(&self, kinks: &[Point], level: DoubleDouble) -> f64 {
+        let value = match self.end {
+            End::Free => 0.0,
+            End::DisplacementZero => self.first_to(level) + self.way(kinks),
+            End::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
+        };
+        self.first * value
+    }
+
+    /// The largest stress inside the last kink, for a cut; `outside` is that of the rings beyond the kink, look by look.
+    fn worst(&self, outside: &[f64], kinks: &[Point], cut: &Point) -> f64 {
+        let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
+        let ring = Ring::between(*cut, *kinks.last().unwrap_or(&self.problem.edge));
+        let profile = self.problem.profile;
+        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
+        let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
+        let kept = kept.map(|(ring, line)| (Ring::between(ring.inner, *cut), -self.last * line.slope.value()));
+        let mut worst = 0.0_f64;
+        for (look, outside) in self.looks.iter().zip(outside) {
+            let mut stress = outside + sign * profile.kernel(&look.at, &ring);
+            if look.at.radius <= cut.radius {
+                let part = kept.map_or(0.0, |(ring, slope)| slope * profile.kernel(&look.at, &ring));
+                stress += look.below[whole] + part;
+            }
+            worst = worst.max(stress.abs());
+        }
+        if cut.radius > self.problem.cutoff {
+            let at = At::point(cut);
+            worst = worst.max(self.problem.shear_down_to(*cut, kinks, &at).abs());
+        }
+        worst
+    }
+
+    /// The stress, at each look inside the last kink, of the rings beyond it.
+    fn outside(&self, kinks: &[Point]) -> Vec<f64> {
+        let Some((last, beyond)) = kinks.split_last() else {
+            return vec![0.0; self.looks.len()];
+        };
+        let inside = self.looks.iter().take_while(|look| look.at.radius < last.radius);
+        inside.map(|look| self.problem.shear_down_to(*last, beyond, &look.at)).collect()
+    }
+
+    /// The strokes of a largest stress E, if there are any; `Err` if `go_on` said no.
+    fn strokes(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Result<Tried, ()> {
+        let marched = self.problem.march(limit, go_on).ok_or(())?;
+        if marched.kinks.len() < self.problem.reversals {
+            return Ok(Tried::Loose);
+        }
+        let kinks = marched.kinks;
+        let profile = self.problem.profile;
+        let outside = self.outside(&kinks);
+        let last = kinks.last().unwrap_or(&self.problem.edge).level;
+        let fits = |cut: &Point| self.worst(&outside, &kinks, cut) <= limit * (1.0 + 1e-12);
+        if self.end == End::Free {
+            let outermost = kinks.last().unwrap_or(&self.problem.edge).radius;
+            let cut = |part: f64| profile.point(DoubleDouble::from(profile.level(part * outermost).min(last.value())));
+            let worst = |part: f64| self.worst(&outside, &kinks, &cut(part));
+            let tried = (0..=CUTS).map(|index| index as f64 / CUTS as f64).map(|part| (part, worst(part)));
+            let (mut best, mut least) = tried.fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
+            // Ever smaller steps to both sides of the best.
+            let mut step = 0.5 / CUTS as f64;
+            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && go_on() {
+                let sides = [best - step, best + step].map(|part| part.clamp(0.0, 1.0)).map(|part| (part, worst(part)));
+                match sides.into_iter().find(|(_, value)| *value < least) {
+                    Some(side) => (best, least) = side,
+                    None => step *= 0.5,
+                }
+            }
+            let cut = cut(best);
+            let first = self.first_to(cut.level);
+            return Ok(if least <= limit { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight });
+        }
+        let (mut low, mut high) = (DoubleDouble::ZERO, last);
+        if self.miss(&kinks, high) > 0.0 {
+            return Ok(Tried::Tight);
+        }
+        let over = self.miss(&kinks, low);
+        if over < 0.0 {
+            // Sliding on as a whole changes nothing but where it ends.
+            let first = self.first_to(low) - self.first * over;
+            let slides = self.end == End::DisplacementZero && fits(&profile.point(low));
+            return Ok(if slides { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight });
+        }
+        for _ in 0..HALVINGS {
+            let middle = low + (high - low) * 0.5;
+            if self.miss(&kinks, middle) > 0.0 { low = middle } else { high = middle }
+        }
+        let cut = profile.point(high);
+        let first = self.first_to(cut.level);
+        Ok(if fits(&cut) { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight })
+    }
+
+    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `go_on` said no.
+    pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Vec<f64>> {
+        let problem = &self.problem;
+        let middle = At::radius(0.5 * (problem.cutoff + problem.edge.radius));
+        let zero = problem.profile.point(DoubleDouble::ZERO);
+        let guess = problem.shear_down_to(zero, &[], &middle) / (problem.reversals as f64 + 1.0).sqrt();
+        if !(guess > 0.0 && guess.is_finite()) {
+            return None;
+        }
+        let (mut low, mut high);
+        let mut best = None;
+        let mut step = |limit: f64| -> Option<bool> {
+            Some(match self.strokes(limit, go_on).ok()? {
+                Tried::Fits(strokes) => {
+                    best = Some(strokes);
+                    true
+                }
+                Tried::Loose => true,
+                Tried::Tight => false,
+            })
+        };
+        if step(guess)? {
+            (low, high) = (guess / STRIDE, guess);
+            for _ in 0..LOOKS {
+                if !step(low)? {
+                    break;
+                }
+                (high, low) = (low, low / STRIDE);
+                if low < LEAST * guess {
+                    break;
+                }
+            }
+        } else {
+            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in small steps.
+            let found = (1..=LOOKS).flat_map(|look| [look as i32, -(look as i32)]).find_map(|look| {
+                let limit = guess * PACE.powi(look);
+                match step(limit) {
+                    Some(false) => None,
+                    Some(true) => Some(Some(limit)),
+                    None => Some(None),
+                }
+            });
+            high = found??;
+            low = high / PACE;
+            for _ in 0..LOOKS {
+                if !step(low)? {
+                    break;
+                }
+                (high, low) = (low, low / PACE);
+            }
+        }
+        for _ in 0..LOOKS {
+            if high - low <= TOLERANCE * high {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            if step(middle)? { high = middle } else { low = middle }
+        }
+        best.map(|strokes| self.positions(&strokes))
+    }
+
+    fn positions(&self, strokes: &Strokes) -> Vec<f64> {
+        let mut here = DoubleDouble::from(strokes.first);
+        let mut positions = vec![here.value()];
+        for (index, kink) in strokes.kinks.iter().enumerate().rev() {
+            let stroke = (self.edge - kink.level) * 2.0;
+            here = if index.is_multiple_of(2) { here + stroke } else { here - stroke };
+            positions.push(here.value());
+        }
+        if self.rim > 0.0 {
+            positions.push((here - DoubleDouble::from(self.rim)).value());
+        }
+        positions.into_iter().map(|position| self.last * position).collect()
+    }
+}
+
+/// A radius where the inside is looked at.
+struct Look {
+    at: At,
+    /// The stress there of so many rings of the history, from the centre outward, over G* m/pi.
+    below: Vec<f64>,
+}
+
+/// Even radii, and the kinks of the history.
+fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Look> {
+    let (least, most) = (problem.cutoff, problem.edge.radius);
+    let even = (0..GRID).map(|index| At::radius(least + (most - least) * index as f64 / GRID as f64));
+    let bends = history.iter().map(|(ring, _)| ring.inner).filter(|bend| bend.radius > least && bend.radius < most);
+    let mut all: Vec<At> = even.chain(bends.map(|bend| At::point(&bend))).collect();
+    all.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    let look = |at: At| {
+        let mut below = Vec::with_capacity(history.len() + 1);
+        let mut sum = 0.0;
+        for (ring, line) in history {
+            below.push(sum);
+            let slope = -last * line.slope.value();
+            if slope.abs() > 0.0 && ring.outer.radius > at.radius {
+                sum += slope * problem.profile.kernel(&at, ring);
+            }
+        }
+        below.push(sum);
+        Look { at, below }
+    };
+    all.into_iter().map(look).collect()
+}
+
+/// What an E comes to.
+enum Tried {
+    /// It is enough, and these are the strokes.
+    Fits(Strokes),
+    /// It is more than enough: fewer strokes would do.
+    Loose,
+    /// It is not enough.
+    Tight,
+}

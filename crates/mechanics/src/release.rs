@@ -1,0 +1,127 @@
+//! Friction work of one straight move: slip distance times friction bound, in closed form ring by ring.
+//!
+//! A point at level y that slips towards `sign` does so at a constant rate from some instant until the end of the move, or
+//! until it leaves the contact, while its bound d - y changes at a constant rate. So its work is its slip times the mean of
+//! the bound at both ends, a quadratic in y; no instant is simulated. Every term is positive: nothing cancels however small
+//! the move. Works here are over 2 G* m^2, in m^3.
+
+use super::double_double::DoubleDouble;
+use super::profile::{Moments, Point, Profile, Ring};
+use super::slip_history::{Line, MET_AGAIN, Memory, Piece, SAME};
+
+/// The slip that a move ends in: towards `sign`, with w = sign (indentation - y).
+pub(super) struct Slipping {
+    pub(super) sign: f64,
+    /// Turns a stored w - W into w at the end of the move.
+    pub(super) shift: DoubleDouble,
+    /// Indentation at the end of the move, m.
+    pub(super) indentation: DoubleDouble,
+    /// How far the bound changes in the time in which a point slips by twice the unit.
+    pub(super) lag: f64,
+}
+
+impl Slipping {
+    /// How far the stuck value at `level` would exceed the bound; it never falls towards the edge.
+    pub(super) fn excess(&self, line: &Line, level: DoubleDouble) -> DoubleDouble {
+        (line.at(level) + self.shift).signed(self.sign) + (level - self.indentation)
+    }
+
+    /// The level within the piece at which slip begins, from the excess at its inner end; `None` if the whole piece slips.
+    pub(super) fn crossing(&self, piece: &Piece, inner_excess: DoubleDouble, outer: &Point) -> Option<DoubleDouble> {
+        if inner_excess.value() >= 0.0 {
+            return None;
+        }
+        // After constant load, slopes are -1, 0 or 1 and the division is a halving at most.
+        let stuck = match piece.line.slope.signed(self.sign).parts() {
+            (slope, rest) if rest.abs() <= 0.0 && slope.abs() <= 0.0 => -inner_excess,
+            (slope, rest) if rest.abs() <= 0.0 && slope >= 1.0 => (-inner_excess).halved(),
+            _ => {
+                let closing = DoubleDouble::from(1.0) + piece.line.slope.signed(self.sign);
+                if closing.value() <= 0.0 {
+                    return Some(outer.level);
+                }
+                -inner_excess.over(closing)
+            }
+        };
+        let core = piece.inner.level.value() <= 0.0;
+        let same = if core { SAME } else { MET_AGAIN };
+        if stuck.value() <= same * (self.indentation - piece.inner.level).value() {
+            return None;
+        }
+        let level = piece.inner.level + stuck;
+        Some(if level < outer.level { level } else { outer.level })
+    }
+
+    /// Work on a ring of one old piece, all of which slipped, from the excess at its outer end.
+    pub(super) fn work(&self, moments: &Moments, line: &Line, slip: f64, ring: &Ring) -> f64 {
+        if ring.depth <= 0.0 {
+            return 0.0;
+        }
+        let growth = 1.0 + self.sign * line.slope.value();
+        let bound = (self.indentation - ring.outer.level).value();
+        let mean = bound - self.lag * slip;
+        let mean_growth = 1.0 + self.lag * growth;
+        let Moments { width, first, second } = *moments;
+        let work = slip * mean * width + (slip * mean_growth - growth * mean) * first - growth * mean_growth * second;
+        work.max(0.0)
+    }
+
+    /// Work on a flat core of `radius`, all of it at level nought, where the excess is `slip`.
+    pub(super) fn core_work(&self, slip: f64, radius: f64) -> f64 {
+        let slip = slip.max(0.0);
+        radius * slip * (self.indentation.value() - self.lag * slip)
+    }
+}
+
+/// Work on what leaves the contact when the indentation falls to `d1` while the indenter moves to `w1`: each point slips
+/// back to rest by the time it lifts off, to whichever side it was carried.
+pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+    let d0 = memory.edge().level;
+    let (fall, advance) = (d0 - d1, w1 - memory.position());
+    let lowest = if d1.value() > 0.0 { d1 } else { DoubleDouble::ZERO };
+    // What a point at y would carry at its lift-off: w - W, and where the indenter is by then.
+    let drift = advance.over(fall);
+    let shift = memory.shift();
+    let carried = |line: &Line, level: DoubleDouble| line.at(level) + shift + drift * (d0 - level);
+    let (drift, fall) = (drift.value(), fall.value());
+    // The bound falls by `fall` while the slip gains `rate`: slip^2 fall/(2 rate) a point.
+    let share = |carried_sign: f64| {
+        let rate = carried_sign * drift + 1.0;
+        if rate > 0.0 { 0.5 / rate } else { 0.0 }
+    };
+    debug_assert!(fall > 0.0);
+    let mut work = 0.0;
+    for (ring, line) in memory.rings() {
+        if ring.outer.level <= lowest {
+            break;
+        }
+        let inner = if ring.inner.level < lowest { profile.point(lowest) } else { ring.inner };
+        let (at_inner, at_outer) = (carried(line, inner.level), carried(line, ring.outer.level));
+        let steep = (at_outer - at_inner).value();
+        let parts = if at_inner.value() * at_outer.value() < 0.0 {
+            let fraction = at_inner.over(at_inner - at_outer);
+            let middle = profile.point(inner.level + (ring.outer.level - inner.level) * fraction);
+            [Some((Ring::between(inner, middle), 0.0)), Some((Ring::between(middle, ring.outer), at_outer.value()))]
+        } else {
+            [Some((Ring::between(inner, ring.outer), at_outer.value())), None]
+        };
+        let whole = (ring.outer.level - inner.level).value();
+        for (part, end) in parts.into_iter().flatten() {
+            if part.depth <= 0.0 {
+                continue;
+            }
+            let slope = steep / whole;
+            let middle = end - 0.5 * slope * part.depth;
+            let Moments { width, first, second } = profile.moments(&part);
+            let squares = end * end * width - 2.0 * end * slope * first + slope * slope * second;
+            work += share(middle.signum()) * squares.max(0.0);
+        }
+    }
+    if d1.value() <= 0.0
+        && let Some(core) = memory.pieces().first()
+    {
+        let held = carried(&core.line, DoubleDouble::ZERO).value();
+        work += core.inner.radius * share(held.signum()) * held * held;
+    }
+    work
+}

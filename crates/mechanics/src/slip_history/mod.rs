@@ -1,0 +1,380 @@
+//! The memory of the contact: a stack of straight pieces instead of springs.
+//!
+//! Let y = g(x) run from 0 at the centre to the indentation d at the edge, w = u_x/m be the tangential displacement of the
+//! surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches d - y. For
+//! every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes within [-1, 1], and the
+//! slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole pieces beyond the
+//! bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed. Stuck pieces are
+//! stored relative to the indenter, so what rides along is not touched. The rule is Masing's with wiping-out at constant
+//! load, and that of the memory diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
+//!
+//! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
+//! as absolute positions, so no error accumulates.
+
+mod packed;
+
+use super::double_double::DoubleDouble;
+use super::profile::{Moments, Point, Profile, Ring};
+use super::release::{self, Slipping};
+
+/// A stuck core thinner than this, relative to the indentation, is gross slip: the displacement of gross slip is itself rounded.
+/// So is w at the edge.
+pub(super) const SAME: f64 = 2.0 * f64::EPSILON;
+/// Two turning points closer than this, relative to their distance from the edge, are one: met again, a level differs in
+/// its last digits.
+pub(super) const MET_AGAIN: f64 = 1e-28;
+
+/// The largest part of a change of load that may be its rounding.
+const ROUNDED: f64 = 1e-6;
+
+/// A straight part of w - W over y: `offset + slope * y`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Line {
+    pub(super) offset: DoubleDouble,
+    pub(super) slope: DoubleDouble,
+}
+
+impl Line {
+    pub(super) fn at(&self, level: DoubleDouble) -> DoubleDouble {
+        if self.slope == DoubleDouble::ZERO { self.offset } else { self.offset + rise(self.slope, level) }
+    }
+}
+
+/// `slope * level`. At constant load every slope is -1, 0 or 1, and the product is spared.
+fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
+    let (whole, rest) = slope.parts();
+    if rest.abs() > 0.0 {
+        slope * level
+    } else if whole.abs() >= 1.0 {
+        level.signed(whole)
+    } else {
+        level * whole
+    }
+}
+
+/// What force and elastic energy need of the pieces, summed from the centre outward:
+/// `force` = sum of slope * int X dy, `energy` = sum of slope * int (w - W) X dy, and `size`, the magnitudes that `force` is
+/// the sum of: what rounding errors scale with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Sums {
+    force: DoubleDouble,
+    energy: DoubleDouble,
+    size: f64,
+}
+
+/// One straight piece, from its inner end to the next piece's (or to the edge).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Piece {
+    pub(super) inner: Point,
+    pub(super) line: Line,
+    below: Sums,
+}
+
+/// The state of the tangential problem in scaled units: lengths in m, integrals of X over y in m^2.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    /// From the centre outward; empty without contact.
+    pieces: Vec<Piece>,
+    /// Level d and radius a of the edge; a level below nought is a gap.
+    edge: Point,
+    total: Sums,
+    /// W, and the value it had when the stack was last begun: pieces are relative to the latter.
+    position: DoubleDouble,
+    reference: DoubleDouble,
+    /// y*, where the slip of the last move began; `None` if nothing slipped.
+    slip_from: Option<Point>,
+}
+
+/// What a move did to the contact beyond its new state.
+#[must_use]
+pub(super) struct Passage {
+    /// Friction work over 2 G* m^2, m^3.
+    pub(super) work: f64,
+}
+
+impl Memory {
+    /// A virgin contact at indentation d, m.
+    pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> Memory {
+        let mut memory = Memory {
+            pieces: Vec::new(),
+            edge: edge_at(profile, indentation),
+            total: Sums::default(),
+            position: DoubleDouble::ZERO,
+            reference: DoubleDouble::ZERO,
+            slip_from: None,
+        };
+        if memory.in_contact() {
+            memory.lay_core(profile);
+        }
+        memory
+    }
+
+    pub(super) fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    pub(super) fn edge(&self) -> &Point {
+        &self.edge
+    }
+
+    /// W, m.
+    pub(super) fn position(&self) -> DoubleDouble {
+        self.position
+    }
+
+    /// W since the stack was begun: what turns a stored w - W into w.
+    pub(super) fn shift(&self) -> DoubleDouble {
+        self.position - self.reference
+    }
+
+    pub(super) fn slip_from(&self) -> Option<&Point> {
+        self.slip_from.as_ref()
+    }
+
+    pub(super) fn in_contact(&self) -> bool {
+        self.edge.level.value() > 0.0
+    }
+
+    /// int_0^a w dx, m^2; times 2 G* m it is the tangential force.
+    pub(super) fn force(&self) -> f64 {
+        -self.total.force.value()
+    }
+
+    /// The sum of the magnitudes of what adds up to [`Memory::force`], m^2.
+    pub(super) fn force_size(&self) -> f64 {
+        self.total.size
+    }
+
+    /// The share of int_0^a w dx that the pieces nearer the centre than piece `index` have.
+    pub(super) fn force_below(&self, index: usize) -> DoubleDouble {
+        -self.pieces[index].below.force
+    }
+
+    /// int_0^a w^2 dx / 2, m^3; times 2 G* m^2 it is the elastic energy.
+    pub(super) fn energy(&self) -> f64 {
+        -(self.shift() * self.total.force + self.total.energy).value()
+    }
+
+    /// The rings of the stack with their lines, from the edge inward.
+    pub(super) fn rings(&self) -> impl Iterator<Item = (Ring, &Line)> {
+        self.pieces.iter().enumerate().rev().map(|(index, piece)| (self.ring(index), &piece.line))
+    }
+
+    /// The ring of piece `index`.
+    pub(super) fn ring(&self, index: usize) -> Ring {
+        let outer = self.pieces.get(index + 1).map_or(self.edge, |next| next.inner);
+        Ring::between(self.pieces[index].inner, outer)
+    }
+
+    /// Bytes held beyond the struct itself.
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.pieces.capacity() * size_of::<Piece>()
+    }
+
+    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`. The work on the way is returned.
+    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> Passage {
+        self.slip_from = None;
+        if !self.in_contact() {
+            let d0 = self.edge.level;
+            if d1.value() <= 0.0 {
+                self.place(profile, d1, w1);
+                return Passage { work: 0.0 };
+            }
+            let touching = self.position + ((w1 - self.position) * (-d0)).over(d1 - d0);
+            self.place(profile, DoubleDouble::ZERO, touching);
+        }
+        if d1.value() <= 0.0 {
+            let work = release::work(self, profile, d1, w1);
+            self.place(profile, d1, w1);
+            return Passage { work };
+        }
+        let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
+        if dd >= dw.abs() { self.grow(profile, d1, w1) } else { self.slip(profile, (d1, w1), (dd, dw)) }
+    }
+
+    /// Out of contact, or just touching: a position and nothing else.
+    fn place(&mut self, profile: &Profile, indentation: DoubleDouble, position: DoubleDouble) {
+        self.pieces.clear();
+        self.total = Sums::default();
+        self.edge = edge_at(profile, indentation);
+        self.position = position;
+        self.reference = position;
+    }
+
+    /// The whole contact as one piece that carries nothing.
+    fn lay_core(&mut self, profile: &Profile) {
+        let line = Line { offset: DoubleDouble::ZERO, slope: DoubleDouble::ZERO };
+        self.pieces.push(Piece { inner: profile.point(DoubleDouble::ZERO), line, below: self.total });
+    }
+
+    /// The load rises at least as fast as the indenter moves: nothing slips, and what is touched on the way keeps the
+    /// displacement gained since its touch.
+    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> Passage {
+        let d0 = self.edge.level;
+        let rise = d1 - d0;
+        if rise.value() <= 0.0 {
+            return Passage { work: 0.0 };
+        }
+        let slope = -(w1 - self.position).over(rise);
+        let inner = self.edge;
+        self.position = w1;
+        self.edge = edge_at(profile, d1);
+        // A straight path in two steps is one path: the top piece is drawn out as long as it still meets the edge.
+        let straight_on = self.pieces.last().is_some_and(|top| {
+            let off = (top.line.at(d1) + self.shift()).abs();
+            off.value() <= round_off(d1, self.shift(), rise)
+        });
+        if straight_on {
+            self.close(profile);
+        } else {
+            let ring = Ring::between(inner, self.edge);
+            self.push_through(&profile.moments(&ring), &ring, (slope, self.shift()), self.total);
+        }
+        Passage { work: 0.0 }
+    }
+
+    /// An outer ring slips on the way to (d1, w1), which is (dd, dw) from here.
+    fn slip(
+        &mut self,
+        profile: &Profile,
+        (d1, w1): (DoubleDouble, DoubleDouble),
+        (dd, dw): (DoubleDouble, DoubleDouble),
+    ) -> Passage {
+        let mut work = 0.0;
+        let (sign, mut excess);
+        if dd.value() < 0.0 {
+            work += release::work(self, profile, d1, w1);
+            while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
+                self.pieces.pop();
+            }
+            self.edge = edge_at(profile, d1);
+            self.position = w1;
+            let trial = self.pieces.last().map_or(DoubleDouble::ZERO, |top| top.line.at(d1)) + self.shift();
+            if trial.abs().value() <= round_off(d1, self.shift(), dd) {
+                // A rise taken back the same way.
+                self.close(profile);
+                return Passage { work };
+            }
+            sign = trial.value().signum();
+            excess = trial.value().abs();
+        } else {
+            self.position = w1;
+            sign = dw.value().signum();
+            excess = if dd == DoubleDouble::ZERO { dw.value().abs() } else { (dw.signed(sign) - dd).value() };
+        }
+        let (mut rate, mut lag) = (0.0, 0.0);
+        if dd != DoubleDouble::ZERO {
+            rate = (dw.signed(sign) - dd).value();
+            lag = if rate > 0.0 { dd.value() / (2.0 * rate) } else { 0.0 };
+        }
+        let shift = self.shift();
+        let slipping = Slipping { sign, shift, indentation: d1, lag };
+        if dd.value() > 0.0 {
+            let touched = Ring::between(self.edge, edge_at(profile, d1));
+            let core = if self.pieces.is_empty() { touched.inner.radius * touched.depth * touched.depth } else { 0.0 };
+            work += (profile.moments(&touched).second + core) * rate / (2.0 * dd.value());
+        }
+        let mut outer = self.edge;
+        let mut slipped = None;
+        let start = loop {
+            let Some(top) = self.pieces.last().copied() else { break profile.point(DoubleDouble::ZERO) };
+            let inner_excess = slipping.excess(&top.line, top.inner.level);
+            if let Some(level) = slipping.crossing(&top, inner_excess, &outer) {
+                let cut = profile.point(level);
+                let ring = Ring::between(cut, outer);
+                let moments = profile.moments(&ring);
+                work += slipping.work(&moments, &top.line, excess, &ring);
+                // At constant load, a slip that stays within one piece is itself the piece to be laid.
+                slipped = (outer.level == d1).then_some(moments);
+                break cut;
+            }
+            let ring = Ring::between(top.inner, outer);
+            work += slipping.work(&profile.moments(&ring), &top.line, excess, &ring);
+            excess = inner_excess.value();
+            outer = top.inner;
+            self.pieces.pop();
+            if self.pieces.is_empty() {
+                work += slipping.core_work(excess, outer.radius);
+            }
+        };
+        if dd.value() > 0.0 {
+            self.edge = edge_at(profile, d1);
+        }
+        let below = if let Some(top) = self.pieces.last() {
+            top.sums(profile, start)
+        } else {
+            self.reference = w1;
+            Sums::default()
+        };
+        self.slip_from = Some(start);
+        if start.level < d1 {
+            let ring = Ring::between(start, self.edge);
+            let moments = slipped.unwrap_or_else(|| profile.moments(&ring));
+            let shift = if self.pieces.is_empty() { DoubleDouble::ZERO } else { shift };
+            self.push_through(&moments, &ring, (DoubleDouble::from(-sign), shift), below);
+        } else {
+            self.slip_from = None;
+            self.total = below;
+        }
+        Passage { work }
+    }
+
+    /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift` undoes.
+    fn push_through(
+        &mut self,
+        moments: &Moments,
+        ring: &Ring,
+        (slope, shift): (DoubleDouble, DoubleDouble),
+        below: Sums,
+    ) {
+        let line = Line { offset: -(shift + rise(slope, self.edge.level)), slope };
+        self.pieces.push(Piece { inner: ring.inner, line, below });
+        self.total = below.and(moments, ring, slope.value(), -shift.value());
+    }
+
+    /// Sums up to the edge, from the sums below the top piece.
+    fn close(&mut self, profile: &Profile) {
+        self.total = self.pieces.last().map_or_else(Sums::default, |top| top.sums(profile, self.edge));
+    }
+}
+
+impl Piece {
+    /// The sums up to `outer`, where the piece ends.
+    fn sums(&self, profile: &Profile, outer: Point) -> Sums {
+        let slope = self.line.slope.value();
+        if slope.abs() <= 0.0 {
+            return self.below;
+        }
+        let ring = Ring::between(self.inner, outer);
+        self.below.and(&profile.moments(&ring), &ring, slope, self.line.at(outer.level).value())
+    }
+}
+
+impl Sums {
+    /// With the share of a ring of these moments, over which w - W has this slope up to its value at the outer end.
+    fn and(&self, moments: &Moments, ring: &Ring, slope: f64, carried: f64) -> Sums {
+        // By parts: int X dy = x_inner depth + int h dx, int (y_outer - y) X dy = (x_inner depth^2 + int h^2 dx)/2.
+        let load = ring.inner.radius * ring.depth + moments.first;
+        let lever = 0.5 * (ring.inner.radius * ring.depth * ring.depth + moments.second);
+        Sums {
+            force: self.force + DoubleDouble::from(slope * load),
+            energy: self.energy + DoubleDouble::from(slope * (carried * load - slope * lever)),
+            size: self.size + slope.abs() * load,
+        }
+    }
+}
+
+/// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far it
+/// has slid before does not count. A change of load by a few ulp is meant as it is given: there the path is taken at its word.
+fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDouble) -> f64 {
+    (SAME * (indentation.value() + shift.value().abs())).min(ROUNDED * change.value().abs())
+}
+
+/// The edge of a contact at `indentation`; with a gap there is none, and its radius is nought.
+fn edge_at(profile: &Profile, indentation: DoubleDouble) -> Point {
+    if indentation.value() < 0.0 {
+        Point { level: indentation, radius: 0.0, square: DoubleDouble::ZERO }
+    } else {
+        profile.point(indentation)
+    }
+}

@@ -1,0 +1,95 @@
+//! From the displacements of the springs to a shear stress: three readings of the same row.
+//!
+//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx (eq. 19 of Kraft & Pohrt 2016) needs a displacement between the springs
+//! too. Drawn straight over x it gives an arcosh per cell. Drawn straight over g(x) it gives the profile's own integral per
+//! cell, and is exact but in the cells that hold a kink. Not drawn at all, with the derivative taken as a difference and the
+//! integral as a sum, it is what the formula suggests at first sight.
+
+use std::f64::consts::PI;
+
+use super::super::double_double::DoubleDouble;
+use super::super::error::Error;
+use super::super::profile::Ring;
+use super::super::range;
+use super::super::state::Setup;
+use super::Springs;
+
+/// How a shear stress is read from the springs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// The displacement is straight over x from spring to spring, as in [`Springs::shear`].
+    Arcosh,
+    /// The displacement is straight over g(x) from spring to spring.
+    Level,
+    /// The plain recipe: differences between neighbours over the root at their midpoint, summed at the radius of each spring;
+    /// straight between those radii.
+    Differences,
+}
+
+impl Springs {
+    /// As [`Springs::new`], but for [`Springs::accuracy`], which then knows of no error beyond the bends: nothing is kept that
+    /// the answers do not need.
+    ///
+    /// # Errors
+    /// As [`Springs::new`].
+    pub fn bare(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+        range::SPRING_COUNT.check(count as f64)?;
+        Springs::alone(setup, count, reach)
+    }
+
+    /// Shear stress, Pa, at each of `radii`, m.
+    #[must_use]
+    pub fn shears_by(&self, kernel: Kernel, radii: &[f64]) -> Vec<f64> {
+        match kernel {
+            Kernel::Arcosh => radii.iter().map(|&radius| self.shear(radius)).collect(),
+            Kernel::Level => self.shears_over_levels(radii),
+            Kernel::Differences => {
+                let nodes: Vec<(f64, f64)> = self.in_contact().map(|spring| (spring.radius, spring.carried)).collect();
+                radii.iter().map(|&radius| self.shear_by_differences(&nodes, radius)).collect()
+            }
+        }
+    }
+
+    fn shears_over_levels(&self, radii: &[f64]) -> Vec<f64> {
+        // At the level of the indentation nothing is carried, whatever the profile.
+        let edge = (self.indentation, 0.0);
+        let nodes = self.in_contact().map(|spring| (spring.level, spring.carried)).chain([edge]);
+        let nodes: Vec<_> =
+            nodes.map(|(level, carried)| (self.profile.point(DoubleDouble::from(level)), carried)).collect();
+        let rings: Vec<(Ring, f64)> = nodes
+            .windows(2)
+            .map(|pair| {
+                let ring = Ring::between(pair[0].0, pair[1].0);
+                let slope = if ring.depth > 0.0 { (pair[0].1 - pair[1].1) / ring.depth } else { 0.0 };
+                (ring, slope)
+            })
+            .collect();
+        let unit = self.initial.g_star / PI;
+        self.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
+    }
+
+    fn shear_by_differences(&self, nodes: &[(f64, f64)], radius: f64) -> f64 {
+        if radius > self.contact_radius() {
+            return 0.0;
+        }
+        let outer = nodes.partition_point(|(x, _)| *x <= radius);
+        let Some(inner) = outer.checked_sub(1) else { return self.difference_sum(nodes, 0) };
+        let part = (radius - nodes[inner].0) / self.spacing;
+        (1.0 - part) * self.difference_sum(nodes, inner) + part * self.difference_sum(nodes, outer)
+    }
+
+    /// The sum at the radius of spring `index`, over all differences outside it; beyond the last spring nothing is carried.
+    fn difference_sum(&self, nodes: &[(f64, f64)], index: usize) -> f64 {
+        let Some(&(radius, _)) = nodes.get(index) else { return 0.0 };
+        let next = nodes[index + 1..].iter().map(|(_, carried)| *carried).chain([0.0]);
+        let sum: f64 = nodes[index..]
+            .iter()
+            .zip(next)
+            .map(|(&(x, carried), next)| {
+                let middle = x + 0.5 * self.spacing;
+                (carried - next) / ((middle - radius) * (middle + radius)).sqrt()
+            })
+            .sum();
+        self.initial.g_star / PI * sum
+    }
+}

@@ -1,0 +1,22 @@
+//! The physics: each file states facts that must hold, against something independent of the solver.
+
+mod accuracy;
+mod equal_peaks;
+mod exactness;
+mod extrema;
+mod hard_cases;
+mod laws;
+mod minimax;
+mod packed;
+mod paper;
+mod profiles;
+mod protocols;
+mod reference;
+mod relative_moves;
+mod routes;
+mod slip_history;
+mod springs;
+mod springs_estimate;
+mod sums_of_tables;
+mod support;
+mod tables;

@@ -1,0 +1,120 @@
+//! The scenes: contacts, paths and shapes of the reference.
+
+use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, Tabulated};
+use stickslip_mechanics::{Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
+
+use super::shape::Shape;
+
+pub(super) const E_STAR: f64 = 1.15e11;
+pub(super) const G_STAR: f64 = 8.5e10;
+pub(super) const FRICTION: f64 = 0.3;
+const BALL: f64 = 0.01;
+/// dz/dr of the cone.
+const SLOPE: f64 = 0.05;
+/// Of the fourth power, m^-3.
+const QUARTIC: f64 = 4e7;
+/// Indentation, m: of a ball of that radius, a/R = 0.1.
+const DEPTH: f64 = 1e-4;
+const TABLE: usize = 1000;
+
+/// The names of all scenes.
+pub const NAMES: [&str; 10] = [
+    "first_loading",
+    "reversal",
+    "reversals_20",
+    "reversals_1000",
+    "random_10000",
+    "oblique",
+    "cone",
+    "power_4",
+    "exact_sphere",
+    "table_1000",
+];
+
+/// A contact and its path: indentation and displacement, m, after each move.
+pub(super) struct Scene {
+    pub(super) setup: Setup,
+    pub(super) shape: Shape,
+    pub(super) path: Vec<(f64, f64)>,
+    /// The profile in the words of the peers.
+    form: &'static str,
+}
+
+/// Numbers even over [0, 1), the same in every run.
+pub(super) fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+impl Scene {
+    /// The scene of a name, if there is one.
+    pub(super) fn of(name: &str) -> Option<Result<Scene, Error>> {
+        NAMES.contains(&name).then(|| Scene::build(name))
+    }
+
+    fn build(name: &str) -> Result<Scene, Error> {
+        let unit = FRICTION * E_STAR / G_STAR * DEPTH;
+        let fall = |count: usize| -> Vec<(f64, f64)> {
+            stickslip_mechanics::protocol::falling_amplitude(count, unit).map(|u| (DEPTH, u)).collect()
+        };
+        let mut next = random(7);
+        let path = match name {
+            "first_loading" => vec![(DEPTH, 0.5 * unit)],
+            "reversal" => vec![(DEPTH, 0.8 * unit), (DEPTH, -0.3 * unit)],
+            "reversals_1000" => fall(1000),
+            "random_10000" => (0..10_000).map(|_| (DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
+            "oblique" => (0..30).map(|_| ((0.5 + next()) * DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
+            _ => fall(20),
+        };
+        let (profile, shape) = match name {
+            "cone" => (Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
+            "power_4" => (Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
+            "exact_sphere" => (Profile::ExactSphere(ExactSphere::new(BALL)?), Shape::ball(BALL)),
+            "table_1000" => {
+                let r: Vec<f64> = (0..TABLE).map(|index| 1.2e-3 * index as f64 / (TABLE - 1) as f64).collect();
+                let z: Vec<f64> = r.iter().map(|r| r * r / (BALL + ((BALL - r) * (BALL + r)).sqrt())).collect();
+                (Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::ball(BALL))
+            }
+            _ => (Profile::Sphere(Sphere::new(BALL)?), Shape::parabola(BALL)),
+        };
+        let form = match name {
+            "cone" => "cone",
+            "power_4" => "power_4",
+            "exact_sphere" => "exact_sphere",
+            "table_1000" => "table",
+            _ => "parabola",
+        };
+        let setup = Setup {
+            profile,
+            elasticity: Elasticity::effective(E_STAR, G_STAR)?,
+            friction: FRICTION,
+            preload: Preload::Indentation(DEPTH),
+        };
+        Ok(Scene { setup, shape, path, form })
+    }
+
+    /// The scene as it is told to a peer: numbers in SI units, moves as pairs of indentation and displacement.
+    pub(super) fn told(&self, radii: &[f64]) -> serde_json::Value {
+        serde_json::json!({
+            "profile": self.form, "radius": BALL, "slope": SLOPE, "coefficient": QUARTIC,
+            "e_star": E_STAR, "g_star": G_STAR, "friction": FRICTION,
+            "indentation": DEPTH, "moves": self.path, "radii": radii,
+        })
+    }
+
+    pub(super) fn depth() -> f64 {
+        DEPTH
+    }
+
+    /// The path as moves.
+    pub(super) fn moves(&self) -> impl Iterator<Item = Move> + '_ {
+        self.path.iter().scan(DEPTH, |before, &(depth, displacement)| {
+            let normal = (depth.to_bits() != before.to_bits()).then_some(Normal::Indentation(depth));
+            *before = depth;
+            Some(Move { tangential: Some(Tangential::Displacement(displacement)), normal, relative: false })
+        })
+    }
+}

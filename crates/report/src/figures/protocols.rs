@@ -1,0 +1,119 @@
+//! Figures 6 to 9: what the three laws of the amplitudes leave, on the sphere and on other shapes.
+
+use crate::plot::chart::{Chart, Series};
+use stickslip_mechanics::profile::PowerLaw;
+use stickslip_mechanics::protocol::{Design, End, Errors, Kind, Start, design, trials};
+use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup, Sphere};
+
+const KINDS: [(Kind, &str); 3] =
+    [(Kind::Linear, "linear"), (Kind::EqualPeaks, "equal peaks"), (Kind::Minimax, "minimax")];
+/// The numbers of reversals that are shown.
+const NUMBERS: [usize; 9] = [1, 2, 3, 4, 6, 8, 11, 15, 20];
+/// Reversals where one number is shown.
+const REVERSALS: usize = 20;
+/// Radii that a curve is drawn through, beside its extrema.
+const POINTS: usize = 400;
+/// Trials of each point of figure 9, and where their errors begin.
+const SAMPLES: usize = 100;
+const SEED: u64 = 2016;
+
+pub(super) fn charts() -> Result<[Chart; 4], Error> {
+    Ok([reduction()?, over_radius()?, shapes()?, robustness()?])
+}
+
+fn of(profile: Profile, friction: f64) -> Result<Contact, Error> {
+    let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
+    Contact::new(Setup { profile, elasticity, friction, preload: Preload::ContactRadius(1e-4) })
+}
+
+fn sphere() -> Result<Profile, Error> {
+    Ok(Profile::Sphere(Sphere::new(0.01)?))
+}
+
+fn power(exponent: f64) -> Result<Profile, Error> {
+    // As high at the edge as the sphere.
+    Ok(Profile::PowerLaw(PowerLaw::new(exponent, 5e-7 / 1e-4_f64.powf(exponent))?))
+}
+
+/// mu p_max, Pa.
+fn unit(contact: &Contact) -> f64 {
+    let figures = contact.figures();
+    figures.gross_slip_force / figures.normal_force * figures.unit_pressure()
+}
+
+fn found(contact: &Contact, kind: Kind, reversals: usize) -> Result<Design, Error> {
+    let start = Start::Displacement(contact.gross_slip_displacement());
+    design(contact, start, kind, reversals, End::DisplacementZero, &|| true)
+}
+
+fn reduction() -> Result<Chart, Error> {
+    let contact = of(power(4.0)?, 0.3)?;
+    let series = KINDS.into_iter().map(|(kind, name)| {
+        let point = |reversals| Ok((reversals as f64, found(&contact, kind, reversals)?.largest / unit(&contact)));
+        Ok(Series::dots(name, NUMBERS.into_iter().map(point).collect::<Result<_, Error>>()?))
+    });
+    Ok(Chart {
+        title: "Figure 6: largest remaining stress, profile z ~ r^4".into(),
+        x: "number of reversals".into(),
+        y: "max |tau| / (mu p_max)".into(),
+        series: series.collect::<Result<_, Error>>()?,
+    })
+}
+
+fn over_radius() -> Result<Chart, Error> {
+    let contact = of(power(4.0)?, 0.3)?;
+    let edge = contact.contact_radius();
+    let series = KINDS.into_iter().map(|(kind, name)| {
+        let left = found(&contact, kind, REVERSALS)?;
+        let mut radii: Vec<f64> = (0..=POINTS).map(|index| edge * index as f64 / POINTS as f64).collect();
+        radii.extend(left.residual.peaks.iter().map(|peak| peak.radius));
+        radii.sort_by(f64::total_cmp);
+        let curve = radii.iter().map(|&r| (r / edge, left.contact.shear(r) / unit(&contact)));
+        Ok(Series::line(name, curve.collect()))
+    });
+    Ok(Chart {
+        title: "Figure 7: stress after 20 reversals, profile z ~ r^4".into(),
+        x: "r / a".into(),
+        y: "tau / (mu p_max)".into(),
+        series: series.collect::<Result<_, Error>>()?,
+    })
+}
+
+fn shapes() -> Result<Chart, Error> {
+    let shapes =
+        [("z ~ r^1.5", power(1.5)?), ("sphere", sphere()?), ("z ~ r^3", power(3.0)?), ("z ~ r^4", power(4.0)?)];
+    let series = shapes.into_iter().map(|(name, shape)| {
+        let contact = of(shape, 0.3)?;
+        let point = |reversals| {
+            let linear = found(&contact, Kind::Linear, reversals)?.largest;
+            Ok((reversals as f64, found(&contact, Kind::Minimax, reversals)?.largest / linear))
+        };
+        Ok(Series::dots(name, NUMBERS.into_iter().map(point).collect::<Result<_, Error>>()?))
+    });
+    Ok(Chart {
+        title: "Figure 8: what minimax leaves of what the linear fall leaves".into(),
+        x: "number of reversals".into(),
+        y: "max |tau|, minimax / linear".into(),
+        series: series.collect::<Result<_, Error>>()?,
+    })
+}
+
+fn robustness() -> Result<Chart, Error> {
+    let contact = of(power(4.0)?, 0.3)?;
+    let series = KINDS.into_iter().map(|(kind, name)| {
+        let path = found(&contact, kind, REVERSALS)?.displacements;
+        let point = |step: u32| {
+            let amplitude = 0.01 * f64::from(step);
+            let errors = Errors { amplitude, friction: 0.0, seed: SEED };
+            let tried = trials(&|_| Ok(contact.clone()), &path, &errors, SAMPLES, &|| true)?;
+            Ok((100.0 * amplitude, tried.iter().sum::<f64>() / SAMPLES as f64 / unit(&contact)))
+        };
+        Ok(Series::line(name, (0..=8).map(point).collect::<Result<_, Error>>()?))
+    });
+    Ok(Chart {
+        title: "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4".into(),
+        x: "standard deviation of each amplitude, %".into(),
+        y: "max |tau| / (mu p_max)".into(),
+        series: series.collect::<Result<_, Error>>()?,
+    })
+}

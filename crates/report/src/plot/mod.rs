@@ -1,0 +1,119 @@
+//! Plots for people who look at a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. Plain charts of
+//! whatever two quantities, for figures and reports, are in [`chart`].
+//!
+//! Each axis is labelled with its quantity and unit; values come in SI and are shown in the thousandfold that suits them.
+
+pub mod chart;
+mod draw;
+mod font;
+mod png;
+
+pub use font::ready;
+
+/// Panels one above the other, over the same axis.
+pub struct Plot {
+    /// Above all panels.
+    pub title: String,
+    /// The axis that the panels share.
+    pub x: Axis,
+    /// From top to bottom.
+    pub panels: Vec<Panel>,
+    /// Shaded behind the curves of every panel.
+    pub bands: Vec<Band>,
+}
+
+/// A quantity and its unit; what is counted has none.
+pub struct Axis {
+    /// What is shown.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: Option<&'static str>,
+}
+
+/// Curves over one ordinate.
+pub struct Panel {
+    /// The ordinate.
+    pub y: Axis,
+    /// What is drawn.
+    pub curves: Vec<Curve>,
+}
+
+/// A named line through points, in SI; at what is not finite it is broken.
+pub struct Curve {
+    /// Its name in the legend.
+    pub name: &'static str,
+    /// Abscissa and ordinate.
+    pub points: Vec<(f64, f64)>,
+    /// Its colour.
+    pub colour: Colour,
+    /// Without a mark of its own in the legend.
+    pub silent: bool,
+}
+
+/// A part of the abscissa with a shade behind it.
+pub struct Band {
+    /// Its name in the legend.
+    pub name: &'static str,
+    /// Where it begins on the abscissa.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Its colour.
+    pub colour: Colour,
+}
+
+/// Colours that stay apart for colour-blind readers and in print.
+#[derive(Clone, Copy)]
+pub enum Colour {
+    /// The first.
+    Blue,
+    /// The second.
+    Red,
+    /// For what stands back.
+    Grey,
+}
+
+impl Plot {
+    /// The plot as an SVG document.
+    ///
+    /// # Errors
+    /// A sentence for the log, if the drawing fails.
+    pub fn svg(&self) -> Result<Vec<u8>, String> {
+        draw::svg(self).map_err(|fault| fault.to_string())
+    }
+
+    /// The plot as a PNG file.
+    ///
+    /// # Errors
+    /// A sentence for the log, if the drawing fails.
+    pub fn png(&self) -> Result<Vec<u8>, String> {
+        draw::pixels(self).and_then(|pixels| png::written(&pixels, draw::SIZE)).map_err(|fault| fault.to_string())
+    }
+}
+
+/// What values are divided by to be shown, and the prefix of the unit then.
+fn thousandfold(largest: f64) -> (f64, &'static str) {
+    const PREFIXES: [(i32, &str); 9] =
+        [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
+    let fits = |(exponent, _): &&(i32, &str)| largest >= 0.999_999 * 10_f64.powi(*exponent);
+    let (exponent, prefix) = if largest > 0.0 && largest.is_finite() {
+        PREFIXES.iter().rev().find(fits).copied().unwrap_or(PREFIXES[0])
+    } else {
+        (0, "")
+    };
+    (10_f64.powi(exponent), prefix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::thousandfold;
+
+    #[test]
+    fn a_unit_is_that_of_the_largest_value() {
+        for (largest, prefix) in
+            [(2.5e-5, "µ"), (1.0, ""), (0.999, "m"), (3.2e8, "M"), (1e3, "k"), (1e-15, "p"), (1e30, "T"), (0.0, "")]
+        {
+            assert_eq!(thousandfold(largest).1, prefix, "{largest}");
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The body of `POST /accuracy` and its reply.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::Setup;
+
+use super::check::{At, Fault, Faults};
+use super::definition::ContactDefinition;
+use super::limits;
+use super::one_key::given;
+use super::parse::{Document, Rejection};
+use super::path::{Path, Plan};
+use super::reply::SolverKind;
+use super::simulate::{Solver, Springs};
+use super::stress::{Field, Points, Sampling, StressRequest};
+
+/// A contact, the path it is to follow, and the solvers that are to follow it; nothing of it is kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "contact": {
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
+    },
+    "path": {"falling_amplitude": {"reversals": 20}}
+}))]
+pub struct AccuracyRequest {
+    /// The contact.
+    pub contact: ContactDefinition,
+    /// The path.
+    pub path: Path,
+    /// Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the centre to the
+    /// edge. `fields`, if named, must hold `shear`; nothing else is compared.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub stress: Option<StressRequest>,
+    /// The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub solvers: Option<Vec<Solver>>,
+    /// Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of it.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub tolerance: Option<f64>,
+}
+
+/// What each solver costs, and how wrong it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AccuracyReply {
+    /// What the rows are held against.
+    pub reference: Reference,
+    /// One row a solver.
+    pub rows: Vec<AccuracyRow>,
+}
+
+/// The zero of error, which has an error too.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Reference {
+    /// The solver.
+    pub solver: SolverKind,
+    /// What makes it a reference.
+    pub reason: String,
+    /// Its own estimated error of the forces, relative to `force_unit`: differences below it say nothing.
+    pub force_error: f64,
+    /// Its own estimated error of the stresses, relative to `stress_unit`.
+    pub stress_error: f64,
+    /// Time spent on it, s.
+    pub compute_time: f64,
+    /// The unit of force errors: the largest friction limit μ F_N along the path, N.
+    pub force_unit: f64,
+    /// The unit of stress errors: μ times the largest pressure at the end of the path (or, where that is infinite, the mean),
+    /// Pa.
+    pub stress_unit: f64,
+    /// How many radii are compared: those where the stress of the reference is finite.
+    pub radii: usize,
+}
+
+/// One solver on the path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AccuracyRow {
+    /// The solver.
+    pub solver: Solver,
+    /// Largest difference of the force from that of the reference, over all moves, relative to `force_unit`; `null` without
+    /// an answer, or where it is infinite.
+    pub force_error: Option<f64>,
+    /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`; likewise.
+    pub stress_error: Option<f64>,
+    /// Error of the force as the solver estimates it, without a reference; likewise.
+    pub estimated_force_error: Option<f64>,
+    /// Error of the stress as the solver estimates it: for radii some cells away from kinks; likewise.
+    pub estimated_stress_error: Option<f64>,
+    /// Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
+    pub compute_time: f64,
+    /// Why this solver has no answer, if it has none: the move that it cannot follow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub refused: Option<Fault>,
+}
+
+/// A comparison that has passed all checks.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The contact as it came.
+    pub definition: ContactDefinition,
+    /// The contact.
+    pub setup: Setup,
+    /// The path.
+    pub plan: Plan,
+    /// Where the shear stress is compared.
+    pub sampling: Sampling,
+    /// The solvers.
+    pub solvers: Vec<Solver>,
+    /// The tolerance for what is not exact.
+    pub tolerance: f64,
+}
+
+impl Comparison {
+    /// Moves and radii: how often each spring is looked at.
+    #[must_use]
+    pub fn passes(&self) -> usize {
+        self.plan.length() + self.sampling.length()
+    }
+
+    /// The springs of each solver that has any.
+    pub fn springs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.solvers.iter().filter_map(|solver| match solver {
+            Solver::Springs(springs) => Some(springs.count),
+            Solver::Exact => None,
+        })
+    }
+}
+
+/// The exact solver, and springs in powers of ten.
+fn ladder() -> Vec<Solver> {
+    let springs = limits::SPRING_LADDER.map(|count| Solver::Springs(Springs { count }));
+    std::iter::once(Solver::Exact).chain(springs).collect()
+}
+
+impl Document for AccuracyRequest {
+    type Checked = Comparison;
+
+    fn check(self) -> Result<Comparison, Rejection> {
+        let mut faults = Faults::default();
+        let setup = self.contact.check(At::Root.member("contact"), &mut faults);
+        let plan = self.path.check(At::Root.member("path"), &mut faults);
+        let stress = self.stress.unwrap_or_else(|| StressRequest {
+            points: Some(limits::COMPARED),
+            fields: Some(vec![Field::Shear]),
+            ..StressRequest::default()
+        });
+        let at = At::Root.member("stress");
+        let sampling = stress.check(at, &mut faults).unwrap_or_else(Sampling::none);
+        // Without a sampling its own faults are known already.
+        if !sampling.fields.shear && sampling.fields != Sampling::none().fields {
+            faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
+        }
+        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        let at = At::Root.member("solvers");
+        let solvers = self.solvers.unwrap_or_else(ladder);
+        let passes = plan.as_ref().map_or(0, Plan::length) + sampling.length();
+        if faults.length(at, solvers.len(), &limits::SOLVERS) {
+            let each = solvers.iter().enumerate();
+            each.for_each(|(index, solver)| solver.check(at.index(index), passes, &mut faults));
+        }
+        let (definition, fields) = (self.contact, Sampling::none().fields);
+        let sampling = Sampling { fields: super::Fields { shear: true, ..fields }, ..sampling };
+        let comparison =
+            setup.zip(plan).map(|(setup, plan)| Comparison { definition, setup, plan, sampling, solvers, tolerance });
+        if let Some(comparison) = &comparison {
+            let (all, most) =
+                (comparison.springs().fold(0, usize::saturating_add), limits::SPRING_STEPS / passes.max(1));
+            if faults.is_empty() && all > most {
+                faults.add(at, format_args!("{all} springs in all over {passes} moves and radii: allowed are {most}"));
+            }
+        }
+        faults.done(comparison)
+    }
+}
+
+impl Sampling {
+    /// No radii and no fields.
+    fn none() -> Sampling {
+        let fields = super::Fields { pressure: false, shear: false, slip: false, displacement: false };
+        Sampling { points: Points::Radii(Vec::new()), fields }
+    }
+}

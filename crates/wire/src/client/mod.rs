@@ -1,0 +1,364 @@
+//! A typed client for the service.
+//!
+//! ```no_run
+//! # async fn example() -> Result<(), stickslip_wire::client::Error> {
+//! use stickslip_wire::client::{Client, Options};
+//! use stickslip_wire::{Move, MoveRequest};
+//!
+//! let client = Client::new("http://127.0.0.1:8080");
+//! let page = client.contacts(None, None).await?;
+//! for contact in page.items {
+//!     let reply = client.apply(contact.id, &Move::displacement(1e-7).into(), &Options::default()).await?;
+//!     println!("{} N", reply.state.force);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+mod sweeps;
+
+use eventsource_stream::{EventStreamError, Eventsource as _};
+use futures::{Stream, StreamExt as _};
+use reqwest::header::{AUTHORIZATION, HeaderValue};
+use reqwest::{Method, RequestBuilder, StatusCode};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+pub use sweeps::Swept;
+use uuid::Uuid;
+
+use crate::{
+    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage,
+    LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply,
+    ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent,
+    StressReply, StressRequest,
+};
+
+/// A handle on a service; clones share its connections.
+#[derive(Clone, Debug)]
+pub struct Client {
+    base: String,
+    // Marked as sensitive: it is not printed.
+    authorization: Option<HeaderValue>,
+    http: reqwest::Client,
+}
+
+/// What makes a change safe to repeat.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Change only a contact that is at this sequence.
+    pub if_match: Option<u64>,
+    /// A name for the request: a repetition with the same name gets the first reply again.
+    pub idempotency_key: Option<String>,
+}
+
+/// What a service tells those who follow a contact.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// The contact is in this state.
+    State(Box<StateEvent>),
+    /// There are no more events.
+    End(EndReason),
+}
+
+/// Why a call came to nothing.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The service refused, and says why.
+    #[error("{} ({}): {}", .0.title, .0.code, .0.detail)]
+    Problem(Box<ProblemDocument>),
+    /// The service could not be reached, or its reply not be read.
+    #[error(transparent)]
+    Transport(#[from] reqwest::Error),
+    /// What answered is not this service.
+    #[error("unexpected reply with status {status}: {detail}")]
+    Unexpected {
+        /// Its status code.
+        status: StatusCode,
+        /// What is wrong with it.
+        detail: String,
+    },
+}
+
+impl Error {
+    /// The problem document, if the service gave one.
+    #[must_use]
+    pub fn problem(&self) -> Option<&ProblemDocument> {
+        match self {
+            Error::Problem(problem) => Some(problem),
+            Error::Transport(_) | Error::Unexpected { .. } => None,
+        }
+    }
+}
+
+impl Client {
+    /// A client for the service at `base`, such as `http://127.0.0.1:8080`.
+    #[must_use]
+    pub fn new(base: impl Into<String>) -> Client {
+        let base: String = base.into();
+        Client { base: base.trim_end_matches('/').to_owned(), authorization: None, http: reqwest::Client::new() }
+    }
+
+    /// The same client with a key, which every call presents. A key that no header can hold is not one of any service, and
+    /// left out.
+    #[must_use]
+    pub fn with_key(mut self, key: &str) -> Client {
+        self.authorization = HeaderValue::from_str(&format!("Bearer {key}")).ok();
+        if let Some(value) = &mut self.authorization {
+            value.set_sensitive(true);
+        }
+        self
+    }
+
+    /// `POST /simulate`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn simulate(&self, request: &SimulateRequest) -> Result<SimulateReply, Error> {
+        json(self.call(Method::POST, "/simulate").json(request)).await
+    }
+
+    /// `POST /accuracy`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn accuracy(&self, request: &AccuracyRequest) -> Result<AccuracyReply, Error> {
+        json(self.call(Method::POST, "/accuracy").json(request)).await
+    }
+
+    /// `POST /contacts`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn create(&self, request: &CreateRequest, options: &Options) -> Result<NewSession, Error> {
+        self.post("/contacts", request, options).await
+    }
+
+    /// `GET /contacts`: a page, beyond the `next` of the page before.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn contacts(&self, after: Option<Uuid>, limit: Option<usize>) -> Result<SessionPage, Error> {
+        json(self.call(Method::GET, "/contacts").query(&[("after", after)]).query(&[("limit", limit)])).await
+    }
+
+    /// `GET /contacts/{id}`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn contact(&self, id: Uuid) -> Result<SessionReply, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}"))).await
+    }
+
+    /// `GET /contacts/{id}/definition`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn definition(&self, id: Uuid) -> Result<ContactDefinition, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}/definition"))).await
+    }
+
+    /// `POST /contacts/{id}/move`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn apply(&self, id: Uuid, request: &MoveRequest, options: &Options) -> Result<MoveReply, Error> {
+        self.post(&format!("/contacts/{id}/move"), request, options).await
+    }
+
+    /// `POST /contacts/{id}/path`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn path(&self, id: Uuid, request: &PathRequest, options: &Options) -> Result<PathReply, Error> {
+        self.post(&format!("/contacts/{id}/path"), request, options).await
+    }
+
+    /// `POST /protocols`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn protocol(&self, request: &ProtocolRequest) -> Result<ProtocolReply, Error> {
+        json(self.call(Method::POST, "/protocols").json(request)).await
+    }
+
+    /// `POST /contacts/{id}/relax`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn relax(&self, id: Uuid, request: &RelaxRequest, options: &Options) -> Result<RelaxReply, Error> {
+        self.post(&format!("/contacts/{id}/relax"), request, options).await
+    }
+
+    /// `GET /contacts/{id}/stress`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn stress(&self, id: Uuid, request: &StressRequest, residual: bool) -> Result<StressReply, Error> {
+        let radii = request.radii.as_ref().map(|radii| listed(radii.iter().map(|radius| format!("{radius:e}"))));
+        let fields = request.fields.as_ref().map(|fields| listed(fields.iter().map(|field| field.name().to_owned())));
+        let call = self.call(Method::GET, &format!("/contacts/{id}/stress"));
+        let call = call.query(&[("points", request.points)]).query(&[("radii", radii), ("fields", fields)]);
+        json(call.query(&[("residual", residual)])).await
+    }
+
+    /// `GET /contacts/{id}/history`: a page, beyond the `next` of the page before.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn history(&self, id: Uuid, after: Option<u64>, limit: Option<usize>) -> Result<HistoryPage, Error> {
+        let call = self.call(Method::GET, &format!("/contacts/{id}/history"));
+        json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
+    }
+
+    /// `GET /contacts/{id}/loop`: a page of moves with so many points for each, the recorded states alone unless told otherwise.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn trace(
+        &self,
+        id: Uuid,
+        after: Option<u64>,
+        limit: Option<usize>,
+        points_per_move: Option<usize>,
+    ) -> Result<LoopPage, Error> {
+        let call = self.call(Method::GET, &format!("/contacts/{id}/loop"));
+        let call = call.query(&[("after", after)]).query(&[("limit", limit)]);
+        json(call.query(&[("points_per_move", points_per_move)])).await
+    }
+
+    /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The stream
+    /// ends when the service or the connection does; go on from the sequence of the last state then.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call; within the stream too.
+    pub async fn events(
+        &self,
+        id: Uuid,
+        after: Option<u64>,
+    ) -> Result<impl Stream<Item = Result<Event, Error>> + Send + use<>, Error> {
+        let mut call = self.call(Method::GET, &format!("/contacts/{id}/events"));
+        if let Some(after) = after {
+            call = call.header("last-event-id", after);
+        }
+        let response = call.send().await?;
+        let status = response.status();
+        if !status.is_success() {
+            return Err(refusal(status, &response.bytes().await?));
+        }
+        let events = response.bytes_stream().eventsource();
+        Ok(events.filter_map(move |event| std::future::ready(event_of(status, event))))
+    }
+
+    /// `POST /contacts/{id}/fork`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn fork(&self, id: Uuid, request: &ForkRequest, options: &Options) -> Result<NewSession, Error> {
+        self.post(&format!("/contacts/{id}/fork"), request, options).await
+    }
+
+    /// `DELETE /contacts/{id}`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn delete(&self, id: Uuid, options: &Options) -> Result<(), Error> {
+        sent(with(self.call(Method::DELETE, &format!("/contacts/{id}")), options)).await.map(drop)
+    }
+
+    /// `GET /openapi.json`.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn openapi(&self) -> Result<serde_json::Value, Error> {
+        json(self.call(Method::GET, "/openapi.json")).await
+    }
+
+    /// `GET /healthz`: whether the process is alive.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn healthz(&self) -> Result<(), Error> {
+        sent(self.call(Method::GET, "/healthz")).await.map(drop)
+    }
+
+    /// `GET /readyz`: whether it can serve.
+    ///
+    /// # Errors
+    /// [`Error`], as for every call.
+    pub async fn readyz(&self) -> Result<(), Error> {
+        sent(self.call(Method::GET, "/readyz")).await.map(drop)
+    }
+
+    fn call(&self, method: Method, path: &str) -> RequestBuilder {
+        let call = self.http.request(method, format!("{}{path}", self.base));
+        match &self.authorization {
+            Some(key) => call.header(AUTHORIZATION, key.clone()),
+            None => call,
+        }
+    }
+
+    async fn post<T: DeserializeOwned>(
+        &self,
+        path: &str,
+        body: &impl Serialize,
+        options: &Options,
+    ) -> Result<T, Error> {
+        json(with(self.call(Method::POST, path).json(body), options)).await
+    }
+}
+
+fn with(mut call: RequestBuilder, options: &Options) -> RequestBuilder {
+    if let Some(sequence) = options.if_match {
+        call = call.header("if-match", format!("\"{sequence}\""));
+    }
+    if let Some(key) = &options.idempotency_key {
+        call = call.header("idempotency-key", key);
+    }
+    call
+}
+
+fn listed(items: impl Iterator<Item = String>) -> String {
+    items.collect::<Vec<_>>().join(",")
+}
+
+async fn sent(call: RequestBuilder) -> Result<(StatusCode, Vec<u8>), Error> {
+    let response = call.send().await?;
+    let status = response.status();
+    let body = response.bytes().await?.to_vec();
+    if status.is_success() { Ok((status, body)) } else { Err(refusal(status, &body)) }
+}
+
+fn refusal(status: StatusCode, body: &[u8]) -> Error {
+    match serde_json::from_slice(body) {
+        Ok(problem) => Error::Problem(Box::new(problem)),
+        Err(error) => Error::Unexpected { status, detail: error.to_string() },
+    }
+}
+
+/// An event as it came, unless it is of a kind that later services may have.
+fn event_of(
+    status: StatusCode,
+    event: Result<eventsource_stream::Event, EventStreamError<reqwest::Error>>,
+) -> Option<Result<Event, Error>> {
+    let unexpected = |error: &dyn std::fmt::Display| Error::Unexpected { status, detail: error.to_string() };
+    let event = match event {
+        Ok(event) => event,
+        Err(EventStreamError::Transport(error)) => return Some(Err(error.into())),
+        Err(other) => return Some(Err(unexpected(&other))),
+    };
+    let read = match event.event.as_str() {
+        "state" => serde_json::from_str(&event.data).map(|state| Event::State(Box::new(state))),
+        "end" => serde_json::from_str(&event.data).map(|EndEvent { reason }| Event::End(reason)),
+        _ => return None,
+    };
+    Some(read.map_err(|error| unexpected(&error)))
+}
+
+async fn json<T: DeserializeOwned>(call: RequestBuilder) -> Result<T, Error> {
+    let (status, body) = sent(call).await?;
+    read(status, &body)
+}
+
+fn read<T: DeserializeOwned>(status: StatusCode, body: &[u8]) -> Result<T, Error> {
+    serde_json::from_slice(body).map_err(|error| Error::Unexpected { status, detail: error.to_string() })
+}

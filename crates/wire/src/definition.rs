@@ -1,0 +1,223 @@
+//! The definition of a contact: profile, material, friction and preload.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::{self as mechanics, Setup, elasticity, range};
+
+use super::check::{At, Faults};
+use super::one_key::one_key;
+use super::profile::Profile;
+
+/// Two bodies pressed together, at rest and never yet moved sideways.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "profile": {"type": "sphere", "radius": 0.01},
+    "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+    "friction": 0.3,
+    "preload": {"normal_force": 10.0}
+}))]
+pub struct ContactDefinition {
+    /// The shape of the indenter.
+    pub profile: Profile,
+    /// The elastic constants.
+    pub material: Material,
+    /// Coulomb's coefficient of friction μ, a pure number.
+    pub friction: f64,
+    /// The normal load that the contact starts with.
+    pub preload: Preload,
+}
+
+/// The elastic constants, one key: the two bodies, or their reduced moduli.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Material {
+    /// The two bodies in contact; one of them may be rigid.
+    Bodies(Vec<Body>),
+    /// The reduced moduli themselves.
+    Effective(Effective),
+}
+one_key!(Material { "bodies" => Bodies, "effective" => Effective });
+
+/// One of the two bodies: its elastic constants, or the string `"rigid"`.
+// Untagged in writing alone. It is read by hand below, so that a fault in the object names its member.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum Body {
+    /// An elastic body.
+    Elastic(ElasticBody),
+    /// A rigid body.
+    Rigid(Rigid),
+}
+
+/// The word for a body that does not deform.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Rigid {
+    /// It does not deform.
+    Rigid,
+}
+
+/// An isotropic, linearly elastic body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticBody {
+    /// Young's modulus E, Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν, a pure number.
+    pub poisson_ratio: f64,
+}
+
+/// The reduced moduli of the pair of bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Effective {
+    /// E*, Pa: 1/E* = Σ (1−νᵢ²)/Eᵢ.
+    pub e_star: f64,
+    /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
+    pub g_star: f64,
+}
+
+/// The normal load that the contact starts with, one key. Nought is a contact just touching.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Preload {
+    /// Normal force, N.
+    NormalForce(f64),
+    /// Indentation, m.
+    Indentation(f64),
+    /// Contact radius, m.
+    ContactRadius(f64),
+}
+one_key!(Preload { "normal_force" => NormalForce, "indentation" => Indentation, "contact_radius" => ContactRadius });
+
+impl<'de> Deserialize<'de> for Body {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(BodyVisitor)
+    }
+}
+
+struct BodyVisitor;
+
+impl<'de> serde::de::Visitor<'de> for BodyVisitor {
+    type Value = Body;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("an object with `youngs_modulus` and `poisson_ratio`, or the string \"rigid\"")
+    }
+
+    fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Body, A::Error> {
+        ElasticBody::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(Body::Elastic)
+    }
+
+    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Body, E> {
+        match word {
+            "rigid" => Ok(Body::Rigid(Rigid::Rigid)),
+            _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
+        }
+    }
+}
+
+impl ContactDefinition {
+    /// The checked setup; its faults are noted at `at`.
+    pub fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Setup> {
+        let profile = self.profile.check(at.member("profile"), faults);
+        let elasticity = self.material.check(at.member("material"), faults);
+        faults.number(at.member("friction"), self.friction, &range::FRICTION);
+        let preload = self.preload.check(at.member("preload"), faults);
+        Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })
+    }
+
+    /// Where in a definition with this preload the quantity stands that the mechanics finds fault with. A preload can be at
+    /// fault by what follows from it, such as the indentation under a force.
+    #[must_use]
+    pub fn place_of(quantity: &str, preload: &mechanics::Preload) -> &'static str {
+        match quantity {
+            "friction" => "/friction",
+            "normal_force" | "indentation" | "contact_radius" => match preload {
+                mechanics::Preload::NormalForce(_) => "/preload/normal_force",
+                mechanics::Preload::Indentation(_) => "/preload/indentation",
+                mechanics::Preload::ContactRadius(_) => "/preload/contact_radius",
+            },
+            "e_star" => "/material/effective/e_star",
+            "g_star" => "/material/effective/g_star",
+            "youngs_modulus" | "poisson_ratio" => "/material/bodies",
+            _ => "/profile",
+        }
+    }
+}
+
+impl Material {
+    fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
+        match self {
+            Material::Effective(moduli) => {
+                let at = at.member("effective");
+                faults.number(at.member("e_star"), moduli.e_star, &range::E_STAR);
+                faults.number(at.member("g_star"), moduli.g_star, &range::G_STAR);
+                elasticity::Elasticity::effective(moduli.e_star, moduli.g_star).ok()
+            }
+            Material::Bodies(bodies) => check_bodies(bodies, at.member("bodies"), faults),
+        }
+    }
+}
+
+fn check_bodies(bodies: &[Body], at: At<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
+    let mut checked = bodies.iter().enumerate().map(|(index, body)| body.check(at.index(index), faults));
+    match (checked.next(), checked.next(), checked.next()) {
+        (Some(first), Some(second), None) => match (first, second) {
+            (Checked::Elastic(first), Checked::Elastic(second)) => {
+                Some(elasticity::Elasticity::of_bodies(first?, second?))
+            }
+            (Checked::Elastic(body), Checked::Rigid) | (Checked::Rigid, Checked::Elastic(body)) => {
+                Some(elasticity::Elasticity::against_rigid(body?))
+            }
+            (Checked::Rigid, Checked::Rigid) => {
+                faults.add(at, "both bodies are rigid: one of them must be elastic");
+                None
+            }
+        },
+        _ => {
+            faults.add(at, format_args!("{} elements: allowed are exactly 2", bodies.len()));
+            None
+        }
+    }
+}
+
+/// A body after its check; an elastic one may have had faults.
+enum Checked {
+    Elastic(Option<elasticity::Body>),
+    Rigid,
+}
+
+impl Body {
+    fn check(&self, at: At<'_>, faults: &mut Faults) -> Checked {
+        match self {
+            Body::Rigid(Rigid::Rigid) => Checked::Rigid,
+            Body::Elastic(body) => {
+                faults.number(at.member("youngs_modulus"), body.youngs_modulus, &range::YOUNGS_MODULUS);
+                faults.number(at.member("poisson_ratio"), body.poisson_ratio, &range::POISSON_RATIO);
+                Checked::Elastic(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok())
+            }
+        }
+    }
+}
+
+impl Preload {
+    fn check(&self, at: At<'_>, faults: &mut Faults) -> mechanics::Preload {
+        match *self {
+            Preload::NormalForce(force) => {
+                faults.number(at.member("normal_force"), force, &range::NORMAL_FORCE);
+                mechanics::Preload::NormalForce(force)
+            }
+            Preload::Indentation(depth) => {
+                faults.number(at.member("indentation"), depth, &range::PRELOAD_INDENTATION);
+                mechanics::Preload::Indentation(depth)
+            }
+            Preload::ContactRadius(radius) => {
+                faults.number(at.member("contact_radius"), radius, &range::CONTACT_RADIUS);
+                mechanics::Preload::ContactRadius(radius)
+            }
+        }
+    }
+}

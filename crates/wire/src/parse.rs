@@ -1,0 +1,213 @@
+//! From bytes to a typed document, with a pointer to whatever does not fit.
+
+use serde::de::{DeserializeOwned, IgnoredAny};
+use serde_json::Value;
+use serde_path_to_error::{Deserializer, Path, Segment, Track};
+
+use stickslip_mechanics as mechanics;
+
+use super::check::{Fault, escaped};
+use super::strict::Strict;
+
+/// Longest detail or pointer of a fault: both can quote the body, which may be long.
+const LONGEST_TEXT: usize = 400;
+
+/// Why a body is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Rejection {
+    /// It is not JSON at all.
+    #[error("the body is not JSON: {0}")]
+    NotJson(String),
+    /// It is JSON, but not what this call takes.
+    #[error("{}", summary(.0))]
+    Invalid(Vec<Fault>),
+    /// Every number is in its range, but the mechanics has no answer to what they are together.
+    #[error("{pointer}: {error}")]
+    Refused {
+        /// JSON pointer to what it has no answer to.
+        pointer: String,
+        /// Why.
+        error: mechanics::Error,
+    },
+}
+
+fn summary(faults: &[Fault]) -> String {
+    match faults {
+        [] => "the request is invalid".to_owned(),
+        [one] if one.pointer.is_empty() => one.detail.clone(),
+        [one] => format!("{}: {}", one.pointer, one.detail),
+        many => format!("{} faults, the first at {}: {}", many.len(), many[0].pointer, many[0].detail),
+    }
+}
+
+/// A body that a call takes.
+pub trait Document: DeserializeOwned {
+    /// What it becomes once every number has been held against its range.
+    type Checked: Send + 'static;
+
+    /// The second gate.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] with every fault, or [`Rejection::Refused`].
+    fn check(self) -> Result<Self::Checked, Rejection>;
+}
+
+/// Takes a body through both gates.
+///
+/// # Errors
+/// [`Rejection`] by [`parse()`] and by [`Document::check`].
+pub fn read<T: Document>(body: &[u8]) -> Result<T::Checked, Rejection> {
+    parse::<T>(body)?.check()
+}
+
+/// Parses a body.
+///
+/// # Errors
+/// [`Rejection::NotJson`] if it is not JSON, [`Rejection::Invalid`] with one fault if it is another document than asked for.
+pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
+    let mut json = serde_json::Deserializer::from_slice(body);
+    let mut track = Track::new();
+    let parsed = T::deserialize(Strict(Deserializer::new(&mut json, &mut track)));
+    match parsed.and_then(|value| json.end().map(|()| value)) {
+        Ok(value) => Ok(value),
+        // serde_json calls some well-formed documents a syntax error too (1e999, an array longer than expected), and
+        // reports a wrong member before it reaches a broken end; so ask once more whether it is JSON at all.
+        Err(error) => match well_formed(body) {
+            Err(broken) => Err(Rejection::NotJson(broken)),
+            Ok(()) => Err(Rejection::Invalid(vec![fault(&track.path(), &error.to_string())])),
+        },
+    }
+}
+
+/// Parses a document that has been read as a value already.
+///
+/// # Errors
+/// The fault if it is another document than asked for.
+pub fn parse_value<T: DeserializeOwned>(value: &Value) -> Result<T, Fault> {
+    let mut track = Track::new();
+    let parsed = T::deserialize(Strict(Deserializer::new(value, &mut track)));
+    parsed.map_err(|error| fault(&track.path(), &error.to_string()))
+}
+
+fn well_formed(body: &[u8]) -> Result<(), String> {
+    let text = std::str::from_utf8(body).map_err(|error| error.to_string())?;
+    serde_json::from_str::<IgnoredAny>(text).map(|_| ()).map_err(|error| error.to_string())
+}
+
+/// The fault that a message of serde tells of.
+fn fault(path: &Path, message: &str) -> Fault {
+    let message = message.rsplit_once(" at line ").map_or(message, |(text, _)| text);
+    let mut pointer = pointer(path);
+    // An unknown member is mostly part of the path already; its name may hold any character.
+    let unknown = match path.iter().next_back() {
+        Some(Segment::Map { key }) => message.starts_with(&format!("unknown field `{key}`")),
+        _ => false,
+    };
+    // serde reports these three at the object; the member is the better place.
+    for prefix in ["missing field `", "duplicate field `", "unknown field `"] {
+        if let Some((name, _)) = message.strip_prefix(prefix).and_then(|rest| rest.split_once('`'))
+            && !unknown
+        {
+            pointer.push_str(&format!("/{}", escaped(name)));
+        }
+    }
+    Fault { pointer: shortened(pointer), detail: shortened(in_json_terms(message)) }
+}
+
+fn pointer(path: &Path) -> String {
+    path.iter().fold(String::new(), |mut pointer, segment| {
+        match segment {
+            Segment::Map { key } => pointer.push_str(&format!("/{}", escaped(key))),
+            Segment::Seq { index } => pointer.push_str(&format!("/{index}")),
+            Segment::Enum { variant } => pointer.push_str(&format!("/{}", escaped(variant))),
+            Segment::Unknown => {}
+        }
+        pointer
+    })
+}
+
+/// serde speaks of Rust's types, a client of JSON's.
+fn in_json_terms(message: &str) -> String {
+    let mut text = message.replacen("invalid type: map", "invalid type: object", 1).replacen(
+        "invalid type: sequence",
+        "invalid type: array",
+        1,
+    );
+    if let Some((head, tail)) = text.rsplit_once(", expected ") {
+        let plain = match tail {
+            "f64" => "a number",
+            "usize" | "u64" => "a whole number, not negative",
+            "a sequence" => "an array",
+            "a boolean" => "true or false",
+            _ if tail.starts_with("struct ") => "an object",
+            _ if tail.contains("enum ") => "a string",
+            _ => tail,
+        };
+        text = format!("{head}, expected {plain}");
+    }
+    text
+}
+
+fn shortened(mut text: String) -> String {
+    if let Some((cut, _)) = text.char_indices().nth(LONGEST_TEXT) {
+        text.truncate(cut);
+        text.push('…');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Rejection, parse};
+    use crate::SimulateRequest;
+
+    fn refused(body: &str) -> (String, String) {
+        match parse::<SimulateRequest>(body.as_bytes()) {
+            Err(Rejection::Invalid(faults)) => (faults[0].pointer.clone(), faults[0].detail.clone()),
+            other => panic!("{body} gave {other:?}"),
+        }
+    }
+
+    fn with(profile: &str, path: &str) -> String {
+        format!(
+            r#"{{"contact":{{"profile":{profile},"material":{{"effective":{{"e_star":1e11,"g_star":1e11}}}},
+            "friction":0.3,"preload":{{"normal_force":10}}}},"path":{path}}}"#
+        )
+    }
+
+    #[test]
+    fn every_kind_of_fault_is_found_at_its_place() {
+        let sphere = r#"{"type":"sphere","radius":0.01}"#;
+        for (body, pointer, word) in [
+            (with(r#"{"type":"sphere"}"#, r#"{"force":[1]}"#), "/contact/profile/radius", "missing"),
+            (with(r#"{"radius":1}"#, r#"{"force":[1]}"#), "/contact/profile/type", "missing"),
+            (with(r#"{"radius":"x","type":"sphere"}"#, r#"{"force":[1]}"#), "/contact/profile/radius", "a number"),
+            (with(r#"{"type":"cube","radius":1}"#, r#"{"force":[1]}"#), "/contact/profile/type", "sphere"),
+            (with(r#"{"type":"sphere","radius":1,"a/b":2}"#, "{}"), "/contact/profile/a~1b", "unknown field"),
+            (with(r#"{"type":"sphere","radius":1,"`x":2}"#, "{}"), "/contact/profile/`x", "unknown field"),
+            (with(r#"{"type":"sphere","radius":1,"radius":2}"#, "{}"), "/contact/profile/radius", "duplicate"),
+            (with(sphere, r#"{"displacement":[0,1e999]}"#), "/path/displacement/1", "out of range"),
+            (with(sphere, r#"{"moves":[{"force":1},{"force":null}]}"#), "/path/moves/1/force", "null"),
+            (with(sphere, r#"{"wave":[1]}"#), "/path", "`falling_amplitude`"),
+            (with(sphere, r#"{"force":[1],"displacement":[1]}"#), "/path", "beside"),
+            (with(sphere, "{}"), "/path", "one key"),
+            (with(sphere, "7"), "/path", "one key"),
+            (with(r#"["sphere",1]"#, r#"{"force":[1]}"#), "/contact/profile", "an object"),
+            (with(sphere, r#"{"moves":[[0,1]]}"#), "/path/moves/0", "an object"),
+            (with(sphere, r#"{"falling_amplitude":[3,1e-7]}"#), "/path/falling_amplitude", "an object"),
+            ("[1,2]".to_owned(), "", "an object"),
+        ] {
+            let (found, detail) = refused(&body);
+            assert_eq!(found, pointer, "{body}: {detail}");
+            assert!(detail.contains(word), "{body}: {detail}");
+        }
+    }
+
+    #[test]
+    fn a_broken_end_is_not_json_even_after_an_unknown_member() {
+        for body in ["", "{", r#"{"colour": 1"#, r#"{"contact": 1} x"#, "\u{feff}{}", "NaN"] {
+            assert!(matches!(parse::<SimulateRequest>(body.as_bytes()), Err(Rejection::NotJson(_))), "{body}");
+        }
+        assert!(matches!(parse::<SimulateRequest>(b"{\"\xff\": 1}"), Err(Rejection::NotJson(_))));
+    }
+}

@@ -1,0 +1,292 @@
+//! Moves, and paths of moves.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::{self as mechanics, Contact, Normal, Tangential, protocol, range, range::Range};
+
+use super::check::{At, Faults};
+use super::limits;
+use super::one_key::{given, one_key};
+use super::reply::Protocol;
+
+/// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
+/// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
+/// normal one the indentation stays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"displacement": 1e-7}))]
+pub struct Move {
+    /// Tangential displacement of the indenter, m.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub displacement: Option<f64>,
+    /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub force: Option<f64>,
+    /// Indentation, m; below nought the bodies are apart and nothing is remembered.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub indentation: Option<f64>,
+    /// Normal force, N.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub normal_force: Option<f64>,
+    /// Whether the numbers are increments to the present state, instead of the targets themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub relative: bool,
+}
+
+/// A path, one key: a list of moves, or a short form of one.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(example = json!({"displacement": [1e-7, -1e-7, 0.0]}))]
+pub enum Path {
+    /// Moves, one after the other.
+    Moves(Vec<Move>),
+    /// Tangential displacements of the indenter, m, one move each.
+    Displacement(Vec<f64>),
+    /// Tangential forces, N, one move each.
+    Force(Vec<f64>),
+    /// To and fro with an amplitude that falls linearly to nought (eq. 20 of the paper).
+    FallingAmplitude(FallingAmplitude),
+    /// To and fro from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the profile at hand.
+    EqualPeaks(EqualPeaks),
+}
+one_key!(Path {
+    "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude,
+    "equal_peaks" => EqualPeaks
+});
+
+/// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement nought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"reversals": 20}))]
+pub struct EqualPeaks {
+    /// Number of reversals N_R; the path has one move more.
+    pub reversals: usize,
+    /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the profile
+    /// jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the way from that
+    /// radius to the edge, else nought.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub cutoff_radius: Option<f64>,
+}
+
+/// A tangential oscillation that dies away; it ends at displacement nought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"reversals": 20}))]
+pub struct FallingAmplitude {
+    /// Number of reversals N_R; the path has one move more.
+    pub reversals: usize,
+    /// Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub amplitude: Option<f64>,
+}
+
+/// A checked path. Its moves are known once the contact is.
+#[derive(Clone, Debug)]
+pub enum Plan {
+    /// Moves as they came.
+    Moves(Vec<Move>),
+    /// Displacements.
+    Displacement(Vec<f64>),
+    /// Forces.
+    Force(Vec<f64>),
+    /// Falling amplitude.
+    FallingAmplitude(FallingAmplitude),
+    /// Equal peaks.
+    EqualPeaks(EqualPeaks),
+    /// A single move that is the body itself.
+    Single(Move),
+}
+
+impl Move {
+    /// A move to a displacement, m.
+    #[must_use]
+    pub fn displacement(displacement: f64) -> Move {
+        Move { displacement: Some(displacement), ..Move::default() }
+    }
+
+    /// A move to a tangential force, N.
+    #[must_use]
+    pub fn force(force: f64) -> Move {
+        Move { force: Some(force), ..Move::default() }
+    }
+
+    /// Notes at `at` what is wrong with the move.
+    pub fn check(&self, at: At<'_>, faults: &mut Faults) {
+        for (name, value, range) in self.targets() {
+            if let Some(value) = value {
+                faults.number(at.member(name), value, range);
+            }
+        }
+        if self.displacement.is_some() && self.force.is_some() {
+            faults.add(at.member("force"), "stands beside `displacement`: at most one tangential target is allowed");
+        }
+        if self.indentation.is_some() && self.normal_force.is_some() {
+            faults.add(at.member("normal_force"), "stands beside `indentation`: at most one normal target is allowed");
+        }
+        if self.targets().iter().all(|(_, value, _)| value.is_none()) {
+            faults.add(
+                at,
+                "no target: name `displacement` or `force`, or `indentation` or `normal_force`, or one of each",
+            );
+        }
+    }
+
+    /// The four targets with their names and ranges. As an increment a normal force may be negative.
+    fn targets(&self) -> [(&'static str, Option<f64>, &'static Range); 4] {
+        let normal_force = if self.relative { &range::FORCE } else { &range::NORMAL_FORCE };
+        [
+            ("displacement", self.displacement, &range::DISPLACEMENT),
+            ("force", self.force, &range::FORCE),
+            ("indentation", self.indentation, &range::INDENTATION),
+            ("normal_force", self.normal_force, normal_force),
+        ]
+    }
+
+    /// Whether the move has a target of this name.
+    #[must_use]
+    pub fn names(&self, quantity: &str) -> bool {
+        self.targets().iter().any(|(name, value, _)| *name == quantity && value.is_some())
+    }
+
+    /// Whether the move is straight in a force while the other quantity changes. Such a move is curved in displacement
+    /// and indentation, and followed in many small steps.
+    #[must_use]
+    pub fn is_curved(&self) -> bool {
+        let normal = self.indentation.is_some() || self.normal_force.is_some();
+        (self.force.is_some() && normal) || (self.displacement.is_some() && self.normal_force.is_some())
+    }
+
+    /// The move as the mechanics takes it.
+    #[must_use]
+    pub fn step(&self) -> mechanics::Move {
+        let tangential = self.displacement.map(Tangential::Displacement).or(self.force.map(Tangential::Force));
+        let normal = self.indentation.map(Normal::Indentation).or(self.normal_force.map(Normal::NormalForce));
+        mechanics::Move { tangential, normal, relative: self.relative }
+    }
+}
+
+impl Path {
+    /// The checked path; its faults are noted at `at`.
+    #[must_use]
+    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Plan> {
+        faults.part(|faults| match self {
+            Path::Moves(moves) => {
+                let at = at.member("moves");
+                if faults.length(at, moves.len(), &limits::PATH_MOVES) {
+                    moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
+                }
+                Plan::Moves(moves)
+            }
+            Path::Displacement(targets) => {
+                check_numbers(&targets, at.member("displacement"), &range::DISPLACEMENT, faults);
+                Plan::Displacement(targets)
+            }
+            Path::Force(targets) => {
+                check_numbers(&targets, at.member("force"), &range::FORCE, faults);
+                Plan::Force(targets)
+            }
+            Path::FallingAmplitude(fall) => {
+                let at = at.member("falling_amplitude");
+                faults.count(at.member("reversals"), fall.reversals, &limits::REVERSALS);
+                if let Some(amplitude) = fall.amplitude {
+                    faults.number(at.member("amplitude"), amplitude, &range::DISPLACEMENT);
+                }
+                Plan::FallingAmplitude(fall)
+            }
+            Path::EqualPeaks(peaks) => {
+                let at = at.member("equal_peaks");
+                faults.count(at.member("reversals"), peaks.reversals, &limits::REVERSALS);
+                if let Some(radius) = peaks.cutoff_radius {
+                    faults.number(at.member("cutoff_radius"), radius, &range::CONTACT_RADIUS);
+                }
+                Plan::EqualPeaks(peaks)
+            }
+        })
+    }
+}
+
+fn check_numbers(numbers: &[f64], at: At<'_>, range: &Range, faults: &mut Faults) {
+    if faults.length(at, numbers.len(), &limits::PATH_MOVES) {
+        numbers.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, range));
+    }
+}
+
+impl Plan {
+    /// How many moves it has.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        match self {
+            Plan::Moves(moves) => moves.len(),
+            Plan::Displacement(targets) | Plan::Force(targets) => targets.len(),
+            Plan::FallingAmplitude(fall) => fall.reversals + 1,
+            Plan::EqualPeaks(peaks) => peaks.reversals + 1,
+            Plan::Single(_) => 1,
+        }
+    }
+
+    /// How many of them are curved.
+    #[must_use]
+    pub fn curved(&self) -> usize {
+        match self {
+            Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
+            Plan::Single(step) => usize::from(step.is_curved()),
+            Plan::Displacement(_) | Plan::Force(_) | Plan::FallingAmplitude(_) | Plan::EqualPeaks(_) => 0,
+        }
+    }
+
+    /// The displacements that the law of equal peaks gives on `contact`, if the path follows it.
+    ///
+    /// # Errors
+    /// That of [`protocol::equal_peaks`].
+    pub fn protocol(&self, contact: &Contact) -> Result<Option<Protocol>, mechanics::Error> {
+        let Plan::EqualPeaks(peaks) = self else { return Ok(None) };
+        let protocol::EqualPeaks { displacements, cutoff_radius } =
+            protocol::equal_peaks(contact, peaks.reversals, peaks.cutoff_radius)?;
+        Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
+    }
+
+    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and `protocol` what
+    /// [`Plan::protocol`] has found for it.
+    pub fn moves<'a>(
+        &'a self,
+        gross_slip: f64,
+        protocol: Option<&'a Protocol>,
+    ) -> Box<dyn Iterator<Item = Move> + Send + 'a> {
+        match self {
+            Plan::Moves(moves) => Box::new(moves.iter().copied()),
+            Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
+            Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
+            Plan::FallingAmplitude(fall) => {
+                let amplitude = fall.amplitude.unwrap_or(gross_slip);
+                Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
+            }
+            Plan::EqualPeaks(_) => {
+                let displacements = protocol.into_iter().flat_map(|protocol| &protocol.displacement);
+                Box::new(displacements.copied().map(Move::displacement))
+            }
+            Plan::Single(step) => Box::new(std::iter::once(*step)),
+        }
+    }
+
+    /// Where in the body the move of this number stands, as a JSON pointer; `quantity` is the member at fault, if one is.
+    #[must_use]
+    pub fn place_of(&self, index: usize, quantity: Option<&str>) -> String {
+        let quantity = quantity.map(|name| format!("/{name}")).unwrap_or_default();
+        match self {
+            Plan::Moves(_) => format!("/path/moves/{index}{quantity}"),
+            Plan::Displacement(_) => format!("/path/displacement/{index}"),
+            Plan::Force(_) => format!("/path/force/{index}"),
+            Plan::FallingAmplitude(_) => "/path/falling_amplitude".to_owned(),
+            Plan::EqualPeaks(_) if quantity == "/cutoff_radius" => format!("/path/equal_peaks{quantity}"),
+            Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
+            Plan::Single(_) => quantity,
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! The bodies of `POST /protocols` and `POST /contacts/{id}/relax`.
+
+mod reply;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use stickslip_mechanics::protocol::{End, Kind};
+use stickslip_mechanics::{Setup, range};
+
+use super::check::{At, Faults};
+use super::definition::ContactDefinition;
+use super::limits;
+use super::one_key::{given, one_key};
+use super::parse::{Document, Rejection};
+use super::simulate::Steps;
+
+pub use reply::{
+    Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolReply, RelaxReply,
+    RobustnessReply, StartReply,
+};
+
+/// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or follows
+/// from a target.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "contact": {
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
+    },
+    "reversals": 20,
+    "kind": "minimax"
+}))]
+pub struct ProtocolRequest {
+    /// The contact; may be left out where `start` names one that lives.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub contact: Option<ContactDefinition>,
+    /// Number of reversals N_R; this or `target`.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub reversals: Option<usize>,
+    /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
+    /// smallest number of reversals that reaches it is found.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub target: Option<f64>,
+    /// The law of the amplitudes.
+    #[serde(default)]
+    pub kind: ProtocolKind,
+    /// What the reversals begin from; left out, gross slip at its full amplitude.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub start: Option<ProtocolStart>,
+    /// Where the path ends.
+    #[serde(default)]
+    pub end: ProtocolEnd,
+    /// Ask what remains if the protocol is not followed exactly.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub robustness: Option<Robustness>,
+}
+
+/// How a contact that lives is to be relaxed; an empty body but for `reversals` or `target` is enough.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"reversals": 20, "dry_run": true}))]
+pub struct RelaxRequest {
+    /// Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub reversals: Option<usize>,
+    /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
+    /// smallest number of reversals that reaches it is found.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub target: Option<f64>,
+    /// The law of the amplitudes.
+    #[serde(default)]
+    pub kind: ProtocolKind,
+    /// Where the path ends.
+    #[serde(default)]
+    pub end: ProtocolEnd,
+    /// Whether the path is only to be shown, and nothing changed. No reply of a dry run is kept for a retry.
+    #[serde(default)]
+    pub dry_run: bool,
+    /// Ask for the states along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub steps: Option<Steps>,
+}
+
+/// The law of the amplitudes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProtocolKind {
+    /// They fall linearly (eq. 20 of the paper).
+    Linear,
+    /// They leave equal peaks on the profile at hand, by steps proportional to x/g'(x).
+    EqualPeaks,
+    /// They leave the smallest largest stress that is found.
+    #[default]
+    Minimax,
+}
+
+/// What the reversals begin from, one key.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProtocolStart {
+    /// This displacement of a contact that has never moved, m; the path begins with it.
+    Displacement(f64),
+    /// The present state of the contact of this identifier, whatever its history.
+    ContactId(Uuid),
+}
+one_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
+
+/// Where a path ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProtocolEnd {
+    /// At displacement nought.
+    #[default]
+    DisplacementZero,
+    /// Without a tangential force.
+    ForceZero,
+    /// Wherever least stress remains.
+    Free,
+}
+
+/// What may be off when a protocol is followed: it is tried many times, each with errors of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}))]
+pub struct Robustness {
+    /// Standard deviation of each displacement, relative to itself, a pure number; normally distributed.
+    #[serde(default)]
+    pub amplitude_error: f64,
+    /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for a
+    /// start from a contact that lives, whose history belongs to its own coefficient.
+    #[serde(default)]
+    pub friction_error: f64,
+    /// How many times it is tried.
+    #[serde(default = "samples")]
+    pub samples: usize,
+    /// Where the sequence of random numbers begins: the same seed gives the same reply.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+fn samples() -> usize {
+    limits::DEFAULT_SAMPLES
+}
+
+/// A number of reversals, or what they are to reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aim {
+    /// So many reversals.
+    Reversals(usize),
+    /// The fewest that leave so much, over the unit of stress.
+    Target(f64),
+}
+
+/// What is asked of a protocol, checked.
+#[derive(Clone, Copy, Debug)]
+pub struct ProtocolTask {
+    /// How many reversals.
+    pub aim: Aim,
+    /// The law.
+    pub kind: ProtocolKind,
+    /// The end.
+    pub end: ProtocolEnd,
+    /// What may be off.
+    pub robustness: Option<Robustness>,
+}
+
+/// The contact that a protocol is asked for, checked.
+#[derive(Clone, Debug)]
+pub enum ProtocolSubject {
+    /// One that has never moved, and the displacement to begin with.
+    Virgin(Box<(ContactDefinition, Setup)>, Option<f64>),
+    /// One that lives, and the definition that it is said to have.
+    Living(Uuid, Option<Box<ContactDefinition>>),
+}
+
+impl Document for ProtocolRequest {
+    type Checked = (ProtocolSubject, ProtocolTask);
+
+    fn check(self) -> Result<Self::Checked, Rejection> {
+        let mut faults = Faults::default();
+        let at = |name| At::Root.member(name);
+        let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), &mut faults));
+        let subject = match (self.start, self.contact, setup) {
+            (Some(ProtocolStart::ContactId(id)), definition, _) => {
+                if self.robustness.is_some_and(|robustness| robustness.friction_error > 0.0) {
+                    let detail = "not for a contact that lives: its history belongs to its own coefficient of friction";
+                    faults.add(at("robustness").member("friction_error"), detail);
+                }
+                Some(ProtocolSubject::Living(id, definition.map(Box::new)))
+            }
+            (_, None, _) => {
+                faults.add(
+                    at("contact"),
+                    "missing: it may be left out only where `start` names a contact by `contact_id`",
+                );
+                None
+            }
+            (start, Some(definition), setup) => {
+                let first = start.and_then(|start| match start {
+                    ProtocolStart::Displacement(first) => Some(first),
+                    ProtocolStart::ContactId(_) => None,
+                });
+                if let Some(first) = first {
+                    let start = at("start");
+                    faults.number(start.member("displacement"), first, &range::DISPLACEMENT);
+                    if first.abs() <= 0.0 {
+                        faults
+                            .add(start.member("displacement"), "0 is no amplitude: allowed is any other displacement");
+                    }
+                }
+                setup.map(|setup| ProtocolSubject::Virgin(Box::new((definition, setup)), first))
+            }
+        };
+        let aim = aim(self.reversals, self.target, &mut faults);
+        if let Some(robustness) = &self.robustness {
+            robustness.check(at("robustness"), &mut faults);
+        }
+        let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: self.robustness });
+        faults.done(subject.zip(task))
+    }
+}
+
+/// How a contact is to be relaxed, checked.
+#[derive(Clone, Copy, Debug)]
+pub struct Relaxation {
+    /// The protocol.
+    pub task: ProtocolTask,
+    /// Whether it is only shown.
+    pub dry_run: bool,
+    /// Which states are asked for.
+    pub steps: Option<Steps>,
+}
+
+impl Document for RelaxRequest {
+    type Checked = Relaxation;
+
+    fn check(self) -> Result<Relaxation, Rejection> {
+        let mut faults = Faults::default();
+        let aim = aim(self.reversals, self.target, &mut faults);
+        let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: None });
+        faults.done(task.map(|task| Relaxation { task, dry_run: self.dry_run, steps: self.steps }))
+    }
+}
+
+fn aim(reversals: Option<usize>, target: Option<f64>, faults: &mut Faults) -> Option<Aim> {
+    let at = At::Root;
+    match (reversals, target) {
+        (Some(reversals), None) => {
+            faults.count(at.member("reversals"), reversals, &limits::PROTOCOL_REVERSALS);
+            Some(Aim::Reversals(reversals))
+        }
+        (None, Some(target)) => {
+            faults.number(at.member("target"), target, &limits::TARGET);
+            Some(Aim::Target(target))
+        }
+        (None, None) => {
+            faults.add(at.member("reversals"), "missing: name `reversals` or `target`");
+            None
+        }
+        (Some(_), Some(_)) => {
+            faults.add(at.member("target"), "stands beside `reversals`: one of the two is allowed");
+            None
+        }
+    }
+}
+
+impl Robustness {
+    fn check(&self, at: At<'_>, faults: &mut Faults) {
+        faults.number(at.member("amplitude_error"), self.amplitude_error, &limits::AMPLITUDE_ERROR);
+        faults.number(at.member("friction_error"), self.friction_error, &limits::FRICTION_ERROR);
+        faults.count(at.member("samples"), self.samples, &limits::SAMPLES);
+        let (seed, most) = (self.seed, *limits::SEED.end());
+        if seed > most {
+            faults.add(at.member("seed"), format_args!("{seed} is out of range: allowed is 0 to {most}"));
+        }
+    }
+}
+
+impl From<ProtocolKind> for Kind {
+    fn from(kind: ProtocolKind) -> Kind {
+        match kind {
+            ProtocolKind::Linear => Kind::Linear,
+            ProtocolKind::EqualPeaks => Kind::EqualPeaks,
+            ProtocolKind::Minimax => Kind::Minimax,
+        }
+    }
+}
+
+impl From<ProtocolEnd> for End {
+    fn from(end: ProtocolEnd) -> End {
+        match end {
+            ProtocolEnd::DisplacementZero => End::DisplacementZero,
+            ProtocolEnd::ForceZero => End::ForceZero,
+            ProtocolEnd::Free => End::Free,
+        }
+    }
+}

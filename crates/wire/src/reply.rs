@@ -1,0 +1,205 @@
+//! What replies are made of.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics as mechanics;
+
+/// The figures that follow from a contact's definition: those of its preload.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Figures {
+    /// Reduced modulus E*, Pa.
+    pub e_star: f64,
+    /// Reduced shear modulus G*, Pa.
+    pub g_star: f64,
+    /// Indentation d, m.
+    pub indentation: f64,
+    /// Contact radius a, m.
+    pub contact_radius: f64,
+    /// Normal force F_N, N.
+    pub normal_force: f64,
+    /// Largest pressure, Pa; `null` where it is infinite.
+    pub max_pressure: Option<f64>,
+    /// Displacement at which a virgin contact just slips as a whole, μ (E*/G*) d, m.
+    pub gross_slip_displacement: f64,
+    /// Tangential force then, μ F_N, N.
+    pub gross_slip_force: f64,
+}
+
+/// The state after a move.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct State {
+    /// Tangential displacement U of the indenter, m.
+    pub displacement: f64,
+    /// Tangential force F, N; positive for a positive displacement of a virgin contact.
+    pub force: f64,
+    /// Indentation d, m; below nought the bodies are apart.
+    pub indentation: f64,
+    /// Normal force F_N, N.
+    pub normal_force: f64,
+    /// Contact radius a, m.
+    pub contact_radius: f64,
+    /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, nought in gross slip.
+    pub stick_radius: f64,
+    /// How the last move went.
+    pub regime: Regime,
+    /// Work done against friction since the start, J.
+    pub dissipated_energy: f64,
+    /// Energy stored in the tangential deformation, J.
+    pub elastic_energy: f64,
+    /// Pieces held in memory, a pure number.
+    pub memory_depth: usize,
+}
+
+/// How the last move went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Regime {
+    /// Nothing slipped.
+    Stick,
+    /// An outer ring slipped.
+    PartialSlip,
+    /// The whole contact slipped.
+    GrossSlip,
+    /// The bodies are apart.
+    Separated,
+}
+
+impl Regime {
+    /// Its name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Regime::Stick => "stick",
+            Regime::PartialSlip => "partial_slip",
+            Regime::GrossSlip => "gross_slip",
+            Regime::Separated => "separated",
+        }
+    }
+}
+
+/// The shear stress that a contact carries, in its extrema.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Residual {
+    /// Shear stress in the centre, Pa; `null` where it is infinite.
+    pub centre: Option<f64>,
+    /// All local extrema strictly between centre and edge, from the centre outwards, at their exact positions.
+    pub peaks: Vec<Peak>,
+    /// Largest magnitude of the shear stress over the whole contact, centre included, Pa; `null` where it is infinite.
+    pub max: Option<f64>,
+    /// Smallest magnitude among the peaks, Pa; `null` without a peak.
+    pub min: Option<f64>,
+    /// Mean magnitude of the peaks, Pa; `null` without a peak.
+    pub mean: Option<f64>,
+}
+
+/// A local extremum of the shear stress.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Peak {
+    /// Where, m.
+    pub radius: f64,
+    /// Shear stress there, Pa; `null` where it is infinite.
+    pub shear: Option<f64>,
+}
+
+/// Which solver answered, and how far it can be trusted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Accuracy {
+    /// The solver that answered.
+    pub solver: SolverKind,
+    /// Why this one.
+    pub reason: String,
+    /// Estimated error of the forces, relative to the friction limit μ F_N: of rounding, of curved paths, of the
+    /// interpolation of a table, of springs.
+    pub force_error: f64,
+    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean).
+    pub stress_error: f64,
+    /// Time spent computing, s.
+    pub compute_time: f64,
+}
+
+/// The two solvers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverKind {
+    /// The exact memory of turning points.
+    Exact,
+    /// The spring foundation of the paper.
+    Springs,
+}
+
+/// The path that the law of equal peaks has given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Protocol {
+    /// Displacements, m; usable as a path of their own.
+    pub displacement: Vec<f64>,
+    /// Radius from which on the peaks are equal, m.
+    pub cutoff_radius: f64,
+}
+
+/// Something to know about a result that is nevertheless given.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
+pub struct Warning {
+    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`, `units`.
+    pub code: String,
+    /// An explanation for people.
+    pub message: String,
+}
+
+/// The number, or nothing where JSON has none for it.
+#[must_use]
+pub fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+impl From<mechanics::Figures> for Figures {
+    fn from(figures: mechanics::Figures) -> Self {
+        Figures {
+            e_star: figures.e_star,
+            g_star: figures.g_star,
+            indentation: figures.indentation,
+            contact_radius: figures.contact_radius,
+            normal_force: figures.normal_force,
+            max_pressure: figures.max_pressure,
+            gross_slip_displacement: figures.gross_slip_displacement,
+            gross_slip_force: figures.gross_slip_force,
+        }
+    }
+}
+
+impl From<mechanics::State> for State {
+    fn from(state: mechanics::State) -> Self {
+        State {
+            displacement: state.displacement,
+            // A virgin contact has none, with no sign.
+            force: state.force + 0.0,
+            indentation: state.indentation,
+            normal_force: state.normal_force,
+            contact_radius: state.contact_radius,
+            stick_radius: state.stick_radius,
+            regime: match state.regime {
+                mechanics::Regime::Stick => Regime::Stick,
+                mechanics::Regime::PartialSlip => Regime::PartialSlip,
+                mechanics::Regime::GrossSlip => Regime::GrossSlip,
+                mechanics::Regime::Separated => Regime::Separated,
+            },
+            dissipated_energy: state.dissipated_energy,
+            elastic_energy: state.elastic_energy,
+            memory_depth: state.memory_depth,
+        }
+    }
+}
+
+impl From<mechanics::Residual> for Residual {
+    fn from(residual: mechanics::Residual) -> Self {
+        let peak = |peak: mechanics::Peak| Peak { radius: peak.radius, shear: finite(peak.shear) };
+        Residual {
+            centre: residual.centre.and_then(finite),
+            peaks: residual.peaks.into_iter().map(peak).collect(),
+            max: residual.max.and_then(finite),
+            min: residual.min.and_then(finite),
+            mean: residual.mean.and_then(finite),
+        }
+    }
+}

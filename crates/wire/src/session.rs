@@ -1,0 +1,368 @@
+//! The bodies and replies of `/contacts`: a contact that lives on the server.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
+
+use super::check::{At, Faults};
+use super::definition::{ContactDefinition, Material, Preload};
+use super::one_key::given;
+use super::parse::{Document, Rejection};
+use super::path::{Move, Path, Plan};
+use super::profile::Profile;
+use super::protocol::Relaxation;
+use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
+use super::simulate::Steps;
+use super::stress::{Sampling, Stress, StressRequest};
+
+/// A contact definition, and perhaps a label to know it by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "label": "steel ball",
+    "profile": {"type": "sphere", "radius": 0.01},
+    "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+    "friction": 0.3,
+    "preload": {"normal_force": 10.0}
+}))]
+pub struct CreateRequest {
+    /// A label of your own.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub label: Option<String>,
+    /// The shape of the indenter.
+    pub profile: Profile,
+    /// The elastic constants.
+    pub material: Material,
+    /// Coulomb's coefficient of friction μ, a pure number.
+    pub friction: f64,
+    /// The normal load that the contact starts with.
+    pub preload: Preload,
+}
+
+/// A move, and perhaps a request for the stresses after it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"displacement": 1e-7}))]
+pub struct MoveRequest {
+    /// Tangential displacement of the indenter, m.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub displacement: Option<f64>,
+    /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub force: Option<f64>,
+    /// Indentation, m; below nought the bodies are apart and nothing is remembered.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub indentation: Option<f64>,
+    /// Normal force, N.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub normal_force: Option<f64>,
+    /// Whether the numbers are increments to the present state, instead of the targets themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub relative: bool,
+    /// Ask for stresses after the move.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub stress: Option<StressRequest>,
+    /// Tolerance for what is not exact, relative to μ F_N, a pure number.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub tolerance: Option<f64>,
+}
+
+/// A path for a session, applied as a whole or not at all.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))]
+pub struct PathRequest {
+    /// The path.
+    pub path: Path,
+    /// Ask for stresses at the end of the path.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub stress: Option<StressRequest>,
+    /// Which states to return.
+    #[serde(default)]
+    pub steps: Steps,
+    /// Tolerance for what is not exact, relative to μ F_N, a pure number.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub tolerance: Option<f64>,
+}
+
+/// What may be said about a fork; an empty body says nothing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"label": "what if"}))]
+pub struct ForkRequest {
+    /// A label for the new session; left out, that of the original.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub label: Option<String>,
+}
+
+/// A session that has just been made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NewSession {
+    /// Its identifier.
+    pub id: Uuid,
+    /// Its label, if it has one.
+    pub label: Option<String>,
+    /// How many moves it has behind it: nought, or those of the session it was forked from.
+    pub sequence: u64,
+    /// The figures of the contact at its preload.
+    pub contact: Figures,
+    /// Its state.
+    pub state: State,
+    /// What to know about its results.
+    pub warnings: Vec<Warning>,
+}
+
+/// A session.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SessionReply {
+    /// Its identifier.
+    pub id: Uuid,
+    /// Its label, if it has one.
+    pub label: Option<String>,
+    /// How many moves it has behind it.
+    pub sequence: u64,
+    /// The figures of the contact at its preload.
+    pub contact: Figures,
+    /// Its state after the last move.
+    pub state: State,
+    /// When it was made (ISO 8601, UTC).
+    pub created_at: Timestamp,
+    /// When it last moved (ISO 8601, UTC).
+    pub updated_at: Timestamp,
+}
+
+/// A session as a line of a list.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SessionSummary {
+    /// Its identifier.
+    pub id: Uuid,
+    /// Its label, if it has one.
+    pub label: Option<String>,
+    /// How many moves it has behind it.
+    pub sequence: u64,
+    /// When it was made (ISO 8601, UTC).
+    pub created_at: Timestamp,
+    /// When it last moved (ISO 8601, UTC).
+    pub updated_at: Timestamp,
+}
+
+/// A page of sessions, oldest first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SessionPage {
+    /// The sessions.
+    pub items: Vec<SessionSummary>,
+    /// What to give as `after` for the next page; `null` on the last.
+    pub next: Option<Uuid>,
+}
+
+/// What came of a move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MoveReply {
+    /// The session.
+    pub id: Uuid,
+    /// The number of this move, and of moves so far.
+    pub sequence: u64,
+    /// The state after it.
+    pub state: State,
+    /// The stresses after it, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stress: Option<Stress>,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// What to know about the results since this move, if it is new.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub warnings: Vec<Warning>,
+}
+
+/// What came of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PathReply {
+    /// The session.
+    pub id: Uuid,
+    /// The number of the last move, and of moves so far.
+    pub sequence: u64,
+    /// The states along the path: all of them, or the last.
+    pub steps: Vec<State>,
+    /// The stresses at the end, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stress: Option<Stress>,
+    /// The path, if it follows the law of equal peaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub protocol: Option<Protocol>,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// What to know about the results since this path, if it is new.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub warnings: Vec<Warning>,
+}
+
+/// The stresses of a session, and perhaps their extrema.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StressReply {
+    /// Radii, m.
+    pub radius: Vec<f64>,
+    /// Normal pressure, Pa; `null` where it is infinite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub pressure: Option<Vec<Option<f64>>>,
+    /// Shear stress, Pa; `null` where it is infinite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub shear: Option<Vec<Option<f64>>>,
+    /// Slip, m; `null` outside the contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub slip: Option<Vec<Option<f64>>>,
+    /// Tangential displacement of the surface, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement: Option<Vec<Option<f64>>>,
+    /// The extrema of the shear stress, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub residual: Option<Residual>,
+}
+
+/// A move of the past.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct HistoryItem {
+    /// Its number, counted from 1.
+    pub sequence: u64,
+    /// The move as it was given.
+    #[serde(rename = "move")]
+    pub step: Move,
+    /// The state after it.
+    pub state: State,
+    /// When it was applied (ISO 8601, UTC).
+    pub at: Timestamp,
+}
+
+/// A page of the past, oldest first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct HistoryPage {
+    /// The moves.
+    pub items: Vec<HistoryItem>,
+    /// What to give as `after` for the next page; `null` on the last.
+    pub next: Option<u64>,
+}
+
+/// A contact that has passed all checks, to be made into a session.
+#[derive(Clone, Debug)]
+pub struct Creation {
+    /// The label.
+    pub label: Option<String>,
+    /// The definition as it came, to be stored.
+    pub definition: ContactDefinition,
+    /// The contact.
+    pub setup: Setup,
+}
+
+/// Moves that have passed all checks, to be applied to a session.
+#[derive(Clone, Debug)]
+pub struct Advance {
+    /// The moves.
+    pub plan: Plan,
+    /// The stresses asked for.
+    pub stress: Option<Sampling>,
+    /// Which states are asked for.
+    pub steps: Steps,
+    /// The tolerance for what is not exact.
+    pub tolerance: f64,
+    /// Whether the moves are to be found first, so that little stress remains; `plan` has none then.
+    pub relax: Option<Relaxation>,
+}
+
+impl From<Relaxation> for Advance {
+    fn from(relaxation: Relaxation) -> Advance {
+        let steps = relaxation.steps.unwrap_or(Steps::Last);
+        let plan = Plan::Displacement(Vec::new());
+        Advance { plan, stress: None, steps, tolerance: DEFAULT_TOLERANCE, relax: Some(relaxation) }
+    }
+}
+
+impl Document for CreateRequest {
+    type Checked = Creation;
+
+    fn check(self) -> Result<Creation, Rejection> {
+        let mut faults = Faults::default();
+        faults.label(At::Root.member("label"), self.label.as_deref());
+        let CreateRequest { label, profile, material, friction, preload } = self;
+        let definition = ContactDefinition { profile, material, friction, preload };
+        let setup = definition.check(At::Root, &mut faults);
+        faults.done(setup.map(|setup| Creation { label, definition, setup }))
+    }
+}
+
+impl MoveRequest {
+    /// The move itself.
+    #[must_use]
+    pub fn step(&self) -> Move {
+        Move {
+            displacement: self.displacement,
+            force: self.force,
+            indentation: self.indentation,
+            normal_force: self.normal_force,
+            relative: self.relative,
+        }
+    }
+}
+
+impl Document for MoveRequest {
+    type Checked = Advance;
+
+    fn check(self) -> Result<Advance, Rejection> {
+        let mut faults = Faults::default();
+        let step = self.step();
+        step.check(At::Root, &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
+        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None }))
+    }
+}
+
+impl From<Move> for MoveRequest {
+    fn from(step: Move) -> Self {
+        let Move { displacement, force, indentation, normal_force, relative } = step;
+        MoveRequest { displacement, force, indentation, normal_force, relative, ..MoveRequest::default() }
+    }
+}
+
+impl Document for PathRequest {
+    type Checked = Advance;
+
+    fn check(self) -> Result<Advance, Rejection> {
+        let mut faults = Faults::default();
+        let plan = self.path.check(At::Root.member("path"), &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
+        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        faults.done(plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
+    }
+}
+
+impl Document for ForkRequest {
+    type Checked = Option<String>;
+
+    fn check(self) -> Result<Option<String>, Rejection> {
+        let mut faults = Faults::default();
+        faults.label(At::Root.member("label"), self.label.as_deref());
+        faults.done(Some(self.label))
+    }
+}

@@ -1,0 +1,169 @@
+//! The body of `POST /simulate` and its reply.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::{Setup, range};
+
+use super::check::{At, Faults};
+use super::definition::ContactDefinition;
+use super::limits;
+use super::one_key::{given, one_key};
+use super::parse::{Document, Rejection};
+use super::path::{Path, Plan};
+use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
+use super::stress::{Sampling, Stress, StressRequest};
+
+/// A contact, and the path it is to follow; nothing of it is kept. Only what is asked for is computed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "contact": {
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
+    },
+    "path": {"falling_amplitude": {"reversals": 20}},
+    "stress": {"points": 200},
+    "residual": true
+}))]
+pub struct SimulateRequest {
+    /// The contact.
+    pub contact: ContactDefinition,
+    /// The path.
+    pub path: Path,
+    /// Ask for stresses at the end of the path.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub stress: Option<StressRequest>,
+    /// Ask for the extrema of the shear stress at the end of the path.
+    #[serde(default)]
+    pub residual: bool,
+    /// Which states to return.
+    #[serde(default)]
+    pub steps: Steps,
+    /// Which solver to use; left out, the cheapest that serves the request.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub solver: Option<Solver>,
+    /// Tolerance for what is not exact, relative to μ F_N, a pure number.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub tolerance: Option<f64>,
+}
+
+/// Which states of a path to return.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Steps {
+    /// One state a move.
+    #[default]
+    All,
+    /// The state after the last move alone.
+    Last,
+}
+
+/// A solver: the string `"exact"`, or an object with one key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(example = "exact")]
+pub enum Solver {
+    /// The exact memory of turning points.
+    Exact,
+    /// The spring foundation of the paper: a yardstick, slower and approximate. It follows a tangential force only at
+    /// constant indentation, and a normal force only without a tangential target (else `unsupported_move`).
+    Springs(Springs),
+}
+one_key!(Solver { "springs" => Springs } or { "exact" => Exact });
+
+/// The spring foundation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"count": 1000}))]
+pub struct Springs {
+    /// Number of springs across the diameter of the contact.
+    pub count: usize,
+}
+
+/// What came of a simulation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SimulateReply {
+    /// The figures of the contact at its preload.
+    pub contact: Figures,
+    /// The states along the path: all of them, or the last.
+    pub steps: Vec<State>,
+    /// The stresses at the end, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stress: Option<Stress>,
+    /// The extrema of the shear stress at the end, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub residual: Option<Residual>,
+    /// The path, if it follows the law of equal peaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub protocol: Option<Protocol>,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// What to know about the result.
+    pub warnings: Vec<Warning>,
+}
+
+/// A simulation that has passed all checks.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// The contact as it came, for the warnings.
+    pub definition: ContactDefinition,
+    /// The contact.
+    pub setup: Setup,
+    /// The path.
+    pub plan: Plan,
+    /// The stresses asked for.
+    pub stress: Option<Sampling>,
+    /// Whether the extrema are asked for.
+    pub residual: bool,
+    /// Which states are asked for.
+    pub steps: Steps,
+    /// The solver asked for.
+    pub solver: Option<Solver>,
+    /// The tolerance for what is not exact.
+    pub tolerance: f64,
+}
+
+impl Document for SimulateRequest {
+    type Checked = Simulation;
+
+    fn check(self) -> Result<Simulation, Rejection> {
+        let mut faults = Faults::default();
+        let setup = self.contact.check(At::Root.member("contact"), &mut faults);
+        let plan = self.path.check(At::Root.member("path"), &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
+        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        if let Some(solver) = &self.solver {
+            let search = if self.residual { limits::SPRING_SEARCH } else { 0 };
+            let moves = plan.as_ref().map_or(0, Plan::length);
+            let passes = moves + stress.as_ref().map_or(0, Sampling::length) + search;
+            solver.check(At::Root.member("solver"), passes, &mut faults);
+        }
+        let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
+        let simulation =
+            |(setup, plan)| Simulation { definition, setup, plan, stress, residual, steps, solver, tolerance };
+        faults.done(setup.zip(plan).map(simulation))
+    }
+}
+
+impl Solver {
+    /// Notes what is wrong with the solver at `at`, if each of its springs is looked at so many times.
+    pub(super) fn check(&self, at: At<'_>, passes: usize, faults: &mut Faults) {
+        let Solver::Springs(Springs { count }) = *self else { return };
+        let springs = at.member("springs");
+        let at = springs.member("count");
+        faults.number(at, count as f64, &range::SPRING_COUNT);
+        let most = limits::SPRING_STEPS / passes.max(1);
+        if count > most {
+            faults.add(at, format_args!("{count} springs over {passes} moves and radii: allowed are {most}"));
+        }
+    }
+}

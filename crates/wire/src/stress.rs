@@ -1,0 +1,192 @@
+//! Stress requests and their answers.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::range;
+
+use super::check::{At, Faults};
+use super::limits;
+use super::one_key::given;
+
+/// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"points": 200}))]
+pub struct StressRequest {
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub points: Option<usize>,
+    /// Radii, m; outside the contact the stresses are nought.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub radii: Option<Vec<f64>>,
+    /// Which fields are computed; left out, `pressure` and `shear`.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schema(nullable = false)]
+    pub fields: Option<Vec<Field>>,
+}
+
+/// A quantity along the radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Field {
+    /// Normal pressure p(r), Pa.
+    Pressure,
+    /// Shear stress τ(r), Pa; a positive displacement of the indenter gives a positive stress.
+    Shear,
+    /// Slip U − u(r) under the indenter since the preload, m; none outside the contact.
+    Slip,
+    /// Tangential displacement u(r) of the surface, m, inside the contact and outside.
+    Displacement,
+}
+
+impl Field {
+    /// All fields.
+    pub const ALL: [Field; 4] = [Field::Pressure, Field::Shear, Field::Slip, Field::Displacement];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Field::Pressure => "pressure",
+            Field::Shear => "shear",
+            Field::Slip => "slip",
+            Field::Displacement => "displacement",
+        }
+    }
+}
+
+/// Stresses along the radius; an array that was not asked for is left out.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Stress {
+    /// Radii, m.
+    pub radius: Vec<f64>,
+    /// Normal pressure, Pa; `null` where it is infinite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub pressure: Option<Vec<Option<f64>>>,
+    /// Shear stress, Pa; `null` where it is infinite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub shear: Option<Vec<Option<f64>>>,
+    /// Slip, m; `null` outside the contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub slip: Option<Vec<Option<f64>>>,
+    /// Tangential displacement of the surface, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement: Option<Vec<Option<f64>>>,
+}
+
+/// A checked stress request.
+#[derive(Clone, Debug)]
+pub struct Sampling {
+    /// Where.
+    pub points: Points,
+    /// What.
+    pub fields: Fields,
+}
+
+/// The radii of a checked stress request.
+#[derive(Clone, Debug)]
+pub enum Points {
+    /// So many from the centre to the edge.
+    Uniform(usize),
+    /// These, m.
+    Radii(Vec<f64>),
+}
+
+/// Which fields to compute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fields {
+    /// The pressure.
+    pub pressure: bool,
+    /// The shear stress.
+    pub shear: bool,
+    /// The slip.
+    pub slip: bool,
+    /// The displacement of the surface.
+    pub displacement: bool,
+}
+
+impl Fields {
+    /// How many are asked for.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        [self.pressure, self.shear, self.slip, self.displacement].into_iter().filter(|asked| *asked).count()
+    }
+}
+
+impl StressRequest {
+    /// The checked request; its faults are noted at `at`.
+    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+        faults.part(|faults| self.read(at, faults)).flatten()
+    }
+
+    fn read(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+        let fields = match self.fields.as_deref() {
+            None => Fields { pressure: true, shear: true, slip: false, displacement: false },
+            Some(named) => {
+                if named.is_empty() {
+                    let all = Field::ALL.map(Field::name).join("`, `");
+                    faults.add(at.member("fields"), format_args!("empty: name at least one of `{all}`"));
+                }
+                Fields {
+                    pressure: named.contains(&Field::Pressure),
+                    shear: named.contains(&Field::Shear),
+                    slip: named.contains(&Field::Slip),
+                    displacement: named.contains(&Field::Displacement),
+                }
+            }
+        };
+        let points = match (self.points, self.radii) {
+            (Some(count), None) => {
+                faults.count(at.member("points"), count, &limits::STRESS_POINTS);
+                Points::Uniform(count)
+            }
+            (None, Some(radii)) => {
+                let at = at.member("radii");
+                if faults.length(at, radii.len(), &limits::STRESS_RADII) {
+                    let each = radii.iter().enumerate();
+                    each.for_each(|(index, radius)| faults.number(at.index(index), *radius, &range::CONTACT_RADIUS));
+                }
+                Points::Radii(radii)
+            }
+            (None, None) => {
+                faults.add(at, "name one of `points` and `radii`");
+                return None;
+            }
+            (Some(_), Some(_)) => {
+                faults.add(at, "`points` stands beside `radii`: name one of them");
+                return None;
+            }
+        };
+        Some(Sampling { points, fields })
+    }
+}
+
+impl Sampling {
+    /// How many radii there are.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        match &self.points {
+            Points::Uniform(count) => *count,
+            Points::Radii(radii) => radii.len(),
+        }
+    }
+
+    /// The radii, m, in a contact of the given radius, m.
+    #[must_use]
+    pub fn radii(&self, contact_radius: f64) -> Vec<f64> {
+        match &self.points {
+            // The quotient is exactly 1 at the last point, so that it is the edge itself.
+            Points::Uniform(count) => {
+                (0..*count).map(|index| contact_radius * (index as f64 / (count - 1) as f64)).collect()
+            }
+            Points::Radii(radii) => radii.clone(),
+        }
+    }
+}

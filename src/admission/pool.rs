@@ -1,0 +1,366 @@
+//! What a server has to give, and who gets it: threads for the solver, places for requests, bytes of memory.
+//!
+//! Whoever asks for what is taken waits for a bounded time, in a queue of bounded length, and is refused then. So what
+//! requests can take of the memory is bounded too, however many come.
+
+use std::future::Future;
+use std::pin::pin;
+use std::sync::Arc;
+use std::task::Poll;
+use std::time::{Duration, Instant};
+
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::task::spawn_blocking;
+use tokio::time::timeout;
+
+use crate::metrics::{Counter, Gauge, Histogram, SECONDS, SHORT_SECONDS};
+
+use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
+
+/// Estimated nanoseconds of work.
+pub type Nanoseconds = u64;
+
+/// Work estimated below this runs on the thread that serves the connection.
+pub const INLINE: Nanoseconds = 100_000;
+
+/// How long a request waits for what it needs before the server admits that it is overloaded, unless told otherwise.
+pub const LONGEST_WAIT: Duration = Duration::from_secs(10);
+/// Bytes of bodies, work and replies that are held at a time unless told otherwise.
+pub const BYTES: usize = 512 * 1024 * 1024;
+/// Bytes that one request takes at the most, whatever it asks for: measured, with room to spare.
+pub const LARGEST: usize = 256 * 1024 * 1024;
+/// Requests that are worked on at a time unless told otherwise.
+pub const REQUESTS: usize = 512;
+/// Requests that wait at a time unless told otherwise.
+pub const QUEUE: usize = 1024;
+/// What takes no more bytes than this is not counted: requests are, and that bounds it well enough.
+pub const UNCOUNTED: usize = 16 * 1024;
+
+/// Bytes are counted in units of so many.
+const UNIT: usize = 1024;
+
+/// How much there is to give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capacity {
+    /// Threads for the solver.
+    pub threads: usize,
+    /// Requests that are worked on at a time.
+    pub requests: usize,
+    /// Requests that wait for any of this at a time.
+    pub queue: usize,
+    /// How long each waits.
+    pub wait: Duration,
+    /// How long the solver works for one request.
+    pub deadline: Duration,
+    /// Bytes of bodies, work and replies at a time.
+    pub bytes: usize,
+}
+
+impl Default for Capacity {
+    /// As many threads as the machine has cores, so that solvers do not crowd out each other or the server.
+    fn default() -> Self {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        Capacity { threads, requests: REQUESTS, queue: QUEUE, wait: LONGEST_WAIT, deadline: LONGEST_WORK, bytes: BYTES }
+    }
+}
+
+/// The one place that gives it. Clones are handles on the same.
+#[derive(Clone, Debug)]
+pub struct Pool(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    capacity: Capacity,
+    threads: Arc<Semaphore>,
+    places: Arc<Semaphore>,
+    units: Arc<Semaphore>,
+    queue: Arc<Semaphore>,
+    meters: Arc<PoolMeters>,
+}
+
+/// A place among the requests that are worked on, until dropped.
+#[derive(Debug)]
+pub struct Place(#[expect(dead_code, reason = "held for its drop")] OwnedSemaphorePermit);
+
+/// Bytes that are spoken for, until dropped. None is as good as few.
+#[derive(Debug, Default)]
+pub struct Reservation(Option<OwnedSemaphorePermit>);
+
+/// What a pool counts.
+#[derive(Debug)]
+pub struct PoolMeters {
+    /// Its threads.
+    pub threads: usize,
+    /// Work that waits for a thread.
+    pub waiting: Gauge,
+    /// Work on a thread.
+    pub running: Gauge,
+    /// Work for which no thread became free in time.
+    pub refused: Counter,
+    /// How long work waited for a thread, s.
+    pub wait: Histogram,
+    /// How long work took, at once or on a thread, s.
+    pub work: Histogram,
+}
+
+/// What is taken at present.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Taken {
+    /// Threads at work.
+    pub threads: usize,
+    /// Requests that are worked on.
+    pub requests: usize,
+    /// Requests that wait.
+    pub waiting: usize,
+    /// Bytes that are reserved.
+    pub bytes: usize,
+}
+
+/// Why work was not done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PoolError {
+    /// Nothing became free in time.
+    #[error("the server is busy, and nothing became free in time")]
+    Busy,
+    /// As many requests wait as may.
+    #[error("the server is busy, and as many requests wait as may")]
+    QueueFull,
+    /// The work panicked, which is a fault of this program.
+    #[error("the solver panicked")]
+    Panicked,
+}
+
+impl Reservation {
+    /// Whether it is large enough to be counted.
+    #[must_use]
+    pub fn is_counted(&self) -> bool {
+        self.0.is_some()
+    }
+}
+
+impl Pool {
+    /// A pool with so much to give; at least one of each.
+    #[must_use]
+    pub fn new(capacity: Capacity) -> Pool {
+        let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
+        Pool(Arc::new(Shared {
+            capacity,
+            threads: semaphore(capacity.threads),
+            places: semaphore(capacity.requests),
+            units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
+            queue: semaphore(capacity.queue),
+            meters: Arc::new(PoolMeters::new(capacity.threads.max(1))),
+        }))
+    }
+
+    /// A pool as wide as the machine.
+    #[must_use]
+    pub fn of_the_machine() -> Pool {
+        Pool::new(Capacity::default())
+    }
+
+    /// What there is to give.
+    #[must_use]
+    pub fn capacity(&self) -> &Capacity {
+        &self.0.capacity
+    }
+
+    /// What is taken of it.
+    #[must_use]
+    pub fn taken(&self) -> Taken {
+        let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
+        Taken {
+            threads: taken(self.0.capacity.threads, &self.0.threads),
+            requests: taken(self.0.capacity.requests, &self.0.places),
+            waiting: taken(self.0.capacity.queue, &self.0.queue),
+            bytes: UNIT * taken(self.0.capacity.bytes / UNIT, &self.0.units),
+        }
+    }
+
+    /// A flag for work that must be done by the deadline.
+    #[must_use]
+    pub fn deadline(&self) -> (Stop, StopOnDrop) {
+        Stop::within(self.0.capacity.deadline)
+    }
+
+    /// Waits for something, though not for ever, and not in any number.
+    ///
+    /// # Errors
+    /// [`PoolError::Busy`] if it did not come in time, [`PoolError::QueueFull`] if too many wait already.
+    pub async fn wait<T>(&self, wish: impl Future<Output = T>) -> Result<T, PoolError> {
+        let mut wish = pin!(wish);
+        if let Poll::Ready(granted) = futures::poll!(wish.as_mut()) {
+            return Ok(granted);
+        }
+        let _place = self.0.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
+        timeout(self.0.capacity.wait, wish).await.map_err(|_| PoolError::Busy)
+    }
+
+    async fn permits(&self, semaphore: &Arc<Semaphore>, number: u32) -> Result<OwnedSemaphorePermit, PoolError> {
+        if let Ok(permit) = Arc::clone(semaphore).try_acquire_many_owned(number) {
+            return Ok(permit);
+        }
+        // The semaphores are never closed, so that their own error cannot come.
+        self.wait(Arc::clone(semaphore).acquire_many_owned(number)).await?.map_err(|_| PoolError::Busy)
+    }
+
+    /// A place among the requests that are worked on.
+    ///
+    /// # Errors
+    /// As [`Pool::wait`].
+    pub async fn enter(&self) -> Result<Place, PoolError> {
+        self.permits(&self.0.places, 1).await.map(Place)
+    }
+
+    /// So many bytes; [`LARGEST`] or all that there are, if it is more than that.
+    ///
+    /// # Errors
+    /// As [`Pool::wait`].
+    pub async fn reserve(&self, bytes: usize) -> Result<Reservation, PoolError> {
+        let mut reservation = Reservation::default();
+        self.resize(&mut reservation, bytes).await?;
+        Ok(reservation)
+    }
+
+    /// Makes a reservation larger or smaller.
+    ///
+    /// # Errors
+    /// As [`Pool::wait`]; it is as large as before then.
+    pub async fn resize(&self, reservation: &mut Reservation, bytes: usize) -> Result<(), PoolError> {
+        if bytes <= UNCOUNTED {
+            reservation.0 = None;
+            return Ok(());
+        }
+        let most = (self.0.capacity.bytes.min(LARGEST) / UNIT).clamp(1, u32::MAX as usize);
+        let wanted = bytes.div_ceil(UNIT).min(most);
+        match &mut reservation.0 {
+            None => reservation.0 = Some(self.permits(&self.0.units, wanted as u32).await?),
+            Some(permit) if permit.num_permits() >= wanted => {
+                drop(permit.split(permit.num_permits() - wanted));
+            }
+            Some(permit) => {
+                let more = self.permits(&self.0.units, (wanted - permit.num_permits()) as u32).await?;
+                permit.merge(more);
+            }
+        }
+        Ok(())
+    }
+
+    /// What it has counted.
+    #[must_use]
+    pub fn meters(&self) -> &PoolMeters {
+        &self.0.meters
+    }
+
+    /// Does work on as many threads as are free, one at least: it is told how many they are, and is to be short, as it may have
+    /// taken all of them.
+    ///
+    /// # Errors
+    /// As [`Pool::run`].
+    pub async fn share<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(usize) -> T + Send + 'static,
+    ) -> Result<T, PoolError> {
+        let meters = Arc::clone(&self.0.meters);
+        let mut permit = self.permits(&self.0.threads, 1).await?;
+        while let Ok(another) = Arc::clone(&self.0.threads).try_acquire_owned() {
+            permit.merge(another);
+        }
+        let task = spawn_blocking(move || {
+            let _running: Vec<_> = (0..permit.num_permits()).map(|_| meters.running.enter()).collect();
+            meters.timed(|| work(permit.num_permits()))
+        });
+        task.await.map_err(|_| PoolError::Panicked)
+    }
+
+    /// Does the work: at once if it is cheap, else on a thread of its own. What costs nothing is not counted.
+    ///
+    /// # Errors
+    /// As [`Pool::wait`], or [`PoolError::Panicked`] if the work did.
+    pub async fn run<T: Send + 'static>(
+        &self,
+        cost: Nanoseconds,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, PoolError> {
+        if cost == 0 {
+            return Ok(work());
+        }
+        if cost < INLINE {
+            return Ok(self.0.meters.timed(work));
+        }
+        let meters = Arc::clone(&self.0.meters);
+        let (waiting, begin) = (self.0.meters.waiting.enter(), Instant::now());
+        let permit = self.permits(&self.0.threads, 1).await.inspect_err(|_| meters.refused.add(1))?;
+        meters.wait.observe_time(begin.elapsed());
+        drop(waiting);
+        let task = spawn_blocking(move || {
+            // The permit stays with the work: a caller that gives up does not free a thread that is still busy.
+            let _permit = permit;
+            let _running = meters.running.enter();
+            meters.timed(work)
+        });
+        task.await.map_err(|_| PoolError::Panicked)
+    }
+}
+
+impl PoolMeters {
+    fn new(threads: usize) -> PoolMeters {
+        PoolMeters {
+            threads,
+            waiting: Gauge::default(),
+            running: Gauge::default(),
+            refused: Counter::default(),
+            wait: Histogram::new(SECONDS),
+            work: Histogram::new(SHORT_SECONDS),
+        }
+    }
+
+    fn timed<T>(&self, work: impl FnOnce() -> T) -> T {
+        let begin = Instant::now();
+        let done = work();
+        self.work.observe_time(begin.elapsed());
+        done
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::{Capacity, Pool, PoolError, UNIT};
+
+    fn small() -> Pool {
+        let wait = Duration::from_millis(20);
+        Pool::new(Capacity { requests: 2, queue: 1, wait, bytes: 200 * UNIT, ..Capacity::default() })
+    }
+
+    #[tokio::test]
+    async fn whoever_comes_too_many_waits_and_is_refused() {
+        let pool = small();
+        let places = (pool.enter().await.unwrap(), pool.enter().await.unwrap());
+        let (second, third) = tokio::join!(pool.enter(), pool.enter());
+        assert_eq!((second.unwrap_err(), third.unwrap_err()), (PoolError::Busy, PoolError::QueueFull));
+        drop(places);
+        assert!(pool.enter().await.is_ok());
+        assert_eq!((pool.taken().requests, pool.taken().waiting), (0, 0));
+    }
+
+    #[tokio::test]
+    async fn bytes_are_given_once() {
+        let pool = small();
+        let mut first = pool.reserve(80 * UNIT).await.unwrap();
+        let second = pool.reserve(90 * UNIT).await.unwrap();
+        assert_eq!(pool.reserve(60 * UNIT).await.unwrap_err(), PoolError::Busy);
+        pool.resize(&mut first, 30 * UNIT).await.unwrap();
+        assert_eq!(pool.taken().bytes, 120 * UNIT);
+        let third = pool.reserve(60 * UNIT).await.unwrap();
+        assert_eq!(pool.resize(&mut first, 60 * UNIT).await.unwrap_err(), PoolError::Busy);
+        assert_eq!(pool.taken().bytes, 180 * UNIT);
+        drop((first, second, third));
+        // Whoever asks for more than there is gets all of it, alone.
+        let all = pool.reserve(1_000 * UNIT).await.unwrap();
+        assert_eq!(pool.taken().bytes, 200 * UNIT);
+        drop(all);
+        assert_eq!(pool.taken().bytes, 0);
+    }
+}

@@ -1,0 +1,288 @@
+//! Anything at all over HTTP, against the real binary: no 5xx but for overload, no panic, and every refusal a document that
+//! names its place in the body.
+//!
+//! Requests are made from the schemas and examples of the OpenAPI document, for every path and method, and damaged; the
+//! sockets get requests whose bytes are. Each kind is tried for [`SECONDS`], up to so many cases that a fast machine sees no
+//! others than a slow one; `STICKSLIP_FUZZ_SECONDS` asks for a longer time and lifts that bound. Case n is the same on every
+//! run; `STICKSLIP_FUZZ_SEED` asks for other cases.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::common::kill::Random;
+use crate::common::raw::{PATIENCE, Service};
+use crate::common::{ball, create};
+use crate::schema::{Schemas, damage, garble, pick, word};
+use futures::future::join_all;
+use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
+use reqwest::{Method, Response};
+use serde::de::IgnoredAny;
+use serde_json::Value;
+use stickslip_wire::ProblemDocument;
+use stickslip_wire::client::Options;
+
+/// How long each kind of input is tried, s.
+const SECONDS: u64 = 60;
+/// Requests and connections at a time.
+const AT_ONCE: u64 = 8;
+/// Cases of each kind.
+const CASES: (u64, u64) = (110_000, 170_000);
+
+fn asked(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// Runs cases from a few tasks at a time until the time is up or, unless a time is asked for, `most` are done.
+async fn run(most: u64, case: impl AsyncFn(u64, &mut Random) + Clone) {
+    let longer = asked("STICKSLIP_FUZZ_SECONDS");
+    let (time, seed) = (Duration::from_secs(longer.unwrap_or(SECONDS)), asked("STICKSLIP_FUZZ_SEED").unwrap_or(0));
+    let most = if longer.is_some() { u64::MAX } else { most };
+    let (start, next) = (Instant::now(), AtomicU64::new(0));
+    let workers = (0..AT_ONCE).map(|_| async {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= most || start.elapsed() >= time {
+                break;
+            }
+            let mut random = Random(seed.wrapping_mul(0x9e37_79b9).wrapping_add(number << 20));
+            case(number, &mut random).await;
+        }
+    });
+    join_all(workers).await;
+    println!("seed {seed}: {} cases in {:?}", next.into_inner().min(most), start.elapsed());
+}
+
+/// A request as it is sent.
+#[derive(Debug)]
+struct Request {
+    method: String,
+    target: String,
+    headers: Vec<(&'static str, String)>,
+    body: Option<String>,
+    /// Whether a fault can only be in the body.
+    plain: bool,
+}
+
+fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Request {
+    let operations = schemas.operations();
+    let (path, method, operation) = pick(&operations, random);
+    let mut plain = true;
+    let id = match random.below(8) {
+        0 => "01890a5d-ac96-774b-bcce-b302099a8057".to_owned(),
+        1 => utf8_percent_encode(word(&["", "..", "é", "\0", "a b", "7"], random), NON_ALPHANUMERIC).to_string(),
+        _ => pick(contacts, random).clone(),
+    };
+    let mut target = path.replace("{id}", &id).replace("{code}", word(&["not_json", "none", "%ff"], random));
+    let (mut query, mut headers) = (Vec::new(), Vec::new());
+    for parameter in operation["parameters"].as_array().into_iter().flatten() {
+        if random.below(2) == 0 {
+            continue;
+        }
+        let mut value = schemas.value(&parameter["schema"], random);
+        if random.below(4) == 0 {
+            damage(&mut value, random);
+        }
+        let one = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let text = value
+            .as_array()
+            .map_or_else(|| one(&value), |members| members.iter().map(one).collect::<Vec<_>>().join(","));
+        match (parameter["in"].as_str(), parameter["name"].as_str().unwrap()) {
+            (Some("query"), name) => query.push(format!("{name}={}", utf8_percent_encode(&text, NON_ALPHANUMERIC))),
+            (Some("header"), "If-Match") => headers.push(("if-match", format!("\"{}\"", random.below(3)))),
+            (Some("header"), "Idempotency-Key") => headers.push(("idempotency-key", text)),
+            (Some("header"), "Last-Event-ID") => headers.push(("last-event-id", random.below(5).to_string())),
+            _ => {}
+        }
+    }
+    headers.retain(|(_, value)| reqwest::header::HeaderValue::from_str(value).is_ok());
+    plain &= headers.is_empty();
+    if !query.is_empty() {
+        target = format!("{target}?{}", query.join("&"));
+    }
+    let schema = &operation["requestBody"]["content"]["application/json"]["schema"];
+    let mut body = schema.is_object().then(|| {
+        let examples = schemas.examples(operation);
+        let example = random.below(2) == 0 && !examples.is_empty();
+        let mut body = if example { pick(&examples, random).clone() } else { schemas.value(schema, random) };
+        for _ in 0..random.below(4) {
+            damage(&mut body, random);
+        }
+        body.to_string()
+    });
+    if let Some(text) = body.as_mut().filter(|_| random.below(5) == 0) {
+        garble(text, random);
+        plain = false;
+    }
+    let mut method = method.clone();
+    if random.below(20) == 0 {
+        method =
+            pick(&["GET", "POST", "PUT", "DELETE", "PATCH", "HEAD", "OPTIONS", "TRACE", "FROB"], random).to_string();
+        plain = false;
+    }
+    Request { method, target, headers, body, plain }
+}
+
+/// Checks a reply; the request is for the message.
+async fn examine(request: &Request, response: Response, number: u64) {
+    let shown = || format!("case {number}: {request:?}").chars().take(3_000).collect::<String>();
+    let status = response.status().as_u16();
+    assert!(status < 500 || status == 503, "{status} for {}", shown());
+    let streams = response.headers().get("content-type").is_some_and(|kind| kind == "text/event-stream");
+    if streams || request.method == "HEAD" {
+        return;
+    }
+    let again = response.headers().contains_key("retry-after");
+    let kind = response.headers().get("content-type").map(|kind| kind.to_str().unwrap().to_owned());
+    let body = response.bytes().await.unwrap_or_else(|error| panic!("{error} for {}", shown()));
+    if status < 400 {
+        if kind.as_deref() == Some("application/json") {
+            serde_json::from_slice::<IgnoredAny>(&body).unwrap_or_else(|error| panic!("{error} for {}", shown()));
+        }
+        return;
+    }
+    let problem: ProblemDocument = serde_json::from_slice(&body)
+        .unwrap_or_else(|error| panic!("{error}: {} for {}", String::from_utf8_lossy(&body), shown()));
+    assert_eq!((kind.as_deref(), problem.status), (Some("application/problem+json"), status), "{}", shown());
+    assert!(status != 503 || again, "{}", shown());
+    let text = request.body.as_deref().unwrap_or_default();
+    if problem.code == "not_json" {
+        assert!(serde_json::from_str::<IgnoredAny>(text).is_err(), "JSON, and refused as none: {}", shown());
+    }
+    if request.plain && request.body.is_some() && status == 422 {
+        assert!(!problem.errors.is_empty(), "no place in {problem:?} for {}", shown());
+        let body: Value = serde_json::from_str(text).unwrap();
+        for fault in &problem.errors {
+            let parent = fault.pointer.rsplit_once('/').map_or("", |(parent, _)| parent);
+            // A very long pointer is shortened.
+            let found = body.pointer(parent).is_some() || fault.pointer.ends_with('…');
+            assert!(found, "{} is no place in {}", fault.pointer, shown());
+        }
+    }
+}
+
+fn service() -> Arc<Service> {
+    Arc::new(Service::start(&["--log", "error", "--deadline", "2s", "--cache-bytes", "32MiB", "--body-time", "2s"]))
+}
+
+/// The log has a line for each 5xx.
+fn is_well(service: &Service) {
+    let log = service.log();
+    let bad: Vec<&str> = log.lines().filter(|line| !line.contains("overloaded")).take(5).collect();
+    assert!(bad.is_empty(), "{bad:#?}");
+    println!("at most {} MiB", service.peak() >> 20);
+}
+
+#[tokio::test]
+async fn requests_by_the_schemas() {
+    let (service, schemas) = (service(), Schemas::new(stickslip::api::document()));
+    let mut contacts = Vec::new();
+    for _ in 0..10 {
+        contacts.push(service.client.create(&create(), &Options::default()).await.unwrap().id.to_string());
+    }
+    let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
+    let base = format!("http://{}", service.address);
+    run(CASES.0, async |number, random| {
+        // Deleting is allowed, but not all of them all the time.
+        let request = request(&schemas, &contacts, random);
+        if request.method == "DELETE" && number % 50 != 0 {
+            return;
+        }
+        let method = Method::from_bytes(request.method.as_bytes()).unwrap();
+        let mut call = http.request(method, format!("{base}{}", request.target)).timeout(PATIENCE);
+        for (name, value) in &request.headers {
+            call = call.header(*name, value);
+        }
+        if let Some(body) = &request.body {
+            call = call.header("content-type", "application/json").body(body.clone());
+        }
+        // A server may close a connection whose request it did not read to the end, just when the next one is sent on it.
+        let mut sent = call.try_clone().unwrap().send().await;
+        for _ in 0..3 {
+            if sent.is_err() {
+                sent = call.try_clone().unwrap().send().await;
+            }
+        }
+        match sent {
+            Ok(response) => {
+                let count = if response.status().is_success() { &answered } else { &refused };
+                count.fetch_add(1, Ordering::Relaxed);
+                examine(&request, response, number).await;
+            }
+            Err(error) => panic!("{error:?} for case {number}: {request:?}"),
+        }
+    })
+    .await;
+    let (answered, refused) = (answered.into_inner(), refused.into_inner());
+    println!("{answered} answered, {refused} refused");
+    assert!(answered > 0 && refused > 0);
+    is_well(&service);
+}
+
+#[tokio::test]
+async fn bytes_on_the_socket() {
+    let service = service();
+    let id = service.client.create(&create(), &Options::default()).await.unwrap().id;
+    let sound = [
+        crate::common::raw::post(
+            "/simulate",
+            &serde_json::json!({"contact": ball(), "path": {"force": [0.1]}}).to_string(),
+        ),
+        crate::common::raw::post(&format!("/contacts/{id}/move"), r#"{"displacement": 1e-8}"#),
+        crate::common::raw::get(&format!("/contacts/{id}/stress?points=5")),
+        "POST /simulate HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ntransfer-encoding: chunked\r\n\r\n\
+         5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
+            .to_owned(),
+    ];
+    run(CASES.1, async |number, random| {
+        let mut bytes = pick(&sound, random).clone().into_bytes();
+        if random.below(6) == 0 {
+            bytes = (0..random.below(3_000)).map(|_| random.next() as u8).collect();
+        }
+        for _ in 0..1 + random.below(4) {
+            spoil(&mut bytes, random);
+        }
+        let answer = service.send_all(&bytes).await;
+        let shown = || format!("case {number}: {}", String::from_utf8_lossy(&bytes));
+        assert!(
+            answer.statuses.iter().all(|status| *status < 500 || *status == 503),
+            "{} for {}",
+            answer.text,
+            shown()
+        );
+    })
+    .await;
+    assert!(service.client.contact(id).await.is_ok());
+    is_well(&service);
+}
+
+fn spoil(bytes: &mut Vec<u8>, random: &mut Random) {
+    let place = random.below(bytes.len().max(1) as u64) as usize;
+    let end = (place + 1 + random.below(40) as usize).min(bytes.len());
+    match random.below(7) {
+        _ if place >= bytes.len() => bytes.push(random.next() as u8),
+        0 => bytes[place] = random.next() as u8,
+        1 => bytes[place] ^= 1 << random.below(8),
+        2 => drop(bytes.drain(place..end)),
+        3 => {
+            let twin = bytes[place..end].to_vec();
+            bytes.splice(place..place, twin);
+        }
+        4 => bytes.truncate(place),
+        5 => {
+            let words: [&[u8]; 9] = [
+                b"\r\n",
+                b"\n",
+                b"\0",
+                b"\r\nContent-Length: 3",
+                b"\r\nTransfer-Encoding: chunked",
+                b"%00",
+                b" ",
+                b"\r\n\r\n",
+                b"\r\nExpect: 100-continue",
+            ];
+            bytes.splice(place..place, pick(&words, random).iter().copied());
+        }
+        _ => bytes.splice(place..place, std::iter::repeat_n(b'a', 40_000)).for_each(drop),
+    }
+}

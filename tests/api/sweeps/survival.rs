@@ -1,0 +1,148 @@
+//! Jobs over the end of processes.
+
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tempfile::tempdir;
+use tokio_postgres::NoTls;
+
+use super::{Place, long, until};
+use crate::common::postgres::Cluster;
+use crate::common::process::Process;
+use crate::common::{self};
+
+/// Enough points that a process can be killed in the middle of them.
+const POINTS: usize = 250_000;
+
+/// What the sweep comes to without any accident.
+fn undisturbed(sweep: &Value) -> String {
+    let folder = tempdir().unwrap();
+    let file = folder.path().join("sweep.json");
+    std::fs::write(&file, sweep.to_string()).unwrap();
+    let printed = common::run(&["sweep", file.to_str().unwrap(), "--format", "columns"]);
+    assert!(printed.status.success());
+    String::from_utf8(printed.stdout).unwrap()
+}
+
+async fn done(place: &Place, path: &str) -> u64 {
+    place.job(path).await["progress"]["done"].as_u64().unwrap()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_job_goes_on_after_a_kill_with_what_it_had() {
+    let folder = tempdir().unwrap();
+    let store = format!("sqlite:{}", folder.path().join("jobs.db").display());
+    let (process, sweep) = (Process::start(&store).await, long(POINTS));
+    let path = Place::at(&process.base).start(&sweep).await;
+    let mut process = Some(process);
+    let (mut seen, mut kills) = (0, 0);
+    for wanted in [1, POINTS as u64 / 3] {
+        let place = Place::at(&process.as_ref().unwrap().base);
+        seen = until("more is done", async || Some(done(&place, &path).await).filter(|done| *done >= wanted)).await;
+        kills += u32::from(seen < POINTS as u64);
+        process.take().unwrap().kill().await;
+        process = Some(Process::start(&store).await);
+        let place = Place::at(&process.as_ref().unwrap().base);
+        assert!(done(&place, &path).await >= seen, "what was done is done");
+    }
+    assert!(kills > 0, "the job was over before the first kill: {seen}");
+    let process = process.unwrap();
+    let place = Place::at(&process.base);
+    assert_eq!(place.result(&path).await, undisturbed(&sweep));
+    // The result outlives a stop too, and a cancelled job leaves nothing behind.
+    process.stop().await;
+    let process = Process::start(&store).await;
+    let place = Place::at(&process.base);
+    assert!(place.result(&path).await.starts_with("{\"points\":250000,"));
+    assert_eq!(place.send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
+    process.stop().await;
+    let database = rusqlite::Connection::open(folder.path().join("jobs.db")).unwrap();
+    let left: i64 = database
+        .query_row("SELECT (SELECT count(*) FROM jobs) + (SELECT count(*) FROM job_chunks)", [], |row| row.get(0))
+        .unwrap();
+    assert_eq!(left, 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_other() {
+    let url = Cluster::shared().database().await;
+    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
+    tokio::spawn(connection);
+    let folder = tempdir().unwrap();
+    let start = async |name: &str| {
+        Process::start_with(&["--store", &url, "--job-lease", "2s"], &folder.path().join(name)).await
+    };
+    let (first, second) = (start("first").await, start("second").await);
+    let sweep = long(POINTS);
+    let path = Place::at(&first.base).start(&sweep).await;
+    let count =
+        async |of: &str| client.query_one(&format!("SELECT {of} FROM job_chunks"), &[]).await.unwrap().get::<_, i64>(0);
+    until("both work on it", async || {
+        (count("count(DISTINCT owner) FILTER (WHERE content IS NULL)").await == 2).then_some(())
+    })
+    .await;
+    first.kill().await;
+    let left = count("count(*) FILTER (WHERE content IS NULL)").await;
+    assert!(left > 0, "the job was over before the kill");
+    let place = Place::at(&second.base);
+    assert_eq!(place.result(&path).await, undisturbed(&sweep));
+    assert_eq!(count("count(*) FILTER (WHERE owner IS NOT NULL)").await, 0, "nobody holds what is done");
+    second.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_replica_that_stops_gives_its_part_back_at_once() {
+    let url = Cluster::shared().database().await;
+    let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
+    tokio::spawn(connection);
+    let process = Process::start(&url).await;
+    let path = Place::at(&process.base).start(&long(POINTS)).await;
+    let held = async || {
+        let of =
+            "SELECT count(*) FILTER (WHERE owner IS NOT NULL), count(*) FILTER (WHERE content IS NULL) FROM job_chunks";
+        let row = client.query_one(of, &[]).await.unwrap();
+        (row.get::<_, i64>(0), row.get::<_, i64>(1))
+    };
+    until("it works on it", async || (held().await.0 > 0).then_some(())).await;
+    process.stop().await;
+    let (held, left) = held().await;
+    assert!(left > 0, "the job was over before the stop");
+    assert_eq!(held, 0, "the lease is thirty seconds");
+    let process = Process::start(&url).await;
+    assert_eq!(Place::at(&process.base).send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
+    process.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
+    let folder = tempdir().unwrap();
+    let file = folder.path().join("old.db");
+    let store = format!("sqlite:{}", file.display());
+    let process = Process::start(&store).await;
+    let place = Place::at(&process.base);
+    let mut paths = Vec::new();
+    for _ in 0..3 {
+        paths.push(place.start(&super::small_job()).await);
+    }
+    for path in &paths {
+        place.result(path).await;
+    }
+    process.stop().await;
+    let database = rusqlite::Connection::open(&file).unwrap();
+    let hours = |hours: i64| hours * 3_600_000_000_000;
+    let id = |path: &str| path.rsplit_once('/').unwrap().1.to_owned();
+    let age = "UPDATE jobs SET finished_at = finished_at - ?2 WHERE id = ?1";
+    database.execute(age, (id(&paths[0]), hours(25))).unwrap();
+    database.execute(age, (id(&paths[1]), hours(23))).unwrap();
+    let open = "UPDATE jobs SET finished_at = NULL, created_at = created_at - ?2, done = 0 WHERE id = ?1";
+    database.execute(open, (id(&paths[2]), hours(24 * 7 + 1))).unwrap();
+    drop(database);
+    // At its start, a server keeps house.
+    let process = Process::start(&store).await;
+    let place = Place::at(&process.base);
+    for gone in [&paths[0], &paths[2]] {
+        until("it is gone", async || (place.get(gone).await.status() == 404).then_some(())).await;
+    }
+    assert_eq!(place.job(&paths[1]).await["state"], json!("done"));
+    tokio::time::timeout(Duration::from_secs(30), process.stop()).await.expect("it does not stop");
+}

@@ -1,0 +1,229 @@
+//! What stands in the table.
+
+use arrow_array::Array as _;
+use arrow_array::cast::AsArray as _;
+use arrow_array::types::Float64Type;
+use arrow_ipc::reader::StreamReader;
+use serde_json::{Value, json};
+
+use super::{Place, base, small_job};
+use crate::common::{self, Server, ball, problem};
+
+/// Sends each row's point to `/simulate` by itself, and compares to the last bit. Says how many numbers there were.
+async fn compare(place: &Place, sweep: &Value) -> (usize, usize) {
+    let response = place.post("/sweep", sweep).await;
+    assert_eq!(response.status(), 200, "{sweep}: {}", response.text().await.unwrap());
+    let table: Value = response.json().await.unwrap();
+    let axes: Vec<&str> =
+        sweep["axes"].as_array().unwrap().iter().map(|axis| axis["pointer"].as_str().unwrap()).collect();
+    let (mut numbers, mut nothings) = (0, 0);
+    for row in 0..table["points"].as_u64().unwrap() as usize {
+        let mut point = sweep["base"].clone();
+        for axis in &axes {
+            let (parent, member) = axis.rsplit_once('/').unwrap();
+            let parent = point.pointer_mut(parent).unwrap();
+            let value = table["columns"][axis][row].clone();
+            match parent.as_array_mut() {
+                Some(elements) => elements[member.parse::<usize>().unwrap()] = value,
+                None => parent[member] = value,
+            }
+        }
+        let reply = place.post("/simulate", &point).await;
+        assert_eq!(reply.status(), 200, "{point}");
+        let reply: Value = reply.json().await.unwrap();
+        for output in sweep["outputs"].as_array().unwrap() {
+            let output = output.as_str().unwrap();
+            let expected = reply.pointer(output).and_then(Value::as_f64);
+            let found = &table["columns"][output][row];
+            assert_eq!(found.as_f64().map(f64::to_bits), expected.map(f64::to_bits), "{output} of row {row}");
+            *if expected.is_some() { &mut numbers } else { &mut nothings } += 1;
+        }
+    }
+    (numbers, nothings)
+}
+
+#[tokio::test]
+async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
+    let server = Place::of(&Server::start().await);
+    let three = json!({"base": base(), "axes": [
+        {"pointer": "/path/falling_amplitude/reversals", "values": [1, 2, 20]},
+        {"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.7, "count": 3}},
+        {"pointer": "/contact/preload/normal_force", "logarithmic": {"from": 0.001, "to": 3000, "count": 4}}
+    ], "outputs": ["/residual/max", "/residual/peaks/3/radius", "/residual/peaks/3/shear", "/steps/0/elastic_energy",
+        "/steps/0/memory_depth", "/contact/contact_radius", "/accuracy/stress_error"]});
+    let (numbers, nothings) = compare(&server, &three).await;
+    assert_eq!(numbers + nothings, 36 * 7);
+    assert!(nothings > 0 && nothings < 72, "a peak that some points do not reach: {nothings}");
+
+    // A member that the base leaves out, a curved path, stresses, and states along it.
+    let moves = json!([{"normal_force": 12, "force": 2}, {"displacement": 1e-8, "normal_force": 11}]);
+    let curved = json!({"base": {"contact": ball(), "path": {"moves": moves}, "stress": {"points": 3}}, "axes": [
+        {"pointer": "/tolerance", "logarithmic": {"from": 1e-10, "to": 1e-4, "count": 3}},
+        {"pointer": "/path/moves/0/force", "linear": {"from": -2, "to": 2, "count": 3}}
+    ], "outputs": ["/steps/0/displacement", "/steps/1/force", "/stress/shear/1", "/accuracy/force_error"]});
+    assert_eq!(compare(&server, &curved).await, (36, 0));
+
+    // A table that no axis changes is read once; the other solver; the other law.
+    let table = json!({"type": "tabulated", "r": [0.0, 1e-4, 2e-4, 3e-4], "z": [0.0, 5e-7, 2e-6, 4.5e-6]});
+    let mut tabulated = json!({"contact": ball(), "path": {"displacement": [1e-8, 0.0]}});
+    tabulated["contact"]["profile"] = table;
+    tabulated["contact"]["preload"] = json!({"indentation": 1e-6});
+    let tabulated = json!({"base": tabulated, "axes": [{"pointer": "/path/displacement/0", "linear":
+        {"from": -1e-7, "to": 1e-7, "count": 5}}], "outputs": ["/steps/0/force", "/contact/max_pressure"]});
+    assert_eq!(compare(&server, &tabulated).await, (10, 0));
+    let mut springs = base();
+    springs["path"] = json!({"equal_peaks": {"reversals": 4}});
+    springs["solver"] = json!({"springs": {"count": 100}});
+    let springs = json!({"base": springs, "axes": [{"pointer": "/solver/springs/count", "values": [200, 101, 150]}],
+        "outputs": ["/residual/max", "/protocol/displacement/1"]});
+    assert_eq!(compare(&server, &springs).await, (6, 0));
+}
+
+#[tokio::test]
+async fn figure_5_is_one_call() {
+    let server = Place::of(&Server::start().await);
+    let sweep = json!({"base": base(), "axes": [{"pointer": "/path/falling_amplitude/reversals",
+        "linear": {"from": 1, "to": 100, "count": 100}}], "outputs": ["/residual/max", "/contact/max_pressure"]});
+    let table: Value = server.post("/sweep", &sweep).await.json().await.unwrap();
+    assert_eq!((&table["points"], &table["failed"], &table["failures"]), (&json!(100), &json!(0), &json!([])));
+    for row in 0..100 {
+        let number = |column: &str| table["columns"][column][row].as_f64().unwrap();
+        assert_eq!(table["columns"]["/path/falling_amplitude/reversals"][row], json!(row + 1), "a whole number");
+        let reversals = (row + 1) as f64;
+        // In closed form: one reversal leaves the root of a half, more of them the cusp next to the edge.
+        let expected = if row == 0 { 0.5_f64.sqrt() } else { (2.0 - 1.5_f64.sqrt()) / reversals.sqrt() };
+        let found = number("/residual/max") / (0.3 * number("/contact/max_pressure"));
+        assert!((found - expected).abs() < 1e-12, "{reversals}: {found} instead of {expected}");
+    }
+}
+
+#[tokio::test]
+async fn a_point_without_an_answer_is_a_row_without_numbers_and_stands_among_the_failures() {
+    let server = Place::of(&Server::start().await);
+    let mut base = base();
+    base["contact"]["profile"] = json!({"type": "exact_sphere", "radius": 0.01});
+    base["contact"]["preload"] = json!({"indentation": 1e-6});
+    let sweep = json!({"base": base, "axes": [{"pointer": "/contact/preload/indentation", "linear":
+        {"from": 1e-3, "to": 1.0, "count": 250}}], "outputs": ["/residual/max", "/contact/normal_force"]});
+    let table: Value = server.post("/sweep", &sweep).await.json().await.unwrap();
+    let column = |name: &str| table["columns"][name].as_array().unwrap().clone();
+    let forces = column("/contact/normal_force");
+    let failed: Vec<usize> = (0..250).filter(|row| forces[*row].is_null()).collect();
+    assert!(failed.len() > 100 && failed.len() < 250, "{}", failed.len());
+    assert!(failed.iter().all(|row| column("/residual/max")[*row].is_null()));
+    assert_eq!(table["failed"], failed.len());
+    let failures = table["failures"].as_array().unwrap();
+    assert_eq!(failures.len(), 100, "listed up to a bound");
+    for (failure, row) in failures.iter().zip(&failed) {
+        assert_eq!((&failure["index"], &failure["code"]), (&json!(row), &json!("beyond_profile")));
+    }
+    // As the point is refused by itself.
+    let mut point = sweep["base"].clone();
+    point["contact"]["preload"]["indentation"] = table["columns"]["/contact/preload/indentation"][failed[0]].clone();
+    let refusal = problem(server.post("/simulate", &point).await).await;
+    assert_eq!(failures[0]["code"], refusal.code);
+    assert_eq!(failures[0]["pointer"], refusal.errors[0].pointer);
+    assert_eq!(failures[0]["detail"], refusal.errors[0].detail);
+}
+
+/// The rows of a stream of Arrow's record batches, of which there are several.
+fn arrow(stream: &[u8], names: &[&str]) -> Vec<Vec<Option<f64>>> {
+    let batches: Vec<_> = StreamReader::try_new(stream, None).unwrap().map(Result::unwrap).collect();
+    assert!(batches.len() > 1);
+    let rows = batches.iter().flat_map(|batch| {
+        assert_eq!(batch.schema().fields().iter().map(|field| field.name()).collect::<Vec<_>>(), names);
+        let columns: Vec<_> = batch.columns().iter().map(|column| column.as_primitive::<Float64Type>()).collect();
+        (0..batch.num_rows())
+            .map(move |row| {
+                columns.iter().map(|column| column.is_valid(row).then(|| column.value(row))).collect::<Vec<_>>()
+            })
+            .collect::<Vec<_>>()
+    });
+    rows.collect()
+}
+
+#[tokio::test]
+async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
+    let server = Place::of(&Server::start().await);
+    // More rows than are written at a time, and some without numbers.
+    let sweep = json!({"base": base(), "axes": [
+        {"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.5, "count": 300}},
+        {"pointer": "/path/falling_amplitude/reversals", "values": [1, 5]}
+    ], "outputs": ["/residual/max", "/residual/peaks/2/shear"]});
+    let names = ["/contact/friction", "/path/falling_amplitude/reversals", "/residual/max", "/residual/peaks/2/shear"];
+    let mut asked = sweep.clone();
+    asked["job"] = json!(true);
+    let job = server.start(&asked).await;
+    let columns = server.result(&job).await;
+    let table: Value = serde_json::from_str(&columns).unwrap();
+    let rows: Vec<Vec<Value>> =
+        (0..600).map(|row| names.iter().map(|name| table["columns"][name][row].clone()).collect()).collect();
+    assert!(rows.iter().any(|row| row[3].is_null()) && rows.iter().any(|row| row[3].is_number()));
+    for (format, media_type) in [
+        ("columns", "application/json"),
+        ("rows", "application/vnd.stickslip.rows+json"),
+        ("csv", "text/csv; charset=utf-8"),
+        ("ndjson", "application/x-ndjson"),
+        ("arrow", "application/vnd.apache.arrow.stream"),
+    ] {
+        let stored = server.get(&format!("{job}/result?format={format}")).await;
+        assert_eq!(stored.headers()["content-type"], media_type);
+        let stored = stored.bytes().await.unwrap();
+        let accept = media_type.split(';').next().unwrap();
+        let at_once = server.send(reqwest::Method::POST, "/sweep", Some(&sweep), &[("accept", accept)]).await;
+        assert_eq!((at_once.status().as_u16(), &at_once.headers()["vary"]), (200, &"accept".parse().unwrap()));
+        assert_eq!(at_once.bytes().await.unwrap(), stored, "{format}");
+        if format == "arrow" {
+            assert_eq!(
+                arrow(&stored, &names),
+                rows.iter().map(|row| row.iter().map(Value::as_f64).collect()).collect::<Vec<Vec<_>>>()
+            );
+            continue;
+        }
+        let stored = std::str::from_utf8(&stored).unwrap();
+        let object = |row: &Value| names.iter().map(|name| row[name].clone()).collect::<Vec<_>>();
+        let read: Vec<Vec<Value>> = match format {
+            "columns" => rows.clone(),
+            "rows" => serde_json::from_str::<Vec<Value>>(stored).unwrap().iter().map(object).collect(),
+            "ndjson" => stored.lines().map(|line| object(&serde_json::from_str(line).unwrap())).collect(),
+            _ => {
+                let (head, body) = stored.split_once('\n').unwrap();
+                assert_eq!(head, names.join(","));
+                let cell = |cell: &str| if cell.is_empty() { Value::Null } else { cell.parse().unwrap() };
+                body.lines().map(|line| line.split(',').map(cell).collect()).collect()
+            }
+        };
+        assert_eq!(read, rows, "{format}");
+    }
+    for path in ["/sweep".to_owned(), format!("{job}/result")] {
+        let (method, body) =
+            if path == "/sweep" { (reqwest::Method::POST, Some(&sweep)) } else { (reqwest::Method::GET, None) };
+        let refusal = problem(server.send(method, &path, body, &[("accept", "image/png")]).await).await;
+        assert_eq!(refusal.code, "not_acceptable");
+    }
+}
+
+#[tokio::test]
+async fn the_command_line_prints_what_the_service_gives() {
+    let server = Place::of(&Server::start().await);
+    let (folder, mut sweep) = (tempfile::tempdir().unwrap(), small_job());
+    sweep["job"] = json!(false);
+    sweep["axes"][0]["values"] = (1..=200).map(|index| json!(f64::from(index) / 400.0)).collect();
+    let file = folder.path().join("sweep.json");
+    std::fs::write(&file, sweep.to_string()).unwrap();
+    for format in ["columns", "rows", "csv", "ndjson"] {
+        let served = server.post(&format!("/sweep?format={format}"), &sweep).await.text().await.unwrap();
+        for threads in ["1", "3"] {
+            let printed = common::run(&["sweep", file.to_str().unwrap(), "--format", format, "--threads", threads]);
+            assert!(printed.status.success());
+            assert_eq!(String::from_utf8(printed.stdout).unwrap(), served, "{format}");
+        }
+    }
+    let mut wrong = sweep.clone();
+    wrong["axes"][0]["pointer"] = json!("/contact/colour");
+    std::fs::write(&file, wrong.to_string()).unwrap();
+    let refused = common::run(&["sweep", file.to_str().unwrap()]);
+    assert!(!refused.status.success() && refused.stdout.is_empty());
+    let refusal: Value = serde_json::from_slice(&refused.stderr).unwrap();
+    assert_eq!(refusal["errors"][0]["pointer"], "/axes/0/pointer");
+}

@@ -1,0 +1,145 @@
+//! The examples run as they stand, against the real program.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use stickslip_wire::Move;
+
+use crate::common::create;
+use crate::common::process::Process;
+use crate::python::{file, program, succeed};
+
+#[allow(dead_code, reason = "its `main` is for the example alone")]
+#[path = "../../examples/client.rs"]
+mod client;
+
+/// Cells of a table written as CSV, without the names.
+fn cells(csv: &str) -> Vec<Vec<f64>> {
+    let number = |cell: &str| cell.parse().unwrap_or(f64::NAN);
+    csv.lines().skip(1).map(|line| line.split(',').map(number).collect()).collect()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_scripts_of_python_reproduce_a_figure_and_follow_a_contact() {
+    let server = Process::start("memory:").await;
+    let figure = succeed(program("python").arg(file("examples/python/figure5.py")).arg(&server.base), "");
+    assert!(figure.starts_with("reversals,max,mean,min\n"), "{figure}");
+    let rows = cells(&figure);
+    assert_eq!(rows.len(), 40);
+    for row in &rows[1..] {
+        // The law of the sphere, from two reversals on.
+        let law = (2.0 - 1.5_f64.sqrt()) / row[0].sqrt();
+        assert!((row[1] / law - 1.0).abs() < 1e-9 && row[3] <= row[2] && row[2] <= row[1], "{row:?}");
+    }
+
+    let made = server.client.create(&create(), &Default::default()).await.unwrap();
+    let mut follow = program("python");
+    follow.arg(file("examples/python/follow.py")).args([&server.base, &made.id.to_string(), "4"]);
+    let mut follow = follow.stdout(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(follow.stdout.take().unwrap()).lines().map(Result::unwrap);
+    let (names, first) = (lines.next().unwrap(), lines.next().unwrap());
+    assert_eq!(names, "sequence,at,displacement,force,stick_radius,regime");
+    assert!(first.starts_with("0,"), "{first}");
+    for index in 1..=3 {
+        let step = Move::displacement(2e-8 * f64::from(index)).into();
+        let moved = server.client.apply(made.id, &step, &Default::default()).await.unwrap();
+        let line = lines.next().unwrap();
+        let row: Vec<&str> = line.split(',').collect();
+        assert_eq!((row[0], row[3].parse()), (index.to_string().as_str(), Ok(moved.state.force)), "{line}");
+    }
+    assert!(follow.wait().unwrap().success());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_notebook_runs_from_its_first_cell_to_its_last() {
+    let server = Process::start("memory:").await;
+    let notebook: Value =
+        serde_json::from_str(&std::fs::read_to_string(file("examples/python/stickslip.ipynb")).unwrap()).unwrap();
+    let cells = notebook["cells"].as_array().unwrap().iter();
+    let code: Vec<&str> =
+        cells.filter(|cell| cell["cell_type"] == "code").map(|cell| cell["source"].as_str().unwrap()).collect();
+    assert!(code.len() > 6, "{}", code.len());
+    // The law is a column of the table: what it says is held against what was found.
+    let held = "assert (abs(reduction['max'] / reduction['law'] - 1)[1:] < 1e-9).all() and len(history) == 3\n\
+                assert len(stress) == 200 and plot.startswith('<svg') and list(live['sequence']) == [3]\n\
+                assert requests.get(contact).status_code == 404";
+    let mut run = program("python");
+    run.current_dir(file("examples/python")).env("STICKSLIP_URL", &server.base);
+    succeed(run.arg("-c").arg(format!("{}\n{held}", code.join("\n"))), "");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_shell_script_makes_and_deletes_a_contact() {
+    let server = Process::start("memory:").await;
+    let folder = tempfile::tempdir().unwrap();
+    let mut script = Command::new("bash");
+    script.arg(file("examples/curl.sh")).arg(&server.base).env("TMPDIR", folder.path());
+    let said = succeed(&mut script, "bash is there");
+    assert!(said.contains("unchanged: 304\n") && said.contains("deleted: 204\n"), "{said}");
+    assert_eq!(said.lines().filter(|line| line.contains(',')).count(), 1 + 8 + 1 + 5, "{said}");
+    let plots = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
+    assert!(std::fs::read(plots.join("stress.png")).unwrap().starts_with(b"\x89PNG\r\n\x1a\n"));
+    assert!(std::fs::read_to_string(plots.join("loop.svg")).unwrap().ends_with("</svg>\n"));
+    assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_example_of_the_client_lives_a_life() {
+    let server = Process::start("memory:").await;
+    let lines = client::life(&server.base).await.unwrap();
+    let begins = |index: usize, words: &str| assert!(lines[index].contains(words), "{lines:?}");
+    begins(0, "slips as a whole at 3 N");
+    begins(1, "move 1: ");
+    assert_eq!(lines[1], lines[2], "repeated, and made once");
+    begins(3, "force_exceeds_friction: ");
+    begins(5, "event 1: 1.");
+    assert_eq!(lines.last().unwrap(), "deleted");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_calls_of_the_flow_for_node_red_are_answered() {
+    let server = Process::start("memory:").await;
+    let flow: Vec<Value> =
+        serde_json::from_str(&std::fs::read_to_string(file("examples/node-red.json")).unwrap()).unwrap();
+    let leads = |node: &Value, to: &Value| node["wires"].to_string().contains(&to["id"].to_string());
+    let node = |id: &Value| flow.iter().find(|node| node["id"] == *id).unwrap();
+    let http = reqwest::Client::new();
+    let (mut id, mut calls) = (String::new(), 0);
+    for call in flow.iter().filter(|node| node["type"] == "http request") {
+        // What is pressed, perhaps by way of a node that names the contact.
+        let before: Vec<&Value> = flow.iter().filter(|node| leads(node, call)).collect();
+        let pressed = flow.iter().filter(|start| {
+            start["type"] == "inject" && before.iter().any(|step| step["id"] == start["id"] || leads(start, step))
+        });
+        for start in pressed {
+            let url = call["url"].as_str().unwrap().replace("${STICKSLIP_URL}", &server.base);
+            let request =
+                http.request(call["method"].as_str().unwrap().parse().unwrap(), url.replace("{{{contact}}}", &id));
+            let body = start["payload"].as_str().unwrap().to_owned();
+            let request = if call["method"] == "POST" {
+                request.header("content-type", "application/json").body(body)
+            } else {
+                request
+            };
+            let reply = request.send().await.unwrap();
+            assert!(reply.status().is_success(), "{}: {}", call["name"], reply.text().await.unwrap());
+            let reply: Value = reply.json().await.unwrap();
+            if call["name"] == "POST /contacts" {
+                reply["id"].as_str().unwrap().clone_into(&mut id);
+            } else if call["method"] == "GET" {
+                assert!(reply.as_array().unwrap().iter().all(|row| row["shear"].is_number()));
+            }
+            calls += 1;
+        }
+    }
+    assert_eq!(calls, 4);
+    // Every wire leads somewhere.
+    for wire in flow
+        .iter()
+        .flat_map(|node| node["wires"].as_array().into_iter().flatten())
+        .flat_map(|wires| wires.as_array().unwrap())
+    {
+        node(wire);
+    }
+}

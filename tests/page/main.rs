@@ -1,0 +1,415 @@
+//! The page at `/`, in a real browser.
+
+mod browser;
+#[path = "../common/mod.rs"]
+mod common;
+
+use std::f64::consts::PI;
+use std::path::Path;
+use std::time::Duration;
+
+use browser::{Browser, PATIENCE};
+use common::{Binary, create};
+use reqwest::header;
+use serde_json::{Value, json};
+use stickslip::access::{Role, new_key};
+use stickslip_wire::client::Options;
+use stickslip_wire::{CreateRequest, Move, MoveRequest, NewSession};
+use tempfile::tempdir;
+use tokio::time::{sleep, timeout};
+
+/// The steel ball of the examples, with a name.
+async fn ball(server: &Binary) -> NewSession {
+    let request = CreateRequest { label: Some("Steel ball".to_owned()), ..create() };
+    server.client.create(&request, &Options::default()).await.unwrap()
+}
+
+async fn moved(server: &Binary, session: &NewSession, parts: &[f64]) {
+    for part in parts {
+        let step = Move::displacement(part * session.contact.gross_slip_displacement);
+        server.client.apply(session.id, &MoveRequest::from(step), &Options::default()).await.unwrap();
+    }
+}
+
+/// A number of one to a thousand with four digits, without noughts at its end.
+fn four(value: f64) -> String {
+    let places = 3 - value.log10().floor() as usize;
+    format!("{value:.places$}").parse::<f64>().unwrap().to_string()
+}
+
+/// Hertz's contact radius in µm, as the page shows it.
+fn hertz(force: f64, radius: f64, modulus: f64) -> String {
+    format!("{} µm", four(1e6 * (3.0 * force * radius / (4.0 * modulus)).cbrt()))
+}
+
+const E_STAR: f64 = 2.1e11 / (1.0 - 0.3 * 0.3);
+/// The way as it is drawn: `[x, y]` in pixels.
+const WAY: &str = "document.querySelector('#plot-loop .line.past').getAttribute('d').slice(1).split('L').map((p) => p.split(',').map(Number))";
+
+#[tokio::test]
+async fn a_contact_is_made_moved_reloaded_and_followed() {
+    let server = Binary::start(&[]);
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&server.address).await.unwrap();
+    browser.until("document.body.innerText.includes('No contact yet')").await;
+    browser.click("#new").await;
+
+    // What follows is shown as one types, and what is wrong stands beside its field.
+    let figures = "document.querySelector('.derived').innerText";
+    browser.until(&format!("{figures}.includes({:?})", hertz(10.0, 0.01, E_STAR))).await;
+    let radius = "form .card:first-child input";
+    browser.write(radius, "20").await;
+    browser.until(&format!("{figures}.includes({:?})", hertz(10.0, 0.02, E_STAR))).await;
+    browser.write(radius, "-20").await;
+    let fault =
+        "document.querySelector('form .card:first-child input').closest('.field').querySelector('.fault').innerText";
+    browser.until(&format!("{fault}.includes('out of range')")).await;
+    browser.picture("new").await;
+    browser.write(radius, "10").await;
+    browser.until(&format!("{fault} === ''")).await;
+    browser.write("input[maxlength]", "Steel ball").await;
+    browser.click("#create").await;
+    browser.until("document.querySelector('.badge.on') !== null").await;
+    // The browser itself says that a reply was a refusal.
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+
+    // Pulled to one side and back, it comes back another way.
+    browser.drag("#slide-displacement", 0.5, 0.8).await;
+    browser.until(&format!("{WAY}.length > 5")).await;
+    browser.drag("#slide-displacement", 0.8, 0.35).await;
+    let turned = format!(
+        "(() => {{ const way = {WAY}; const x = way.map((p) => p[0]); const top = x.indexOf(Math.max(...x)); \
+         const middle = (x[0] + x[top]) / 2; const out = way.slice(0, top).find((p) => p[0] >= middle); \
+         const back = way.slice(top).find((p) => p[0] <= middle); \
+         return back !== undefined && x.at(-1) < x[0] && back[1] > out[1] + 10; }})()"
+    );
+    browser.until(&turned).await;
+    let id = server.client.contacts(None, None).await.unwrap().items[0].id;
+    // The last places of the slider may still be on their way.
+    let agree = async {
+        loop {
+            let force = server.client.contact(id).await.unwrap().state.force;
+            let shown = browser.value("Number(document.querySelector('#box-force').value)").await;
+            if (shown.as_f64().unwrap() - force).abs() < 1e-4 {
+                break;
+            }
+        }
+    };
+    timeout(PATIENCE, agree).await.expect("the page shows what the server has");
+    browser.picture("turned").await;
+
+    // The past is still there after a reload.
+    let moves = server.client.contact(id).await.unwrap().sequence;
+    browser.page.refresh().await.unwrap();
+    browser.until("document.querySelector('.badge.on') !== null").await;
+    browser.until(&turned).await;
+    browser.until(&format!("{WAY}.length > {moves}")).await;
+    assert_eq!(browser.value("document.querySelector('h1').innerText").await, "Steel ball");
+
+    // What somebody else does is seen at once.
+    let step = Move { normal_force: Some(15.0), displacement: Some(5e-8), ..Move::default() };
+    server.client.apply(id, &MoveRequest::from(step), &Options::default()).await.unwrap();
+    browser.until("document.querySelector('#box-displacement').value === '50'").await;
+    browser
+        .until(&format!("document.querySelector('.side').innerText.includes({:?})", hertz(15.0, 0.01, E_STAR)))
+        .await;
+    server.client.delete(id, &Options::default()).await.unwrap();
+    browser.until("document.querySelector('.badge').innerText === 'deleted'").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    moved(&server, &session, &[0.9, -0.7, 0.5, -0.3, 0.4]).await;
+    let browser = Browser::start(400, 850, false).await;
+    let mut grounds = Vec::new();
+    for (name, width, height, dark) in [
+        ("narrow-light", 400, 850, false),
+        ("narrow-dark", 400, 850, true),
+        ("wide-dark", 1280, 900, true),
+        ("wide-light", 1280, 900, false),
+    ] {
+        browser.look(width, height, dark).await;
+        for view in ["#/", "#/new", &format!("#/contacts/{}", session.id)] {
+            browser.page.goto(&format!("{}/{view}", server.address)).await.unwrap();
+            browser.until("document.querySelector('h1') !== null").await;
+            browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+        }
+        browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
+        // Both axes of every plot are named, and have their unit but where they count.
+        let titles = browser
+            .value(
+                "[...document.querySelectorAll('.plots .chart')].map((chart) => \
+                 [...chart.querySelectorAll('.title')].map((title) => title.textContent))",
+            )
+            .await;
+        let titles: Vec<Vec<String>> = serde_json::from_value(titles).unwrap();
+        assert_eq!(titles.len(), 4);
+        for title in titles.iter().flatten() {
+            assert!(title == "Move" || title.ends_with(')'), "{title}");
+        }
+        assert!(titles.iter().all(|titles| titles.len() == 2), "{titles:?}");
+        grounds.push(browser.value("getComputedStyle(document.body).backgroundColor").await);
+        browser.picture(name).await;
+    }
+    assert_eq!((&grounds[0], &grounds[1]), (&grounds[3], &grounds[2]));
+    assert_ne!(grounds[0], grounds[1]);
+
+    // As many turning points are marked as there are pieces beyond the two that a virgin contact has once it moves; passing one
+    // wipes out what came after it.
+    for (part, turns) in [(-0.4, 3), (-0.8, 1)] {
+        moved(&server, &session, &[part]).await;
+        let depth = server.client.contact(session.id).await.unwrap().state.memory_depth;
+        assert_eq!(depth, turns + 2);
+        browser.until(&format!("document.querySelectorAll('#plot-loop .turn').length === {turns}")).await;
+    }
+
+    // What is under the pointer is read and marked, in the plot from above too.
+    browser.hover("#plot-stress svg", 0.3).await;
+    let off = "(() => { const plot = document.querySelector('#plot-stress svg').getBoundingClientRect(); \
+               const mark = document.querySelector('#plot-stress .cursor line').getBoundingClientRect(); \
+               return Math.abs(mark.left - plot.left - 0.3 * plot.width); })()";
+    browser.until("document.querySelector('#plot-above .cursor .ring') !== null").await;
+    let off = browser.value(off).await.as_f64().unwrap();
+    assert!(off < 2.0, "marked {off} pixels beside the pointer");
+
+    // By keyboard: a slider moves the contact, and a plot reads its values.
+    browser.press("#slide-displacement", "\u{e014}").await;
+    browser.until("document.querySelector('.badge.on') !== null").await;
+    let arrived = async {
+        while server.client.contact(session.id).await.unwrap().sequence < 8 {
+            sleep(Duration::from_millis(20)).await;
+        }
+    };
+    timeout(PATIENCE, arrived).await.expect("the slider moves the contact");
+    browser.press("#plot-stress svg", "\u{e011}").await;
+    let centre = browser.value("document.querySelector('#plot-stress .said').textContent").await;
+    let p_max = 3.0 * 10.0 / (2.0 * PI * session.contact.contact_radius.powi(2));
+    assert!(centre.as_str().unwrap().contains(&format!("pressure p {} GPa", four(p_max / 1e9))), "{centre}");
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn a_guided_run_takes_the_stress_out_and_tells_how_much() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    moved(&server, &session, &[1.0, 0.0]).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.write("#reversals", "4").await;
+    browser.click("#run").await;
+    let told = "document.querySelector('#run-told').innerText";
+    browser.until(&format!("{told}.startsWith('Move')")).await;
+    // One reversal leaves sqrt(1/2) of mu p_max, and more of them (2 - sqrt(3/2)) / sqrt(N_R).
+    let left = 100.0 * (2.0 - 1.5_f64.sqrt()) / 2.0;
+    let before = 100.0 * 0.5_f64.sqrt();
+    browser.until(&format!("{told}.includes('Now')")).await;
+    let said = browser.value(told).await;
+    let said = said.as_str().unwrap();
+    assert!(said.contains(&format!("({before:.1} %")) && said.contains(&format!("({left:.1} %")), "{said}");
+    let now = server.client.contact(session.id).await.unwrap();
+    assert_eq!((now.sequence, now.state.displacement), (7, 0.0));
+
+    browser.click("#compute-residual").await;
+    browser.until("document.querySelectorAll('#plot-residual .dot').length >= 4 * 15").await;
+    browser.press("#plot-residual svg", "\u{e011}").await;
+    let one = browser.value("document.querySelector('#plot-residual .said').textContent").await;
+    assert!(one.as_str().unwrap().contains("linear: largest 0.7071"), "{one}");
+    browser.picture("run").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    // A history that no law starts from.
+    moved(&server, &session, &[0.9, -0.3, 0.5]).await;
+    let relax = format!("{}/contacts/{}/relax", server.address, session.id);
+    let dry = reqwest::Client::new().post(relax).json(&json!({"reversals": 3, "dry_run": true})).send().await.unwrap();
+    let promised = dry.json::<Value>().await.unwrap()["residual"]["max"].as_f64().unwrap();
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.until("document.querySelector('#protocol option[value=relax]') !== null").await;
+    browser.value("document.querySelector('#protocol').value = 'relax'").await;
+    browser.write("#reversals", "3").await;
+    browser.click("#run").await;
+    let told = "document.querySelector('#run-told').innerText";
+    browser.until(&format!("{told}.includes('Now')")).await;
+    let said = browser.value(told).await;
+    let now = said.as_str().unwrap().split("Now: up to").nth(1).unwrap();
+    let share = 100.0 * promised / (0.3 * session.contact.max_pressure.unwrap());
+    assert!(now.contains(&format!("({share:.1} % of")), "{said} instead of {share}");
+
+    browser.click("#compute-accuracy").await;
+    browser.until("document.querySelectorAll('#plot-accuracy .dot').length >= 3").await;
+    let names = browser.value("document.querySelector('#plot-accuracy').textContent").await;
+    assert!(names.as_str().unwrap().contains("exact") && names.as_str().unwrap().contains("springs"), "{names}");
+    browser.picture("accuracy").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+/// The file that the page saves, once it is whole.
+async fn saved(path: &Path) -> Vec<u8> {
+    for _ in 0..600 {
+        if let Ok(bytes) = std::fs::read(path)
+            && !bytes.is_empty()
+        {
+            return bytes;
+        }
+        sleep(Duration::from_millis(50)).await;
+    }
+    panic!("{} has not been saved", path.display());
+}
+
+#[tokio::test]
+async fn what_is_on_screen_can_be_taken_away() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    moved(&server, &session, &[0.9, -0.7]).await;
+    let folder = tempdir().unwrap();
+    let browser = Browser::start(1280, 900, false).await;
+    browser.save_in(folder.path()).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.until("document.querySelectorAll('#plot-loop .line').length === 2").await;
+    // A part of a plot is shown by itself, and all of it again.
+    let ticks = "[...document.querySelectorAll('#plot-loop .grid text')].map((text) => text.textContent).join()";
+    let all = browser.value(ticks).await;
+    browser.drag("#plot-loop svg", 0.6, 0.7).await;
+    browser.until(&format!("{ticks} !== {all}")).await;
+    browser.press("#plot-loop svg", "0").await;
+    browser.until(&format!("{ticks} === {all}")).await;
+    for (entry, name) in [(4, "loop.png"), (5, "loop.svg"), (6, "loop.csv")] {
+        browser.click(&format!("#plot-loop .menu button:nth-of-type({entry})")).await;
+        let file = saved(&folder.path().join(name)).await;
+        let text = String::from_utf8_lossy(&file);
+        match name {
+            "loop.png" => assert!(file.starts_with(b"\x89PNG\r\n\x1a\n")),
+            "loop.svg" => {
+                assert!(text.starts_with("<svg") && text.contains("Displacement U") && !text.contains("class="))
+            }
+            _ => assert_eq!(text.lines().count(), 3, "{text}"),
+        }
+    }
+    browser.click("#plot-above .menu button:nth-of-type(5)").await;
+    let drawing = String::from_utf8(saved(&folder.path().join("above.svg")).await).unwrap();
+    assert!(drawing.contains("<stop") && drawing.contains("rgb(") && !drawing.contains("oklab("));
+    // The commands are those of this contact, and they work.
+    browser.click(".copying button").await;
+    let commands = browser.value("document.querySelector('#code textarea').value").await;
+    let commands = commands.as_str().unwrap();
+    let last = commands.split("\n\n").last().unwrap();
+    let url = last.split('\'').find(|word| word.starts_with("http")).unwrap();
+    let body: Value = serde_json::from_str(last.rsplit('\'').nth(1).unwrap()).unwrap();
+    assert_eq!(url, format!("{}/contacts/{}/move", server.address, session.id));
+    let reply = reqwest::Client::new().post(url).json(&body).send().await.unwrap();
+    assert_eq!(reply.status(), 200);
+    assert_eq!(reply.json::<Value>().await.unwrap()["sequence"], 3);
+    browser.picture("code").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn every_shape_body_and_preload_can_be_chosen() {
+    let server = Binary::start(&[]);
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/new", server.address)).await.unwrap();
+    browser.until("document.querySelector('form select') !== null").await;
+    let types = browser.value("[...document.querySelector('form select').options].map((option) => option.value)").await;
+    let types: Vec<String> = serde_json::from_value(types).unwrap();
+    let document = server.client.openapi().await.unwrap();
+    assert_eq!(types.len(), document["components"]["schemas"]["Profile"]["oneOf"].as_array().unwrap().len());
+    let shapes = types.iter().map(|kind| ("Shape of the indenter", kind.as_str(), "/profile/type", json!(kind)));
+    let bodies = [
+        ("Elasticity", "two", "/material/bodies/1/poisson_ratio", json!(0.3)),
+        ("Elasticity", "effective", "/material/effective/e_star", json!(2.31e11)),
+        ("Preload by", "indentation", "/preload/indentation", json!(1e-6)),
+        ("Preload by", "contact_radius", "/preload/contact_radius", json!(1e-4)),
+    ];
+    for (label, value, pointer, expected) in shapes.chain(bodies) {
+        browser.value("location.assign('#/new') ?? null").await;
+        browser.until("document.querySelector('#create') !== null").await;
+        browser.choose(label, value).await;
+        if value == "tabulated" {
+            browser.write("form textarea", "# µm\n0;0\n100;0,5\n200 2.0\n300, 4.5").await;
+        }
+        browser.click("#create").await;
+        browser.until("location.hash.startsWith('#/contacts/') && document.querySelector('.badge.on') !== null").await;
+        let hash = browser.value("location.hash").await;
+        let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
+        let made = serde_json::to_value(server.client.definition(id).await.unwrap()).unwrap();
+        assert_eq!(made.pointer(pointer), Some(&expected), "{value}");
+        if value == "tabulated" {
+            assert_eq!(made["profile"]["r"], json!([0.0, 1e-4, 2e-4, 3e-4]));
+            assert_eq!(made["profile"]["z"], json!([0.0, 5e-7, 2e-6, 4.5e-6]));
+        }
+    }
+    // A table that is not whole yet is refused, and the browser itself says so.
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
+    let new = new_key("page", &[Role::Write], "").unwrap();
+    let server = Binary::start(&["--keys", &new.entry]);
+    let http = reqwest::Client::new();
+    for label in ["Steel ball", "Rubber foot"] {
+        let mut body = common::ball();
+        body["label"] = json!(label);
+        let call = http.post(format!("{}/contacts", server.address)).bearer_auth(&new.key).json(&body);
+        assert_eq!(call.send().await.unwrap().status(), 201);
+    }
+    let browser = Browser::start(400, 850, true).await;
+    browser.page.goto(&server.address).await.unwrap();
+    browser.until("document.querySelector('#key').open").await;
+    browser.write("#key input", &new.key).await;
+    browser.click("#key .primary").await;
+    let rows = "[...document.querySelectorAll('.list strong')].map((name) => name.innerText).join()";
+    browser.until(&format!("{rows} === 'Rubber foot,Steel ball'")).await;
+    browser.write("#search", "steel").await;
+    browser.until(&format!("{rows} === 'Steel ball'")).await;
+    browser.click(".list a").await;
+    browser.until("document.querySelector('.badge.on') !== null").await;
+    // The key stays in this tab, and out of what is copied.
+    browser.click(".copying button").await;
+    let commands = browser.value("document.querySelector('#code textarea').value").await;
+    let commands = commands.as_str().unwrap();
+    assert!(commands.contains("Bearer $STICKSLIP_KEY") && !commands.contains(&new.key), "{commands}");
+    assert_eq!(browser.value("JSON.stringify(localStorage) + document.cookie").await, "{}");
+    browser.stayed_quiet_and_at(&server.address, &["status of 401"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn its_files_are_those_of_the_source_and_are_sent_once() {
+    let server = Binary::start(&[]);
+    let http = reqwest::Client::new();
+    let url = format!("{}/page/main.js", server.address);
+    let source = std::fs::read("src/page/main.js").unwrap();
+    let mut tags = Vec::new();
+    for (accepted, coding) in [("identity", None), ("br, gzip;q=0.5", Some("gzip")), ("gzip;q=0", None)] {
+        let reply = http.get(&url).header(header::ACCEPT_ENCODING, accepted).send().await.unwrap();
+        assert_eq!(reply.status(), 200);
+        assert_eq!(reply.headers().get(header::CONTENT_ENCODING).map(|coding| coding.to_str().unwrap()), coding);
+        let tag = reply.headers()[header::ETAG].clone();
+        let body = reply.bytes().await.unwrap();
+        assert_eq!(body == source, coding.is_none(), "{accepted}");
+        let again = http.get(&url).header(header::ACCEPT_ENCODING, accepted).header(header::IF_NONE_MATCH, &tag);
+        let again = again.send().await.unwrap();
+        assert_eq!((again.status().as_u16(), again.headers()[header::ETAG] == tag), (304, true));
+        assert!(again.bytes().await.unwrap().is_empty());
+        tags.push(tag);
+    }
+    assert_eq!(tags[0], tags[2]);
+    assert_ne!(tags[0], tags[1], "two forms of a file are two things to a cache");
+    let unknown = http.get(format!("{}/page/..%2Fmain.rs", server.address)).send().await.unwrap();
+    assert_eq!(common::problem(unknown).await.code, "not_found");
+}
