@@ -23,6 +23,7 @@ pub mod api;
 pub mod jobs;
 pub mod metrics;
 pub mod otlp;
+pub mod server;
 pub mod sessions;
 pub mod simulation;
 pub mod store;

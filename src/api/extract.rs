@@ -17,9 +17,11 @@ use crate::simulation::cost;
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
 
-use super::door::SlowBody;
-use super::problem::{Kind, Problem};
-use super::{App, limits, reply};
+use crate::api::App;
+use crate::api::limits;
+use crate::api::problem::{Kind, Problem};
+use crate::api::reply;
+use crate::server::connections::SlowBody;
 
 /// A checked body, and the headers that make it safe to repeat.
 pub struct Command<T: Document> {

@@ -1,96 +1,90 @@
-//! HTTP. `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
+//! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
-pub mod access;
-mod accuracy;
-pub mod bound;
-mod contacts;
-mod describe;
-pub mod descriptors;
-pub mod door;
-mod events;
 mod extract;
-pub mod format;
-pub mod headers;
-mod jobs;
+pub mod formats;
 pub mod limits;
-mod meta;
-mod metrics;
-mod moves;
-mod observe;
+pub mod middleware;
 mod openapi;
-mod page;
-mod plots;
 pub mod problem;
-mod protocols;
 mod query;
-mod reads;
 mod reply;
-mod serve;
-pub mod sheet;
-mod simulate;
-mod sweep;
-mod table;
-mod traffic;
+mod resources;
+mod state;
 
+use std::future::Future;
+use std::io;
 use std::sync::Arc;
 
-use axum::{Router, middleware};
+use axum::Router;
+use axum::middleware::from_fn_with_state;
+use tokio::net::TcpListener;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
-use crate::admission::Pool;
-use crate::jobs::Jobs;
-use crate::sessions::Sessions;
+use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 
-pub use access::Access;
-pub use door::{Connections, Door};
+use middleware::{access_control, request_log, request_metrics::RequestMetrics, security_headers};
+use resources::{accuracy, contacts, events, jobs, meta, metrics, moves, page, protocols, reads, simulate, sweep};
+
 pub use openapi::document;
 pub use problem::Problem;
-pub use serve::{serve, serve_through};
+pub use state::{Access, App};
 
-/// What the handlers work with. Clones are handles on the same.
-#[derive(Clone)]
-pub struct App {
-    /// The sessions.
-    pub sessions: Sessions,
-    /// The jobs.
-    pub jobs: Jobs,
-    /// Where long work is done.
-    pub pool: Pool,
-    /// Who may use it.
-    pub access: Access,
+/// Serves the API on `listener` within the usual limits of connections, until `stop` is done.
+///
+/// # Errors
+/// As [`server::serve`].
+pub async fn serve(listener: TcpListener, app: App, stop: impl Future<Output = ()> + Send + 'static) -> io::Result<()> {
+    serve_within(ConnectionLimiter::new(ConnectionLimits::default()), listener, app, stop).await
 }
 
-/// What counts the requests of [`router`] and of [`refusals`].
-fn traffic() -> Arc<traffic::Traffic> {
+/// Serves the API on `listener` for the connections that `limiter` admits, until `stop` is done.
+///
+/// # Errors
+/// As [`server::serve`].
+pub async fn serve_within(
+    limiter: ConnectionLimiter,
+    listener: TcpListener,
+    app: App,
+    stop: impl Future<Output = ()> + Send + 'static,
+) -> io::Result<()> {
+    let (sessions, jobs, pool) = (app.sessions.clone(), app.jobs.clone(), app.pool.clone());
     // Our own document is sound; without it, endpoints would be shown from their first request on.
-    Arc::new(traffic::Traffic::of(&serde_json::from_str(document()).unwrap_or_default()))
+    let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
+    let (router, refusals) = (router(app, Arc::clone(&metrics)), refusals(metrics));
+    let service = Service { router, refusals, pool, body_time: limiter.limits().body };
+    server::serve(limiter, listener, service, stop, || {
+        // A client that follows a contact or a job would never be done.
+        sessions.end_events();
+        jobs.end();
+    })
+    .await
 }
 
 /// All routes.
-fn router(app: App, traffic: Arc<traffic::Traffic>) -> Router {
+fn router(app: App, metrics: Arc<RequestMetrics>) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
-    dressed(api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here), access, traffic)
+    with_middleware(api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here), access, metrics)
 }
 
-/// The answer to requests that do not come as far as [`router`].
-fn refusals(traffic: Arc<traffic::Traffic>) -> Router {
-    dressed(Router::new().fallback(meta::refused), Access::default(), traffic)
+/// The answer to requests that are not admitted to [`router`].
+fn refusals(metrics: Arc<RequestMetrics>) -> Router {
+    with_middleware(Router::new().fallback(meta::refused), Access::default(), metrics)
 }
 
 /// What is common to all replies.
-fn dressed(mut routes: Router, Access { keys, origins }: Access, traffic: Arc<traffic::Traffic>) -> Router {
+fn with_middleware(mut routes: Router, Access { keys, origins }: Access, metrics: Arc<RequestMetrics>) -> Router {
     if let Some(keys) = keys {
-        routes = routes.layer(middleware::from_fn_with_state(keys, access::admit));
+        routes = routes.layer(from_fn_with_state(keys, access_control::admit));
     }
     if !origins.is_empty() {
         // Before keys are asked for: a browser asks whether it may send one.
-        routes = routes.layer(headers::cross_origin(&origins));
+        routes = routes.layer(security_headers::cross_origin(&origins));
     }
-    routes.layer(middleware::from_fn_with_state(traffic, observe::observe))
+    routes.layer(from_fn_with_state(metrics, request_log::log_request))
 }
 
 /// The routes that the OpenAPI document describes.

@@ -34,7 +34,7 @@ use crate::store::StoreError;
 use stickslip_mechanics as mechanics;
 use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
-use super::limits;
+use crate::api::limits;
 
 /// The media type of a problem document.
 pub const MEDIA_TYPE: &str = "application/problem+json";

@@ -9,10 +9,10 @@ use axum::http::request::Parts;
 use stickslip_wire::limits as wire_limits;
 use stickslip_wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
 
-use super::App;
-use super::format::Format;
-use super::limits;
-use super::problem::Problem;
+use crate::api::App;
+use crate::api::formats::Format;
+use crate::api::limits;
+use crate::api::problem::Problem;
 
 /// Radii of a plot whose client does not say.
 const PLOTTED: usize = 1_000;

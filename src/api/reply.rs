@@ -9,7 +9,7 @@ use axum::response::{IntoResponse, Response};
 use crate::admission::Reservation;
 use crate::store::Reply;
 
-use super::problem::Problem;
+use crate::api::problem::Problem;
 
 /// Headers that a reply has in the end, so that the map need not grow step by step.
 const HEADERS: usize = 12;

@@ -6,9 +6,9 @@ use bytesize::ByteSize;
 use clap::Args;
 use stickslip::admission;
 use stickslip::admission::Capacity;
-use stickslip::api::Connections;
-use stickslip::api::descriptors::room_for;
-use stickslip::api::door::MOST;
+use stickslip::server::ConnectionLimits;
+use stickslip::server::connections::MOST;
+use stickslip::server::fd_limit::room_for;
 
 /// The times that clients can be given.
 const SHORTEST_TIME: Duration = Duration::from_millis(10);
@@ -17,10 +17,10 @@ const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
 /// How much the service takes on at a time, and how long it waits: docs/overload.md says what follows from it.
 #[derive(Args)]
 pub struct Overload {
-    /// Connections at a time.
+    /// ConnectionLimits at a time.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = MOST, value_parser = at_least_one)]
     max_connections: usize,
-    /// Connections of one client address at a time; left out, half of all. Behind a proxy all clients have one address.
+    /// ConnectionLimits of one client address at a time; left out, half of all. Behind a proxy all clients have one address.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
     /// Requests worked on at a time; more wait.
@@ -66,7 +66,7 @@ impl Overload {
     }
 
     /// The connections, as far as the process may have so many files open.
-    pub fn connections(&self) -> Connections {
+    pub fn connections(&self) -> ConnectionLimits {
         let most = room_for(self.max_connections);
         if most < self.max_connections {
             let asked = self.max_connections;
@@ -74,7 +74,7 @@ impl Overload {
         }
         let per_client = self.max_connections_per_client.unwrap_or(most.div_ceil(2));
         let (head, body, idle, stall) = (self.head_time, self.body_time, self.idle_time, self.stall_time);
-        Connections { most, per_client, head, body, idle, stall }
+        ConnectionLimits { most, per_client, head, body, idle, stall }
     }
 }
 

@@ -8,9 +8,10 @@ use std::time::Duration;
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use stickslip::admission::Pool;
-use stickslip::api::headers::Origin;
-use stickslip::api::{self, Access, App, Door, bound};
+use stickslip::api::middleware::security_headers::Origin;
+use stickslip::api::{self, Access, App};
 use stickslip::jobs::{self, Jobs};
+use stickslip::server::{ConnectionLimiter, memory_budget};
 use stickslip::sessions::{self, Sessions};
 use stickslip::store::{self, Store};
 use tokio::net::TcpListener;
@@ -192,8 +193,8 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
         }
     };
     let pool = Pool::new(options.overload.capacity());
-    let door = Door::new(options.overload.connections());
-    let memory_bound = bound::memory(door.limits(), pool.capacity(), options.cache_bytes.as_u64());
+    let limiter = ConnectionLimiter::new(options.overload.connections());
+    let memory_bound = memory_budget::memory(limiter.limits(), pool.capacity(), options.cache_bytes.as_u64());
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);
@@ -202,7 +203,7 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     let app = App { sessions, jobs, pool, access };
-    api::serve_through(door, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
+    api::serve_within(limiter, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
     // Others wait for a lease where a store out of reach takes nothing back.
     let _ = tokio::time::timeout(GIVE_BACK, working).await;
     Ok(())

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use stickslip::admission::Stop;
 use stickslip::api::Problem;
-use stickslip::api::format::Format;
-use stickslip::api::sheet::Table;
+use stickslip::api::formats::Format;
+use stickslip::api::formats::sheet::Table;
 use stickslip::simulation::{Rows, Sweep as Plan, Workers};
 use stickslip_wire::{self as wire, SweepRequest};
 

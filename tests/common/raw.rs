@@ -151,6 +151,6 @@ pub fn get(path: &str) -> String {
 
 /// Sees to it that this process may have so many connections.
 pub fn room_for(connections: usize) {
-    let room = stickslip::api::descriptors::room_for(connections);
+    let room = stickslip::server::fd_limit::room_for(connections);
     assert!(room >= connections, "this test needs {connections} connections: ulimit -Hn 8192");
 }

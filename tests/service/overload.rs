@@ -1,4 +1,4 @@
-//! Overload, on the real binary: memory stays within the bound that `api::bound` states, the server says that it is well,
+//! Overload, on the real binary: memory stays within the bound that `server::memory_budget` states, the server says that it is well,
 //! honest clients are served while it lasts as far as they can be, and all of them when it is over.
 
 use std::sync::Arc;
@@ -10,8 +10,8 @@ use crate::common::{ball, create};
 use futures::future::join_all;
 use serde_json::json;
 use stickslip::admission::Capacity;
-use stickslip::api::limits::SPARE_CONNECTIONS;
-use stickslip::api::{Connections, bound};
+use stickslip::server::limits::SPARE_CONNECTIONS;
+use stickslip::server::{ConnectionLimits, memory_budget};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -97,7 +97,7 @@ async fn two_thousand_slow_clients_take_little_and_harm_nobody() {
     join_all(slow).await;
     let capacity = Capacity::default();
     // Beside what the bound allows for large bodies, of which there are none here.
-    let allowed = bound::memory(&Connections::default(), &capacity, 16 << 20) as usize - capacity.bytes;
+    let allowed = memory_budget::memory(&ConnectionLimits::default(), &capacity, 16 << 20) as usize - capacity.bytes;
     let peak = service.peak();
     println!("{SLOW} slow clients: at most {} MiB, {} KiB each", peak / MIB, peak / 1024 / SLOW);
     assert!(peak < allowed && peak < 150 * MIB, "{peak} of {allowed}");
@@ -185,11 +185,11 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
     for _ in 0..50 {
         assert!(served(&service, FLOOD, &post("/simulate", &sound_simulation())).await);
     }
-    let connections = Connections { most: MOST, ..Connections::default() };
+    let connections = ConnectionLimits { most: MOST, ..ConnectionLimits::default() };
     let capacity = Capacity { requests: 16, queue: 32, bytes: 256 * MIB, ..Capacity::default() };
     // What was created is kept in memory by this store, some 4 KiB each.
     let kept = good.load(Ordering::Relaxed) * 4 * 1024;
-    let (peak, allowed) = (service.peak(), bound::memory(&connections, &capacity, 16 << 20) as usize + kept);
+    let (peak, allowed) = (service.peak(), memory_budget::memory(&connections, &capacity, 16 << 20) as usize + kept);
     println!(
         "flood: {} served, {} refused, at most {} MiB",
         good.load(Ordering::Relaxed),
@@ -218,8 +218,8 @@ async fn large_bodies_wait_for_memory_or_are_refused() {
     }
     assert!(read > 0 && refused > 0, "{read} read, {refused} refused");
     let capacity = Capacity { bytes: 256 * MIB, ..Capacity::default() };
-    let connections = Connections { most: 60, ..Connections::default() };
-    let (peak, allowed) = (service.peak(), bound::memory(&connections, &capacity, 16 << 20) as usize);
+    let connections = ConnectionLimits { most: 60, ..ConnectionLimits::default() };
+    let (peak, allowed) = (service.peak(), memory_budget::memory(&connections, &capacity, 16 << 20) as usize);
     println!("large bodies: {read} read, {refused} refused, at most {} MiB", peak / MIB);
     assert!(peak < allowed, "{peak} of {allowed}");
     assert!(served(&service, FLOOD, &post("/simulate", &sound_simulation())).await);

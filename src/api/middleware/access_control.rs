@@ -1,0 +1,98 @@
+//! Who gets in: the role that each route needs, and the key that has it.
+
+use std::sync::Arc;
+
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderMap, Method, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse as _, Response};
+
+use crate::access::{Keys, Role};
+
+use crate::api::problem::{Kind, Problem};
+
+/// What a request needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Nothing.
+    Nothing,
+    /// A key with this role.
+    Key(Role),
+}
+
+use Need::{Key, Nothing};
+
+/// What each route needs. A route that is not here needs the highest role there is.
+const ROUTE_ROLES: &[(&str, &str, Need)] = &[
+    ("POST", "/accuracy", Key(Role::Read)),
+    ("POST", "/simulate", Key(Role::Read)),
+    ("POST", "/protocols", Key(Role::Read)),
+    ("POST", "/sweep", Key(Role::Write)),
+    ("GET", "/jobs/{id}", Key(Role::Read)),
+    ("DELETE", "/jobs/{id}", Key(Role::Write)),
+    ("GET", "/jobs/{id}/result", Key(Role::Read)),
+    ("GET", "/jobs/{id}/events", Key(Role::Read)),
+    ("GET", "/contacts", Key(Role::Read)),
+    ("POST", "/contacts", Key(Role::Write)),
+    ("GET", "/contacts/{id}", Key(Role::Read)),
+    ("DELETE", "/contacts/{id}", Key(Role::Write)),
+    ("GET", "/contacts/{id}/definition", Key(Role::Read)),
+    ("POST", "/contacts/{id}/move", Key(Role::Write)),
+    ("POST", "/contacts/{id}/path", Key(Role::Write)),
+    ("POST", "/contacts/{id}/relax", Key(Role::Write)),
+    ("POST", "/contacts/{id}/fork", Key(Role::Write)),
+    ("GET", "/contacts/{id}/stress", Key(Role::Read)),
+    ("GET", "/contacts/{id}/history", Key(Role::Read)),
+    ("GET", "/contacts/{id}/loop", Key(Role::Read)),
+    ("GET", "/contacts/{id}/events", Key(Role::Read)),
+    ("GET", "/metrics", Key(Role::Metrics)),
+    ("GET", "/healthz", Nothing),
+    ("GET", "/readyz", Nothing),
+    ("GET", "/openapi.json", Nothing),
+    ("GET", "/problems/{code}", Nothing),
+    ("GET", "/", Nothing),
+    ("GET", crate::api::resources::page::FOLDER, Nothing),
+    ("GET", "/docs", Nothing),
+    ("GET", "/docs/{*rest}", Nothing),
+];
+
+/// What a method on a route needs.
+pub fn need(method: &str, route: &str) -> Need {
+    let method = if method == "HEAD" { "GET" } else { method };
+    // With the slash that a folder may have.
+    let route = if route == "/docs/" { "/docs" } else { route };
+    let listed = ROUTE_ROLES.iter().find(|(listed, at, _)| *listed == method && *at == route);
+    listed.map_or(Key(Role::Write), |(.., need)| *need)
+}
+
+/// Lets a request pass that has the key for it, in the name of the tenant of that key.
+pub async fn admit(State(keys): State<Arc<Keys>>, mut request: Request, next: Next) -> Response {
+    let route = request.extensions().get::<MatchedPath>().map_or("", MatchedPath::as_str);
+    let Key(role) = need(request.method().as_str(), route) else {
+        return next.run(request).await;
+    };
+    let Some(holder) = presented(request.headers()).and_then(|key| keys.holder(key)) else {
+        let detail = "send a key of this service as `Authorization: Bearer KEY`";
+        return Problem::new(Kind::Unauthorized, detail).into_response();
+    };
+    if !holder.roles.allow(role) {
+        let detail = format!("this needs a key with the role `{}`", role.name());
+        return Problem::new(Kind::Forbidden, detail).into_response();
+    }
+    tracing::debug!(key = &*holder.name, tenant = holder.tenant.name(), "a key was accepted");
+    request.extensions_mut().insert(holder.tenant.clone());
+    next.run(request).await
+}
+
+/// The key in `Authorization: Bearer KEY`, given once.
+fn presented(headers: &HeaderMap) -> Option<&[u8]> {
+    let mut values = headers.get_all(header::AUTHORIZATION).iter();
+    let (Some(value), None) = (values.next(), values.next()) else {
+        return None;
+    };
+    let (scheme, key) = value.as_bytes().split_at_checked(b"bearer ".len())?;
+    scheme.eq_ignore_ascii_case(b"bearer ").then(|| key.trim_ascii())
+}
+
+/// The methods that any route knows.
+pub const METHODS: [Method; 3] = [Method::GET, Method::POST, Method::DELETE];

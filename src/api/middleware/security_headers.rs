@@ -1,0 +1,138 @@
+//! Headers that keep browsers from mischief: on every reply, and for pages of the origins that are let in.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
+use tower_http::cors::CorsLayer;
+
+use crate::api::middleware::access_control::METHODS;
+use crate::api::middleware::request_log::REQUEST_ID;
+
+/// How long a browser may remember what it was allowed.
+const REMEMBERED: Duration = Duration::from_secs(600);
+
+/// A reply is data: nothing in it may be run or framed.
+const POLICY: HeaderValue = HeaderValue::from_static("default-src 'none'; frame-ancestors 'none'");
+/// The page to try the service runs its own scripts, styles its own elements, and talks to the service alone.
+const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self'; \
+     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+);
+
+/// Which pages may embed a reply.
+const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+/// The page to look at does the same, and needs no style within its elements. It draws a plot that is to be saved from memory.
+const LOOK_POLICY: HeaderValue = HeaderValue::from_static(
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; \
+     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+);
+
+/// What every reply has.
+const COMMON: [(HeaderName, HeaderValue); 4] = [
+    (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+    (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
+    (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+    (RESOURCE_POLICY, HeaderValue::from_static("same-origin")),
+];
+
+/// What a reply belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Data, which may be a secret.
+    Data,
+    /// The page to try the service, which is no secret and may be kept.
+    Docs,
+    /// The page to look at, likewise.
+    Page,
+}
+
+/// Writes the headers of a reply to a request by `method`.
+pub fn protect(headers: &mut HeaderMap, method: &Method, kind: Kind) {
+    headers.reserve(COMMON.len() + 3);
+    headers.extend(COMMON);
+    let policy = match kind {
+        Kind::Data => POLICY,
+        Kind::Docs => PAGE_POLICY,
+        Kind::Page => LOOK_POLICY,
+    };
+    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    if kind == Kind::Data {
+        if headers.get(header::CONTENT_TYPE).is_some_and(|kind| kind.as_bytes().starts_with(b"image/")) {
+            // A dashboard elsewhere may show a plot. Its scripts see nothing of it but its size.
+            headers.insert(RESOURCE_POLICY, HeaderValue::from_static("cross-origin"));
+        }
+        // What has a version may be kept by the browser that got it, and be shown again once the server has said that it is
+        // the present one.
+        let versioned = matches!(*method, Method::GET | Method::HEAD) && headers.contains_key(header::ETAG);
+        let keeping = if versioned { "private, no-cache" } else { "no-store" };
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static(keeping));
+    }
+}
+
+/// Answers the questions of browsers on behalf of pages of these origins.
+pub fn cross_origin(origins: &[HeaderValue]) -> CorsLayer {
+    let sent = ["idempotency-key", "last-event-id"].map(HeaderName::from_static);
+    let sent = sent.into_iter().chain([
+        header::AUTHORIZATION,
+        header::CONTENT_TYPE,
+        header::IF_MATCH,
+        header::IF_NONE_MATCH,
+        REQUEST_ID,
+    ]);
+    CorsLayer::new()
+        .allow_origin(origins.to_vec())
+        .allow_methods(METHODS)
+        .allow_headers(sent.collect::<Vec<_>>())
+        .expose_headers([header::ETAG, header::LINK, header::LOCATION, header::RETRY_AFTER, REQUEST_ID])
+        .max_age(REMEMBERED)
+}
+
+/// An origin that pages may come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin(pub HeaderValue);
+
+impl FromStr for Origin {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Origin, String> {
+        let refused = || "expected an origin as browsers write it, such as https://lab.example:8443".to_owned();
+        let uri: Uri = text.parse().map_err(|_| refused())?;
+        let (Some(scheme @ ("http" | "https")), Some(authority)) = (uri.scheme_str(), uri.authority()) else {
+            return Err(refused());
+        };
+        // Letter by letter what a browser sends: it would not be found otherwise.
+        let plain = format!("{scheme}://{authority}").to_ascii_lowercase();
+        if plain != text || text.contains(['@', '*']) {
+            return Err(refused());
+        }
+        HeaderValue::from_str(text).map(Origin).map_err(|_| refused())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Origin;
+
+    #[test]
+    fn an_origin_is_what_a_browser_sends() {
+        for good in ["https://lab.example", "http://localhost:3000", "http://[::1]:80"] {
+            assert_eq!(good.parse::<Origin>().unwrap().0, good);
+        }
+        for bad in [
+            "",
+            "*",
+            "null",
+            "lab.example",
+            "https://lab.example/",
+            "https://Lab.example",
+            "https://*.example",
+            "ftp://lab.example",
+            "https://me@lab.example",
+            "https://lab.example/a",
+            "https://",
+        ] {
+            assert!(bad.parse::<Origin>().is_err(), "{bad}");
+        }
+    }
+}

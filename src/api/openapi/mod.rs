@@ -1,0 +1,360 @@
+//! The OpenAPI document: what the handlers and types say of themselves, and the limits and refusals common to many.
+
+mod describe;
+
+use std::sync::OnceLock;
+
+use serde_json::{Map, Value, json};
+use utoipa::{IntoParams, OpenApi};
+use uuid::Uuid;
+
+use crate::access::Role;
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+use stickslip_mechanics::range::{self, Range};
+use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
+
+use crate::api::limits as server;
+use crate::api::middleware::access_control::{Need, need};
+use crate::api::problem::MEDIA_TYPE;
+
+/// The contact in the path.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Path)]
+#[expect(dead_code, reason = "described here, read by `ContactId`")]
+pub struct ContactPath {
+    /// The identifier of the contact.
+    id: Uuid,
+}
+
+/// The condition under which a contact is changed.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "described here, read by `Expected`")]
+pub struct IfMatch {
+    /// The sequence that the contact must be at, in quotes; else nothing is done, and the answer is 412.
+    #[param(rename = "If-Match", nullable = false)]
+    if_match: Option<String>,
+}
+
+/// The name of a request that may have to be repeated.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "described here, read by `Command`")]
+pub struct IdempotencyKey {
+    /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing and
+    /// gets the first reply again; with another body it is refused.
+    #[param(rename = "Idempotency-Key", nullable = false)]
+    idempotency_key: Option<String>,
+}
+
+#[derive(OpenApi)]
+#[openapi(
+    info(title = "stickslip"),
+    // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
+    components(schemas(
+        ProblemDocument, EndEvent, JobEndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
+        profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
+        profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
+        profile::TabulatedProfile, profile::SumProfile
+    )),
+    tags(
+        (name = "simulation", description = "A path from beginning to end, in one call"),
+        (name = "protocols", description = "How to move so that little shear stress remains"),
+        (name = "contacts", description = "Contacts that live on the server and remember"),
+        (name = "jobs", description = "Sweeps that go on after they have been asked for"),
+        (name = "service", description = "Health, and this document")
+    )
+)]
+struct Base;
+
+/// The document before the handlers add themselves.
+pub fn base() -> utoipa::openapi::OpenApi {
+    let mut base = Base::openapi();
+    base.info.description = Some(introduction());
+    base
+}
+
+fn introduction() -> String {
+    format!(
+        "Frictional contact of two elastic bodies, with memory: tangential displacement, force, slip and stress along any \
+         path, exactly. All quantities are in SI units. Positive displacement gives positive force and positive shear stress. \
+         Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC 9457, `{MEDIA_TYPE}`) with a JSON \
+         pointer to each fault. A failed call changes nothing, and a read never does.\n\nLimits: a body has at most {} bytes, \
+         a path {} moves, a stress request {} radii, the memory of a contact {} pieces, a page {} items; the \
+         springs of the spring foundation times moves and stress points are at most {}.",
+        server::BODY,
+        limits::PATH_MOVES.end(),
+        limits::STRESS_POINTS.end(),
+        limits::MEMORY_DEPTH,
+        server::PAGE.end(),
+        limits::SPRING_STEPS,
+    )
+}
+
+/// The document, as `/openapi.json` serves it and `stickslip openapi` prints it.
+pub fn document() -> &'static str {
+    static DOCUMENT: OnceLock<String> = OnceLock::new();
+    DOCUMENT.get_or_init(|| {
+        let mut document = serde_json::to_value(super::described().get_openapi()).unwrap_or_default();
+        write_limits(&mut document);
+        close_choices(&mut document);
+        write_parameters(&mut document);
+        write_refusals(&mut document);
+        write_keys(&mut document);
+        describe::write(&mut document);
+        format!("{document:#}\n")
+    })
+}
+
+/// What a property of a schema is limited to.
+enum Limit {
+    Number(Range),
+    Count(usize, usize),
+    Numbers(usize, usize, Range),
+    Items(usize, usize),
+    Length(usize),
+    Tolerance,
+}
+
+/// The limits, by schema and property. They are written here and not beside the fields, because an attribute takes a
+/// literal alone, and a limit is to be one constant.
+fn limited() -> Vec<(&'static str, &'static str, Limit)> {
+    use Limit::{Count, Items, Length, Number, Numbers, Tolerance};
+    let (moves, radii, points) = (&limits::PATH_MOVES, &limits::STRESS_RADII, &limits::TABLE_POINTS);
+    let mut all = vec![
+        ("SphereProfile", "radius", Number(range::RADIUS)),
+        ("ExactSphereProfile", "radius", Number(range::RADIUS)),
+        ("ConeProfile", "slope", Number(range::SLOPE)),
+        ("PowerLawProfile", "exponent", Number(range::EXPONENT)),
+        ("PowerLawProfile", "coefficient", Number(range::COEFFICIENT)),
+        ("FlatPunchProfile", "radius", Number(range::RADIUS)),
+        ("TruncatedConeProfile", "slope", Number(range::SLOPE)),
+        ("TruncatedConeProfile", "flat_radius", Number(range::FLAT_RADIUS)),
+        ("TruncatedSphereProfile", "radius", Number(range::RADIUS)),
+        ("TruncatedSphereProfile", "flat_radius", Number(range::FLAT_RADIUS)),
+        ("RoundedPunchProfile", "flat_radius", Number(range::FLAT_RADIUS)),
+        ("RoundedPunchProfile", "edge_radius", Number(range::EDGE_RADIUS)),
+        ("RoundedConeProfile", "slope", Number(range::SLOPE)),
+        ("RoundedConeProfile", "tip_radius", Number(range::TIP_RADIUS)),
+        ("TabulatedProfile", "r", Numbers(*points.start(), *points.end(), range::TABLE_RADIUS)),
+        ("TabulatedProfile", "z", Numbers(*points.start(), *points.end(), range::TABLE_HEIGHT)),
+        ("SumProfile", "parts", Items(*limits::SUM_PARTS.start(), *limits::SUM_PARTS.end())),
+        ("EqualPeaks", "reversals", Count(*limits::REVERSALS.start(), *limits::REVERSALS.end())),
+        ("EqualPeaks", "cutoff_radius", Number(range::CONTACT_RADIUS)),
+        ("ElasticBody", "youngs_modulus", Number(range::YOUNGS_MODULUS)),
+        ("ElasticBody", "poisson_ratio", Number(range::POISSON_RATIO)),
+        ("Effective", "e_star", Number(range::E_STAR)),
+        ("Effective", "g_star", Number(range::G_STAR)),
+        ("ContactDefinition", "friction", Number(range::FRICTION)),
+        ("CreateRequest", "friction", Number(range::FRICTION)),
+        ("CreateRequest", "label", Length(limits::LABEL_LENGTH)),
+        ("ForkRequest", "label", Length(limits::LABEL_LENGTH)),
+        ("Preload", "normal_force", Number(range::NORMAL_FORCE)),
+        ("Preload", "indentation", Number(range::PRELOAD_INDENTATION)),
+        ("Preload", "contact_radius", Number(range::CONTACT_RADIUS)),
+        ("Material", "bodies", Items(2, 2)),
+        ("Path", "moves", Items(*moves.start(), *moves.end())),
+        ("Path", "displacement", Numbers(*moves.start(), *moves.end(), range::DISPLACEMENT)),
+        ("Path", "force", Numbers(*moves.start(), *moves.end(), range::FORCE)),
+        ("FallingAmplitude", "reversals", Count(*limits::REVERSALS.start(), *limits::REVERSALS.end())),
+        ("FallingAmplitude", "amplitude", Number(range::DISPLACEMENT)),
+        ("StressRequest", "points", Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end())),
+        ("StressRequest", "radii", Numbers(*radii.start(), *radii.end(), range::CONTACT_RADIUS)),
+        ("SweepRequest", "axes", Items(*limits::SWEEP_AXES.start(), *limits::SWEEP_AXES.end())),
+        ("SweepRequest", "outputs", Items(*limits::SWEEP_OUTPUTS.start(), *limits::SWEEP_OUTPUTS.end())),
+        ("Axis", "values", Numbers(*limits::AXIS_VALUES.start(), *limits::AXIS_VALUES.end(), limits::AXIS_NUMBER)),
+        ("Span", "from", Number(limits::AXIS_NUMBER)),
+        ("Span", "to", Number(limits::AXIS_NUMBER)),
+        ("Span", "count", Count(*limits::AXIS_COUNT.start(), *limits::AXIS_COUNT.end())),
+        ("Springs", "count", Count(range::SPRING_COUNT.min as usize, range::SPRING_COUNT.max as usize)),
+    ];
+    all.push(("AccuracyRequest", "solvers", Items(*limits::SOLVERS.start(), *limits::SOLVERS.end())));
+    let reversals = &limits::PROTOCOL_REVERSALS;
+    for schema in ["ProtocolRequest", "RelaxRequest"] {
+        all.push((schema, "reversals", Count(*reversals.start(), *reversals.end())));
+        all.push((schema, "target", Number(limits::TARGET)));
+    }
+    all.push(("ProtocolStart", "displacement", Number(range::DISPLACEMENT)));
+    all.push(("Robustness", "amplitude_error", Number(limits::AMPLITUDE_ERROR)));
+    all.push(("Robustness", "friction_error", Number(limits::FRICTION_ERROR)));
+    all.push(("Robustness", "samples", Count(*limits::SAMPLES.start(), *limits::SAMPLES.end())));
+    all.push(("Robustness", "seed", Count(0, *limits::SEED.end() as usize)));
+    for schema in ["SimulateRequest", "AccuracyRequest", "MoveRequest", "PathRequest"] {
+        all.push((schema, "tolerance", Tolerance));
+    }
+    for schema in ["Move", "MoveRequest"] {
+        all.push((schema, "displacement", Number(range::DISPLACEMENT)));
+        all.push((schema, "force", Number(range::FORCE)));
+        all.push((schema, "indentation", Number(range::INDENTATION)));
+        // The wider range: as an increment it may be negative.
+        all.push((schema, "normal_force", Number(range::FORCE)));
+    }
+    all
+}
+
+fn write_limits(document: &mut Value) {
+    for (schema, property, limit) in limited() {
+        if let Some(schema) = document.pointer_mut(&format!("/components/schemas/{schema}")) {
+            visit_property(schema, property, &|node| write_limit(node, &limit));
+        }
+    }
+}
+
+/// Calls `visit` on every property of this name, however deep the schema hides it in alternatives.
+fn visit_property(node: &mut Value, property: &str, visit: &dyn Fn(&mut Map<String, Value>)) {
+    match node {
+        Value::Object(members) => {
+            if let Some(Value::Object(found)) = members.get_mut("properties").and_then(|all| all.get_mut(property)) {
+                visit(found);
+            }
+            members.values_mut().for_each(|member| visit_property(member, property, visit));
+        }
+        Value::Array(elements) => elements.iter_mut().for_each(|element| visit_property(element, property, visit)),
+        _ => {}
+    }
+}
+
+fn write_limit(node: &mut Map<String, Value>, limit: &Limit) {
+    let mut set = |name: &str, value: Value| node.insert(name.to_owned(), value);
+    match limit {
+        Limit::Number(range) => {
+            set("minimum", json!(range.min));
+            set("maximum", json!(range.max));
+        }
+        Limit::Count(least, most) => {
+            set("minimum", json!(least));
+            set("maximum", json!(most));
+        }
+        Limit::Items(least, most) => {
+            set("minItems", json!(least));
+            set("maxItems", json!(most));
+        }
+        Limit::Numbers(least, most, range) => {
+            set("minItems", json!(least));
+            set("maxItems", json!(most));
+            if let Some(Value::Object(items)) = node.get_mut("items") {
+                write_limit(items, &Limit::Number(*range));
+            }
+        }
+        Limit::Length(most) => {
+            set("maxLength", json!(most));
+        }
+        Limit::Tolerance => {
+            set("minimum", json!(limits::TOLERANCE.start()));
+            set("maximum", json!(limits::TOLERANCE.end()));
+            set("default", json!(DEFAULT_TOLERANCE));
+        }
+    }
+}
+
+/// A choice with one key takes no second one.
+fn close_choices(document: &mut Value) {
+    let Some(Value::Object(schemas)) = document.pointer_mut("/components/schemas") else {
+        return;
+    };
+    for alternative in schemas.values_mut().filter_map(|schema| schema.get_mut("oneOf")?.as_array_mut()).flatten() {
+        if alternative["type"] == "object" {
+            alternative["additionalProperties"] = json!(false);
+        } else if alternative["allOf"].is_array() {
+            // What stands in its parts counts too.
+            alternative["unevaluatedProperties"] = json!(false);
+        }
+    }
+}
+
+/// The limits of what stands outside the body.
+fn write_parameters(document: &mut Value) {
+    let Some(Value::Object(paths)) = document.get_mut("paths") else {
+        return;
+    };
+    let operations = paths.values_mut().filter_map(Value::as_object_mut).flat_map(Map::values_mut);
+    for operation in operations {
+        for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
+            let limit = match parameter["name"].as_str() {
+                Some("limit") => Limit::Count(*server::PAGE.start(), *server::PAGE.end()),
+                Some("points_per_move") => Limit::Count(*limits::LOOP_POINTS.start(), *limits::LOOP_POINTS.end()),
+                Some("points") => Limit::Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end()),
+                Some("Idempotency-Key") => Limit::Length(server::KEY_LENGTH),
+                _ => continue,
+            };
+            let page = parameter["name"] == "limit";
+            if let Some(schema) = parameter["schema"].as_object_mut() {
+                write_limit(schema, &limit);
+                if page {
+                    schema.insert("default".to_owned(), json!(server::DEFAULT_PAGE));
+                }
+            }
+        }
+        // A fork needs no body.
+        if operation["operationId"] == "fork" {
+            operation["requestBody"]["required"] = json!(false);
+        }
+    }
+}
+
+/// Which key an operation needs, where the server has keys at all.
+fn write_keys(document: &mut Value) {
+    let roles = Role::ALL.map(|role| format!("`{}`", role.name())).join(", ");
+    document["components"]["securitySchemes"] = json!({"key": {
+        "type": "http", "scheme": "bearer",
+        "description": format!("A key of the server, where it has keys. Each has one role or several out of {roles}; the first \
+            includes the second. A key shows the contacts of its tenant alone."),
+    }});
+    let Some(Value::Object(paths)) = document.get_mut("paths") else {
+        return;
+    };
+    for (path, operations) in paths {
+        let Value::Object(operations) = operations else { continue };
+        for (method, operation) in operations {
+            let Need::Key(role) = need(&method.to_uppercase(), path) else { continue };
+            operation["security"] = json!([{"key": []}, {}]);
+            let refusals = [
+                ("401", "There is no key with the request, or none that the server knows".to_owned()),
+                ("403", format!("The key does not have the role `{}`", role.name())),
+            ];
+            for (status, description) in refusals {
+                operation["responses"][status] = refusal(&description);
+            }
+        }
+    }
+}
+
+/// A refusal as a response.
+pub(super) fn refusal(description: &str) -> Value {
+    let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
+    json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}})
+}
+
+/// Adds to every operation the refusals that it can meet.
+fn write_refusals(document: &mut Value) {
+    let Some(Value::Object(paths)) = document.get_mut("paths") else {
+        return;
+    };
+    for (path, operations) in paths {
+        let Value::Object(operations) = operations else { continue };
+        for (method, operation) in operations {
+            let job = path.starts_with("/jobs");
+            let changes = ["/move", "/path", "/relax"].iter().any(|end| path.ends_with(end));
+            let changes_contact = changes || (method == "delete" && !job);
+            let defines_contact = ["/simulate", "/accuracy", "/protocols", "/sweep"].contains(&path.as_str());
+            let about_contacts = path.starts_with("/contacts") || defines_contact || job;
+            let refusals = [
+                (method == "post", "400", "The body is not JSON"),
+                (path.contains('{') || path == "/protocols", "404", "There is no such thing"),
+                (path.contains("/{id}") && !job, "410", "The contact was idle for so long that it has expired"),
+                (method == "post", "408", "The body did not arrive in time"),
+                (changes_contact, "409", "The state of the contact forbids this"),
+                (changes_contact, "412", "The contact is not at the sequence given in If-Match"),
+                (path.ends_with("/result"), "409", "The job has not ended, or has failed"),
+                (path == "/sweep", "429", "The tenant has as many jobs as it may; try again after Retry-After"),
+                (method == "post", "413", "The body is too large"),
+                (method == "post", "415", "The body is not declared as application/json"),
+                (about_contacts, "422", "The request is invalid, or the mechanics has no answer to it"),
+                (about_contacts || path == "/readyz", "503", "The server is busy; try again after Retry-After"),
+            ];
+            for (_, status, description) in refusals.into_iter().filter(|(applies, ..)| *applies) {
+                operation["responses"][status] = refusal(description);
+            }
+        }
+    }
+}

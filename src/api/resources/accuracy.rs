@@ -1,0 +1,53 @@
+//! `/accuracy`: a contact and a path in, and out what each solver costs and how wrong it is; nothing is kept.
+
+use axum::extract::State;
+use axum::response::Response;
+
+use crate::simulation::{compare, cost};
+use stickslip_wire::{AccuracyReply, AccuracyRequest};
+
+use crate::api::App;
+use crate::api::extract::Command;
+use crate::api::problem::Problem;
+use crate::api::reply;
+
+/// Compare solvers
+///
+/// Follows a path from the preloaded contact with each of the solvers, and holds the forces along it and the shear stresses at
+/// its end against a reference: the exact solver, refined where moves are curved. So a client sees what a coarser model
+/// would do to its own numbers. A solver that cannot follow the path says so in its row. The springs of all
+/// solvers together, times moves and stress points, have the limit of one simulation. Nothing is kept.
+#[utoipa::path(
+    post, path = "/accuracy", tag = "simulation",
+    request_body(content = AccuracyRequest, examples(
+        ("as it is" = (summary = "A contact and a path, and the usual solvers", value = json!({
+            "contact": {
+                "profile": {"type": "sphere", "radius": 0.01},
+                "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+                "friction": 0.3,
+                "preload": {"normal_force": 10.0}
+            },
+            "path": {"falling_amplitude": {"reversals": 20}}
+        }))),
+        ("own solvers" = (summary = "Two foundations, at radii of one's own", value = json!({
+            "contact": {
+                "profile": {"type": "cone", "slope": 0.05},
+                "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
+                "friction": 0.3,
+                "preload": {"contact_radius": 1e-4}
+            },
+            "path": {"displacement": [1e-7, -1e-7, 0.0]},
+            "stress": {"radii": [2e-5, 5e-5, 8e-5], "fields": ["shear"]},
+            "solvers": ["exact", {"springs": {"count": 200}}, {"springs": {"count": 2000}}]
+        })))
+    )),
+    responses((status = 200, description = "The reference, and a row a solver", body = AccuracyReply))
+)]
+pub async fn accuracy(State(app): State<App>, command: Command<AccuracyRequest>) -> Result<Response, Problem> {
+    let (stop, _guard) = app.pool.deadline();
+    let (comparison, mut held) = (command.body, command.held);
+    held.resize(&app.pool, cost::bytes_of_comparison(&comparison)).await?;
+    let cost = cost::of_comparison(&comparison);
+    let work = move || reply::written(&compare(&comparison, &stop)?);
+    Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
+}

@@ -1,0 +1,96 @@
+//! `/`: the page to look at. Its files are a part of the program, packed when it was built.
+
+use std::sync::LazyLock;
+
+use axum::Router;
+use axum::extract::Path;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
+use axum::response::{IntoResponse as _, Response};
+use axum::routing::get;
+use sha2::{Digest as _, Sha256};
+
+use crate::api::reply;
+use crate::api::resources::meta;
+
+/// Where the files are, below the page itself.
+pub const FOLDER: &str = "/page/{name}";
+
+/// One file of the page.
+struct Asset {
+    name: &'static str,
+    plain: &'static [u8],
+    packed: &'static [u8],
+}
+
+/// All files, as the build script found them.
+const ASSETS: &[Asset] = &include!(concat!(env!("OUT_DIR"), "/page.in"));
+
+/// The beginnings of the hashes of all files, which are those of both forms.
+static HASHES: LazyLock<Vec<String>> = LazyLock::new(|| ASSETS.iter().map(|asset| hash(asset.plain)).collect());
+
+/// The routes of the page.
+pub fn routes() -> Router {
+    Router::new().route("/", get(index)).route(FOLDER, get(file))
+}
+
+async fn index(headers: HeaderMap, uri: Uri) -> Response {
+    named("index.html", &headers, &uri).await
+}
+
+async fn file(Path(name): Path<String>, headers: HeaderMap, uri: Uri) -> Response {
+    named(&name, &headers, &uri).await
+}
+
+async fn named(name: &str, headers: &HeaderMap, uri: &Uri) -> Response {
+    match ASSETS.iter().zip(&*HASHES).find(|(asset, _)| asset.name == name) {
+        Some((asset, hash)) => asset.answer(hash, headers),
+        None => meta::nothing_here(uri.clone()).await.into_response(),
+    }
+}
+
+impl Asset {
+    /// The file, or the word that the client has it already.
+    fn answer(&self, hash: &str, asked: &HeaderMap) -> Response {
+        let (body, coding) = if takes_gzip(asked) { (self.packed, "gzip") } else { (self.plain, "identity") };
+        // The two forms are told apart: a tag stands for bytes.
+        let tag = format!("\"{hash}-{coding}\"");
+        let fresh = reply::is_known(asked, &tag);
+        let mut response = if fresh { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
+        let headers = response.headers_mut();
+        headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
+        // Kept, and asked about each time: after an update no old file meets a new one.
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-cache"));
+        if let Ok(tag) = HeaderValue::from_str(&tag) {
+            headers.insert(header::ETAG, tag);
+        }
+        if !fresh {
+            headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.media_type()));
+            if coding == "gzip" {
+                headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static(coding));
+            }
+        }
+        response
+    }
+
+    fn media_type(&self) -> &'static str {
+        match self.name.rsplit('.').next() {
+            Some("html") => "text/html; charset=utf-8",
+            Some("css") => "text/css; charset=utf-8",
+            Some("svg") => "image/svg+xml",
+            _ => "text/javascript; charset=utf-8",
+        }
+    }
+}
+
+fn takes_gzip(headers: &HeaderMap) -> bool {
+    let values = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
+    values.flat_map(|value| value.split(',')).any(|coding| {
+        let (name, weight) = coding.split_once(';').unwrap_or((coding, "q=1"));
+        let weight = weight.trim().trim_start_matches("q=").parse::<f64>();
+        name.trim().eq_ignore_ascii_case("gzip") && weight.is_ok_and(|weight| weight > 0.0)
+    })
+}
+
+fn hash(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+}

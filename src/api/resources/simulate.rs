@@ -1,0 +1,61 @@
+//! `/simulate`: a contact and a path in, states and stresses out; nothing is kept.
+
+use axum::extract::State;
+use axum::response::Response;
+
+use crate::simulation::{self, cost};
+use stickslip_wire::{SimulateReply, SimulateRequest};
+
+use crate::api::App;
+use crate::api::extract::Command;
+use crate::api::problem::Problem;
+use crate::api::reply;
+
+/// Simulate a path
+///
+/// Follows a path from the preloaded contact and returns the states along it, and the stresses and their extrema at its
+/// end if asked for. Nothing is kept, so that a repeated request simply runs again.
+#[utoipa::path(
+    post, path = "/simulate", tag = "simulation",
+    request_body(content = SimulateRequest, examples(
+        ("to and fro" = (summary = "Falling amplitude, with the stresses that remain", value = json!({
+            "contact": {
+                "profile": {"type": "sphere", "radius": 0.01},
+                "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+                "friction": 0.3,
+                "preload": {"normal_force": 10.0}
+            },
+            "path": {"falling_amplitude": {"reversals": 20}},
+            "stress": {"points": 200}, "residual": true
+        }))),
+        ("by force" = (summary = "A cycle of the tangential force, the last state alone", value = json!({
+            "contact": {
+                "profile": {"type": "sphere", "radius": 0.01},
+                "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
+                "friction": 0.3,
+                "preload": {"indentation": 1e-6}
+            },
+            "path": {"force": [0.5, -0.5, 0.5]}, "steps": "last", "solver": "exact"
+        }))),
+        ("springs" = (summary = "The same contact on the paper's spring foundation", value = json!({
+            "contact": {
+                "profile": {"type": "sphere", "radius": 0.01},
+                "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
+                "friction": 0.3,
+                "preload": {"contact_radius": 1e-4}
+            },
+            "path": {"moves": [{"displacement": 1e-7}, {"indentation": 8e-7, "displacement": 0.0}]},
+            "solver": {"springs": {"count": 1000}}
+        })))
+    )),
+    responses((status = 200, description = "States, and what else was asked for", body = SimulateReply))
+)]
+pub async fn simulate(State(app): State<App>, command: Command<SimulateRequest>) -> Result<Response, Problem> {
+    let (stop, _guard) = app.pool.deadline();
+    let (simulation, mut held) = (command.body, command.held);
+    held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;
+    let cost = cost::of_simulation(&simulation);
+    let room = cost::length_of_simulation(&simulation);
+    let work = move || reply::written_in(room, &simulation::simulate(&simulation, &stop)?);
+    Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
+}

@@ -1,0 +1,25 @@
+//! Files that the process may have open: a connection is one of them.
+
+use rustix::process::{Resource, getrlimit, setrlimit};
+
+use crate::server::limits::SPARE_CONNECTIONS;
+
+/// Files besides connections: the store, the log, the runtime, libraries.
+const OTHERS: usize = 128;
+
+/// Makes room for so many connections, as far as the process may; says how many there is room for.
+#[must_use]
+pub fn room_for(connections: usize) -> usize {
+    let besides = (SPARE_CONNECTIONS + OTHERS) as u64;
+    let wanted = connections as u64 + besides;
+    let mut limit = getrlimit(Resource::Nofile);
+    if limit.current.is_some_and(|current| current < wanted) {
+        let raised = limit.maximum.map_or(wanted, |maximum| maximum.min(wanted));
+        let asked = rustix::process::Rlimit { current: Some(raised), maximum: limit.maximum };
+        if setrlimit(Resource::Nofile, asked).is_ok() {
+            limit.current = Some(raised);
+        }
+    }
+    let room = limit.current.map_or(u64::MAX, |current| current.saturating_sub(besides).max(1));
+    connections.min(usize::try_from(room).unwrap_or(usize::MAX))
+}

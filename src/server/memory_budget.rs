@@ -1,0 +1,30 @@
+//! How much memory the process takes at the most, as it follows from what it is configured to take on.
+
+use crate::admission::Capacity;
+use crate::sessions::STREAMS;
+
+use crate::server::connections::ConnectionLimits;
+use crate::server::limits::SPARE_CONNECTIONS;
+
+const KIB: u64 = 1024;
+
+/// The program, its libraries, its threads, the caches of the store, and what the allocator keeps between them.
+pub const PROGRAM: u64 = 128 * KIB * KIB;
+/// A connection: what it has read and not served, what it has to write, and its task.
+pub const CONNECTION: u64 = 128 * KIB;
+/// A request that is small enough not to be counted among the work.
+pub const REQUEST: u64 = 64 * KIB;
+/// A client that listens to events: a page of the history.
+pub const STREAM: u64 = 64 * KIB;
+
+/// The bound, bytes.
+#[must_use]
+pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64) -> u64 {
+    let requests = (capacity.requests + capacity.queue) as u64;
+    PROGRAM
+        .saturating_add(cache)
+        .saturating_add(capacity.bytes as u64)
+        .saturating_add(CONNECTION.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
+        .saturating_add(REQUEST.saturating_mul(requests))
+        .saturating_add(STREAM * STREAMS as u64)
+}
