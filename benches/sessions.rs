@@ -39,7 +39,7 @@ const DEFINITION: &[u8] = br#"{"profile": {"type": "sphere", "radius": 0.01}, "f
     "preload": {"normal_force": 10.0}, "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}}}"#;
 
 fn sessions(store: &Arc<dyn Store>) -> Sessions {
-    Sessions::new(store.clone(), Pool::of_the_machine(), 0)
+    Sessions::new(store.clone(), Pool::with_defaults(), 0)
 }
 
 /// To and fro at random, the first `turns` of the turning points ever closer together and the rest within them.
@@ -61,7 +61,7 @@ async fn create(sessions: &Sessions) -> Uuid {
 }
 
 async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
-    let sessions = Sessions::new(store.clone(), Pool::of_the_machine(), usize::MAX);
+    let sessions = Sessions::new(store.clone(), Pool::with_defaults(), usize::MAX);
     let id = create(&sessions).await;
     let displacements = displacements(turns);
     let (body, tail) = displacements.split_at(MOVES - TAIL);

@@ -8,35 +8,35 @@ use crate::store::Tenant;
 
 use super::{Hash, Holder, Role, Roles};
 
-/// What every key begins with, so that it can be told from other secrets where it has leaked to.
+/// What every key begins with, so that a leaked key can be recognised.
 const PREFIX: &str = "stickslip_";
 /// Random bytes of a new key.
 const RANDOM: usize = 32;
 /// Characters of the name of a key or tenant.
 const NAME_LENGTH: usize = 64;
 
-/// What is wrong with a file of keys.
+/// An invalid entry of a file of keys.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {why}")]
-pub struct Wrong {
-    /// Its line.
+pub struct InvalidEntry {
+    /// Its line, from 1.
     pub line: usize,
     /// What is wrong with it.
     pub why: String,
 }
 
-/// A key that has just been made.
+/// A newly generated key.
 pub struct NewKey {
-    /// The key, for the one who is to use it. Nobody can find it out again.
+    /// The key, for its user. It cannot be recovered.
     pub key: String,
-    /// The entry that makes it known to a service.
+    /// The entry for the file of keys of a service.
     pub entry: String,
 }
 
-/// Makes a key out of the system's randomness.
+/// Generates a key from the randomness of the system.
 ///
 /// # Errors
-/// Why there is none, in one line.
+/// The reason in one line.
 pub fn new_key(name: &str, roles: &[Role], tenant: &str) -> Result<NewKey, String> {
     let mut random = [0; RANDOM];
     getrandom::fill(&mut random).map_err(|error| format!("the system has no randomness: {error}"))?;
@@ -56,10 +56,10 @@ pub(super) fn parse(entry: &str) -> Result<(Hash, Holder), String> {
         return Err("expected name:roles:tenant:sha256:hash, where the tenant may be empty".to_owned());
     };
     if name.is_empty() || !is_name(name) {
-        return Err(refused("the name of a key"));
+        return Err(invalid_name("the name of a key"));
     }
     if !is_name(tenant) {
-        return Err(refused("the name of a tenant"));
+        return Err(invalid_name("the name of a tenant"));
     }
     let roles: Option<Vec<Role>> = roles.split('+').map(Role::of_name).collect();
     let roles = roles.ok_or("expected roles out of write, read, metrics, with a + between them")?;
@@ -68,7 +68,7 @@ pub(super) fn parse(entry: &str) -> Result<(Hash, Holder), String> {
     Ok((hash, holder))
 }
 
-fn refused(what: &str) -> String {
+fn invalid_name(what: &str) -> String {
     format!("{what} must be at most {NAME_LENGTH} letters, digits, dots, hyphens or underscores")
 }
 

@@ -1,7 +1,7 @@
-//! Who may do what: keys, their roles, and the tenants that they belong to. It knows no HTTP.
+//! Access control: keys, their roles and tenants. It knows no HTTP.
 //!
-//! Of a key only the hash is kept, SHA-256. A slow hash defends passwords, which can be guessed; a key is made of 256 random
-//! bits, which no speed of guessing reaches, and it is hashed for every request.
+//! Only the SHA-256 hash of a key is kept. A slow hash protects passwords, which can be guessed; a key is 256 random bits, which
+//! cannot, and it is hashed for every request.
 
 mod entry;
 mod role;
@@ -14,56 +14,56 @@ use subtle::ConstantTimeEq as _;
 
 use crate::store::Tenant;
 
-pub use entry::{NewKey, Wrong, new_key};
+pub use entry::{InvalidEntry, NewKey, new_key};
 pub use role::{Role, Roles};
 
-/// Characters of a key that a client may present. What is shorter could be guessed, whoever made it.
-const LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
-/// Bytes of a hash by which its key is found.
-const START: usize = 8;
+/// Bytes of a key that a client may present. A shorter one could be guessed.
+const KEY_LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
+/// Bytes of a hash that index its key.
+const PREFIX: usize = 8;
 
 /// SHA-256 of a key.
 type Hash = [u8; 32];
 
-/// Who presents a key.
+/// The holder of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
     /// The name of the key, for the log.
     pub name: Arc<str>,
     /// What it allows.
     pub roles: Roles,
-    /// Whose sessions it shows.
+    /// Whose contacts it shows.
     pub tenant: Tenant,
 }
 
-/// All keys that are known.
+/// All known keys.
 #[derive(Debug, Default)]
 pub struct Keys {
-    // By the start of the hash. The time that a lookup takes tells something about the hash of what was presented at most, and
-    // nobody can choose that bit by bit; the rest is compared in constant time.
-    by_start: HashMap<[u8; START], Vec<(Hash, Holder)>>,
+    // By the prefix of the hash. The time of a lookup can reveal at most a prefix of the hash of the presented key, which a
+    // client cannot choose bit by bit; the rest is compared in constant time.
+    by_prefix: HashMap<[u8; PREFIX], Vec<(Hash, Holder)>>,
 }
 
 impl Keys {
-    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash`, one a line or with commas between them. Roles have a
-    /// `+` between them, the tenant may be empty, and what follows a `#` is for people.
+    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash`, one per line or separated by commas. Roles are joined by
+    /// `+`, the tenant may be empty, and `#` begins a comment.
     ///
     /// # Errors
-    /// [`Wrong`]: which line, and why. It shows nothing of a key.
-    pub fn add(&mut self, text: &str) -> Result<(), Wrong> {
+    /// [`InvalidEntry`] with the line and the reason. It shows nothing of a key.
+    pub fn add(&mut self, text: &str) -> Result<(), InvalidEntry> {
         for (index, line) in text.lines().enumerate() {
-            let said = line.split('#').next().unwrap_or_default();
-            for entry in said.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
-                let wrong = |why: &str| Wrong { line: index + 1, why: why.to_owned() };
+            let content = line.split('#').next().unwrap_or_default();
+            for entry in content.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
+                let wrong = |why: &str| InvalidEntry { line: index + 1, why: why.to_owned() };
                 let (hash, holder) = entry::parse(entry).map_err(|why| wrong(&why))?;
-                let mut known = self.by_start.values().flatten();
+                let mut known = self.by_prefix.values().flatten();
                 if known.any(|(_, other)| other.name == holder.name) {
                     return Err(wrong("there is another key of this name"));
                 }
                 if self.find(&hash).is_some() {
                     return Err(wrong("the same key has two entries"));
                 }
-                self.by_start.entry(start(&hash)).or_default().push((hash, holder));
+                self.by_prefix.entry(prefix(&hash)).or_default().push((hash, holder));
             }
         }
         Ok(())
@@ -72,13 +72,13 @@ impl Keys {
     /// How many there are.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.by_start.values().map(Vec::len).sum()
+        self.by_prefix.values().map(Vec::len).sum()
     }
 
-    /// Who holds the key presented, if it is one.
+    /// The holder of the presented key, if it is known.
     #[must_use]
     pub fn holder(&self, presented: &[u8]) -> Option<&Holder> {
-        if !LENGTH.contains(&presented.len()) {
+        if !KEY_LENGTH.contains(&presented.len()) {
             return None;
         }
         self.find(&Sha256::digest(presented).into())
@@ -86,14 +86,14 @@ impl Keys {
 
     fn find(&self, hash: &Hash) -> Option<&Holder> {
         let same = |known: &Hash| bool::from(known[..].ct_eq(&hash[..]));
-        self.by_start.get(&start(hash))?.iter().find(|(known, _)| same(known)).map(|(_, holder)| holder)
+        self.by_prefix.get(&prefix(hash))?.iter().find(|(known, _)| same(known)).map(|(_, holder)| holder)
     }
 }
 
-fn start(hash: &Hash) -> [u8; START] {
-    let mut start = [0; START];
-    start.copy_from_slice(&hash[..START]);
-    start
+fn prefix(hash: &Hash) -> [u8; PREFIX] {
+    let mut prefix = [0; PREFIX];
+    prefix.copy_from_slice(&hash[..PREFIX]);
+    prefix
 }
 
 #[cfg(test)]
@@ -121,8 +121,8 @@ mod tests {
         let mut other = bench.key.clone();
         other.pop();
         let hash = bench.entry.rsplit(':').next().unwrap();
-        for stranger in ["", "bench", hash, &other, &format!("{}0", bench.key), &"x".repeat(100_000)] {
-            assert_eq!(keys.holder(stranger.as_bytes()), None, "{stranger}");
+        for unknown in ["", "bench", hash, &other, &format!("{}0", bench.key), &"x".repeat(100_000)] {
+            assert_eq!(keys.holder(unknown.as_bytes()), None, "{unknown}");
         }
         assert_ne!(new_key("bench", &[Role::Write], "lab").unwrap().key, bench.key);
     }

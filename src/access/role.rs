@@ -1,11 +1,11 @@
-//! Roles: what a key allows.
+//! Roles of keys.
 
-/// What somebody may do.
+/// What a key allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Make, move, fork and delete sessions; and all that [`Role::Read`] allows.
+    /// Create, move, fork and delete contacts, and all that [`Role::Read`] allows.
     Write,
-    /// Look at sessions, and simulate what is not kept.
+    /// Read contacts, and run simulations that are not stored.
     Read,
     /// Read the metrics of the service, and nothing else.
     Metrics,

@@ -1,4 +1,4 @@
-//! Who gets the solver's threads, the places for requests and the memory, and for how long.
+//! Admission: permits for solver threads, places and memory, time limits and cancellation.
 
 mod pool;
 mod stop;

@@ -1,7 +1,7 @@
-//! What a server has to give, and who gets it: threads for the solver, places for requests, bytes of memory.
+//! The resources of the server and their permits: threads for the solver, places for requests, bytes of memory.
 //!
-//! Whoever asks for what is taken waits for a bounded time, in a queue of bounded length, and is refused then. So what
-//! requests can take of the memory is bounded too, however many come.
+//! A request for what is taken waits for a bounded time in a queue of bounded length, and is then refused. So the memory of
+//! requests is bounded too, however many arrive.
 
 use std::future::Future;
 use std::pin::pin;
@@ -23,28 +23,28 @@ pub type Nanoseconds = u64;
 /// Work estimated below this runs on the thread that serves the connection.
 pub const INLINE: Nanoseconds = 100_000;
 
-/// How long a request waits for what it needs before the server admits that it is overloaded, unless told otherwise.
+/// How long a request waits for what it needs by default before it is refused as overload.
 pub const LONGEST_WAIT: Duration = Duration::from_secs(10);
-/// Bytes of bodies, work and replies that are held at a time unless told otherwise.
+/// Bytes of bodies, work and replies at a time by default.
 pub const BYTES: usize = 512 * 1024 * 1024;
-/// Bytes that one request takes at the most, whatever it asks for: measured, with room to spare.
+/// Bytes that one request takes at most, whatever it asks for: measured, with a margin.
 pub const LARGEST: usize = 256 * 1024 * 1024;
-/// Requests that are worked on at a time unless told otherwise.
+/// Requests that are served at a time by default.
 pub const REQUESTS: usize = 512;
-/// Requests that wait at a time unless told otherwise.
+/// Requests that wait at a time by default.
 pub const QUEUE: usize = 1024;
-/// What takes no more bytes than this is not counted: requests are, and that bounds it well enough.
+/// Reservations up to this are not counted: the number of requests bounds them.
 pub const UNCOUNTED: usize = 16 * 1024;
 
-/// Bytes are counted in units of so many.
+/// Bytes are counted in units of this size.
 const UNIT: usize = 1024;
 
-/// How much there is to give.
+/// The resources of a pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
     /// Threads for the solver.
     pub threads: usize,
-    /// Requests that are worked on at a time.
+    /// Requests that are served at a time.
     pub requests: usize,
     /// Requests that wait for any of this at a time.
     pub queue: usize,
@@ -57,14 +57,14 @@ pub struct Capacity {
 }
 
 impl Default for Capacity {
-    /// As many threads as the machine has cores, so that solvers do not crowd out each other or the server.
+    /// One thread per core, so that solvers slow down neither each other nor the server.
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         Capacity { threads, requests: REQUESTS, queue: QUEUE, wait: LONGEST_WAIT, deadline: LONGEST_WORK, bytes: BYTES }
     }
 }
 
-/// The one place that gives it. Clones are handles on the same.
+/// The permits of the resources. Clones share it.
 #[derive(Clone, Debug)]
 pub struct Pool(Arc<Shared>);
 
@@ -78,15 +78,15 @@ struct Shared {
     meters: Arc<PoolMeters>,
 }
 
-/// A place among the requests that are worked on, until dropped.
+/// A place among the requests that are served, held until dropped.
 #[derive(Debug)]
 pub struct Place(#[expect(dead_code, reason = "held for its drop")] OwnedSemaphorePermit);
 
-/// Bytes that are spoken for, until dropped. None is as good as few.
+/// Reserved bytes, held until dropped; none if they are too few to be counted.
 #[derive(Debug, Default)]
 pub struct Reservation(Option<OwnedSemaphorePermit>);
 
-/// What a pool counts.
+/// The metrics of a pool.
 #[derive(Debug)]
 pub struct PoolMeters {
     /// Its threads.
@@ -103,12 +103,12 @@ pub struct PoolMeters {
     pub work: Histogram,
 }
 
-/// What is taken at present.
+/// The resources in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Taken {
     /// Threads at work.
     pub threads: usize,
-    /// Requests that are worked on.
+    /// Requests that are served.
     pub requests: usize,
     /// Requests that wait.
     pub waiting: usize,
@@ -122,10 +122,10 @@ pub enum PoolError {
     /// Nothing became free in time.
     #[error("the server is busy, and nothing became free in time")]
     Busy,
-    /// As many requests wait as may.
+    /// The queue is full.
     #[error("the server is busy, and as many requests wait as may")]
     QueueFull,
-    /// The work panicked, which is a fault of this program.
+    /// The work panicked, which is a bug of this program.
     #[error("the solver panicked")]
     Panicked,
 }
@@ -139,7 +139,7 @@ impl Reservation {
 }
 
 impl Pool {
-    /// A pool with so much to give; at least one of each.
+    /// A pool with these resources; at least one of each.
     #[must_use]
     pub fn new(capacity: Capacity) -> Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
@@ -153,19 +153,19 @@ impl Pool {
         }))
     }
 
-    /// A pool as wide as the machine.
+    /// A pool with the default resources.
     #[must_use]
-    pub fn of_the_machine() -> Pool {
+    pub fn with_defaults() -> Pool {
         Pool::new(Capacity::default())
     }
 
-    /// What there is to give.
+    /// The resources.
     #[must_use]
     pub fn capacity(&self) -> &Capacity {
         &self.0.capacity
     }
 
-    /// What is taken of it.
+    /// The resources in use.
     #[must_use]
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
@@ -177,34 +177,34 @@ impl Pool {
         }
     }
 
-    /// A flag for work that must be done by the deadline.
+    /// A flag for work that must end within the deadline.
     #[must_use]
     pub fn deadline(&self) -> (Stop, StopOnDrop) {
         Stop::within(self.0.capacity.deadline)
     }
 
-    /// Waits for something, though not for ever, and not in any number.
+    /// Waits for `request` within the bounds of time and of the queue.
     ///
     /// # Errors
-    /// [`PoolError::Busy`] if it did not come in time, [`PoolError::QueueFull`] if too many wait already.
-    pub async fn wait<T>(&self, wish: impl Future<Output = T>) -> Result<T, PoolError> {
-        let mut wish = pin!(wish);
-        if let Poll::Ready(granted) = futures::poll!(wish.as_mut()) {
+    /// [`PoolError::Busy`] if it was not ready in time, [`PoolError::QueueFull`] if too many wait already.
+    pub async fn wait<T>(&self, request: impl Future<Output = T>) -> Result<T, PoolError> {
+        let mut request = pin!(request);
+        if let Poll::Ready(granted) = futures::poll!(request.as_mut()) {
             return Ok(granted);
         }
         let _place = self.0.queue.try_acquire().map_err(|_| PoolError::QueueFull)?;
-        timeout(self.0.capacity.wait, wish).await.map_err(|_| PoolError::Busy)
+        timeout(self.0.capacity.wait, request).await.map_err(|_| PoolError::Busy)
     }
 
     async fn permits(&self, semaphore: &Arc<Semaphore>, number: u32) -> Result<OwnedSemaphorePermit, PoolError> {
         if let Ok(permit) = Arc::clone(semaphore).try_acquire_many_owned(number) {
             return Ok(permit);
         }
-        // The semaphores are never closed, so that their own error cannot come.
+        // The semaphores are never closed, so their own error cannot occur.
         self.wait(Arc::clone(semaphore).acquire_many_owned(number)).await?.map_err(|_| PoolError::Busy)
     }
 
-    /// A place among the requests that are worked on.
+    /// Acquires a place among the requests that are served.
     ///
     /// # Errors
     /// As [`Pool::wait`].
@@ -212,7 +212,7 @@ impl Pool {
         self.permits(&self.0.places, 1).await.map(Place)
     }
 
-    /// So many bytes; [`LARGEST`] or all that there are, if it is more than that.
+    /// Reserves bytes, but at most [`LARGEST`] and all that there are.
     ///
     /// # Errors
     /// As [`Pool::wait`].
@@ -222,10 +222,10 @@ impl Pool {
         Ok(reservation)
     }
 
-    /// Makes a reservation larger or smaller.
+    /// Grows or shrinks a reservation.
     ///
     /// # Errors
-    /// As [`Pool::wait`]; it is as large as before then.
+    /// As [`Pool::wait`]; the reservation is unchanged then.
     pub async fn resize(&self, reservation: &mut Reservation, bytes: usize) -> Result<(), PoolError> {
         if bytes <= UNCOUNTED {
             reservation.0 = None;
@@ -246,14 +246,14 @@ impl Pool {
         Ok(())
     }
 
-    /// What it has counted.
+    /// The metrics.
     #[must_use]
     pub fn meters(&self) -> &PoolMeters {
         &self.0.meters
     }
 
-    /// Does work on as many threads as are free, one at least: it is told how many they are, and is to be short, as it may have
-    /// taken all of them.
+    /// Runs `work` with all threads that are free, at least one. It is given their number and must be short, as it may hold all
+    /// threads.
     ///
     /// # Errors
     /// As [`Pool::run`].
@@ -273,7 +273,8 @@ impl Pool {
         task.await.map_err(|_| PoolError::Panicked)
     }
 
-    /// Does the work: at once if it is cheap, else on a thread of its own. What costs nothing is not counted.
+    /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool. Work of cost zero is
+    /// not counted.
     ///
     /// # Errors
     /// As [`Pool::wait`], or [`PoolError::Panicked`] if the work did.
@@ -335,7 +336,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn whoever_comes_too_many_waits_and_is_refused() {
+    async fn requests_beyond_the_capacity_wait_and_are_refused() {
         let pool = small();
         let places = (pool.enter().await.unwrap(), pool.enter().await.unwrap());
         let (second, third) = tokio::join!(pool.enter(), pool.enter());
@@ -346,7 +347,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn bytes_are_given_once() {
+    async fn bytes_are_reserved_once() {
         let pool = small();
         let mut first = pool.reserve(80 * UNIT).await.unwrap();
         let second = pool.reserve(90 * UNIT).await.unwrap();
@@ -357,7 +358,7 @@ mod tests {
         assert_eq!(pool.resize(&mut first, 60 * UNIT).await.unwrap_err(), PoolError::Busy);
         assert_eq!(pool.taken().bytes, 180 * UNIT);
         drop((first, second, third));
-        // Whoever asks for more than there is gets all of it, alone.
+        // A request for more than there is gets everything, alone.
         let all = pool.reserve(1_000 * UNIT).await.unwrap();
         assert_eq!(pool.taken().bytes, 200 * UNIT);
         drop(all);

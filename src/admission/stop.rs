@@ -1,10 +1,10 @@
-//! Telling work on another thread that nobody waits for it any longer, or that it has had its time.
+//! Cancellation and time limits of work on another thread.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-/// How long a server computes for one request unless it is told otherwise.
+/// How long the solver works for one request by default.
 pub const LONGEST_WORK: Duration = Duration::from_secs(60);
 
 /// Why work was broken off.
@@ -18,7 +18,7 @@ pub enum Interrupted {
     TimeLimit(Duration),
 }
 
-/// What a long loop looks at. Work on the blocking pool outlives the handler that asked for it; this ends it.
+/// A flag that long loops check. Work on the blocking pool outlives the handler that asked for it; the flag ends it.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<Flag>);
 
@@ -26,10 +26,10 @@ pub struct Stop(Arc<Flag>);
 struct Flag {
     raised: AtomicBool,
     allowed: Option<Duration>,
-    // Goes up with this one as well.
-    whole: Option<Stop>,
-    // The first look at the flag: what a request has waited for a thread is not held against it.
-    begun: OnceLock<Instant>,
+    // Raising the parent raises this flag too.
+    parent: Option<Stop>,
+    // Set by the first check: the time that a request has waited for a thread does not count.
+    started: OnceLock<Instant>,
 }
 
 /// Raises the flag when dropped: held by a handler, it does so when the client hangs up.
@@ -43,47 +43,46 @@ impl Stop {
         Stop::within(LONGEST_WORK)
     }
 
-    /// A flag that goes up when the guard is dropped, or by itself when the work has taken so long. The default one never
-    /// does.
+    /// A flag that is raised when the guard is dropped, or after the work has taken `allowed`. The default flag is never raised.
     #[must_use]
     pub fn within(allowed: Duration) -> (Stop, StopOnDrop) {
         let stop = Stop(Arc::new(Flag { allowed: Some(allowed), ..Flag::default() }));
         (stop.clone(), StopOnDrop(stop))
     }
 
-    /// A flag that goes up when the guard is dropped, and not before.
+    /// A flag that is raised when the guard is dropped, and not before.
     #[must_use]
     pub fn unbounded() -> (Stop, StopOnDrop) {
         let stop = Stop::default();
         (stop.clone(), StopOnDrop(stop))
     }
 
-    /// A flag for a part of the work: it goes up with this one, or when the part has taken so long.
+    /// A flag for a part of the work: it is raised with this one, or after the part has taken `allowed`.
     #[must_use]
     pub fn child_deadline(&self, allowed: Duration) -> Stop {
-        Stop(Arc::new(Flag { allowed: Some(allowed), whole: Some(self.clone()), ..Flag::default() }))
+        Stop(Arc::new(Flag { allowed: Some(allowed), parent: Some(self.clone()), ..Flag::default() }))
     }
 
-    /// How long the work may take, if there is a bound.
+    /// The time limit of the work, if it has one.
     #[must_use]
     pub fn time_limit(&self) -> Option<Duration> {
         self.0.allowed
     }
 
-    /// Ends the work if the flag is up.
+    /// Ends the work if the flag is raised.
     ///
     /// # Errors
-    /// [`Interrupted::Abandoned`] if the guard is gone, [`Interrupted::TimeLimit`] if the time is up.
+    /// [`Interrupted::Abandoned`] if the guard was dropped, [`Interrupted::TimeLimit`] if the time is up.
     pub fn check(&self) -> Result<(), Interrupted> {
-        if let Some(whole) = &self.0.whole {
-            whole.check()?;
+        if let Some(parent) = &self.0.parent {
+            parent.check()?;
         }
-        // Nothing is published through the flag, so that no ordering is needed.
+        // No other memory is published through the flag, so relaxed ordering suffices.
         if self.0.raised.load(Ordering::Relaxed) {
             return Err(Interrupted::Abandoned);
         }
         match self.0.allowed {
-            Some(allowed) if self.0.begun.get_or_init(Instant::now).elapsed() >= allowed => {
+            Some(allowed) if self.0.started.get_or_init(Instant::now).elapsed() >= allowed => {
                 Err(Interrupted::TimeLimit(allowed))
             }
             _ => Ok(()),
@@ -112,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn time_runs_from_the_first_look() {
+    fn the_time_limit_runs_from_the_first_check() {
         let allowed = Duration::from_millis(20);
         let (stop, _guard) = Stop::within(allowed);
         std::thread::sleep(2 * allowed);

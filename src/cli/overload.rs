@@ -7,7 +7,7 @@ use clap::Args;
 use stickslip::admission;
 use stickslip::admission::Capacity;
 use stickslip::server::ConnectionLimits;
-use stickslip::server::connections::MOST;
+use stickslip::server::connections::DEFAULT_CONNECTIONS;
 use stickslip::server::fd_limit::room_for;
 
 /// The times that clients can be given.
@@ -17,10 +17,10 @@ const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
 /// How much the service takes on at a time, and how long it waits: docs/overload.md says what follows from it.
 #[derive(Args)]
 pub struct Overload {
-    /// ConnectionLimits at a time.
-    #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = MOST, value_parser = at_least_one)]
+    /// Connections at a time.
+    #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = DEFAULT_CONNECTIONS, value_parser = at_least_one)]
     max_connections: usize,
-    /// ConnectionLimits of one client address at a time; left out, half of all. Behind a proxy all clients have one address.
+    /// Connections of one client address at a time; left out, half of all. Behind a proxy all clients have one address.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
     /// Requests worked on at a time; more wait.

@@ -1,21 +1,21 @@
-//! What the server takes of connections and their bytes.
+//! Limits of connections and of the bytes on them.
 
 use std::time::Duration;
 
-/// How long open connections may take to finish once the server has been told to stop.
+/// How long open connections may take to finish when the server stops.
 pub const GRACE: Duration = Duration::from_secs(3);
 /// Bytes of the head of a request: its first line and its headers.
 pub const HEAD: usize = 32 * 1024;
-/// Bytes that a connection reads ahead, and as many that it has to write.
+/// Bytes that a connection reads ahead, and bytes that it buffers for writing.
 pub const BUFFER: usize = 40 * 1024;
-/// Bytes of a reply that are handed on at a time.
+/// Bytes of a reply that are handed to the socket at a time.
 pub const PIECE: usize = 16 * 1024;
 /// ConnectionLimits beyond all others, for a short time each: to be asked whether the server is well, and to refuse the rest
 /// with a document rather than a closed limiter.
 pub const SPARE_CONNECTIONS: usize = 128;
-/// How long such a connection has for the head of its request.
+/// How long a spare connection has for the head of its request.
 pub const SPARE_TIME: Duration = Duration::from_secs(2);
-/// A connection that has been waiting for its client for less than this is not closed to make room for another.
-pub const SHORTEST_VISIT: Duration = Duration::from_secs(1);
-/// Bytes that a client must take of a reply within the time for a stall, as a sign of life.
-pub const PROGRESS: usize = 64 * 1024;
+/// A connection that has waited for its client for less than this is not closed to make room for another.
+pub const LEAST_WAIT: Duration = Duration::from_secs(1);
+/// Bytes that a client must read of a reply within the time for a stall, else it counts as stalled.
+pub const LEAST_PROGRESS: usize = 64 * 1024;

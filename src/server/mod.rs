@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
-use hyper_util::rt::TokioIo;
+use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
@@ -24,10 +24,10 @@ use limits::{BUFFER, GRACE, HEAD, SPARE_TIME};
 
 pub use connections::{ConnectionLimiter, ConnectionLimits, Service};
 
-/// How long accepting rests after a failure: most often there are too many open files.
+/// How long to wait after a failure to accept a connection, most often because too many files are open.
 const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
-/// How often the log may say that connections are refused.
-const QUIET: Duration = Duration::from_secs(1);
+/// The least time between two log lines about refused connections.
+const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Serves on `listener` the connections that `limiter` admits, until `stop` is done. Then `end_streams` is called, and other
 /// requests may finish within [`GRACE`]; connections that are still open after that are closed, and their work stopped.
@@ -42,36 +42,42 @@ pub async fn serve(
     end_streams: impl FnOnce(),
 ) -> io::Result<()> {
     let service = Arc::new(service);
-    // Every connection holds a receiver, and is told by it, and counted.
+    // Every connection holds a receiver: it is notified by it, and counted.
     let (closing, _) = watch::channel(());
     let mut stop = pin!(stop);
-    let (mut told, mut told_at) = (ConnectionCounts::default(), None::<Instant>);
+    let (mut logged, mut logged_at) = (ConnectionCounts::default(), None::<Instant>);
     loop {
         let accepted = tokio::select! {
             accepted = listener.accept() => accepted,
             () = &mut stop => break,
         };
         match accepted {
-            Ok((stream, address)) => receive(&limiter, stream, address, &service, &closing),
-            Err(error) if is_of_the_client(&error) => {}
+            Ok((stream, address)) => accept(&limiter, stream, address, &service, &closing),
+            Err(error) if is_client_fault(&error) => {}
             Err(error) => {
                 tracing::warn!(%error, "no connection can be accepted; another attempt follows");
                 sleep(ACCEPT_RETRY_DELAY).await;
             }
         }
         let counts = limiter.counts();
-        if (counts.refused, counts.closed) != (told.refused, told.closed)
-            && told_at.is_none_or(|last| last.elapsed() >= QUIET)
+        if (counts.refused, counts.closed) != (logged.refused, logged.closed)
+            && logged_at.is_none_or(|last| last.elapsed() >= LOG_INTERVAL)
         {
             let ConnectionCounts { open, spare, refused, closed } = counts;
-            tracing::warn!(open, spare, refused, closed, "more clients than connections: some are refused or closed");
-            (told, told_at) = (counts, Some(Instant::now()));
+            tracing::warn!(
+                open,
+                spare,
+                refused,
+                closed,
+                "all connections are taken: some clients are refused or closed"
+            );
+            (logged, logged_at) = (counts, Some(Instant::now()));
         }
     }
     tracing::info!(grace_ms = GRACE.as_millis() as u64, "stopping");
     drop(listener);
     end_streams();
-    // Fails if nobody is connected.
+    // Fails if there is no connection.
     let _ = closing.send(());
     if timeout(GRACE, closing.closed()).await.is_err() {
         tracing::warn!("connections were still open and have been closed");
@@ -80,13 +86,13 @@ pub async fn serve(
     Ok(())
 }
 
-/// Whether a client has gone before it was let in, which is no fault of the server.
-fn is_of_the_client(error: &io::Error) -> bool {
+/// Whether the client closed the connection before it was accepted.
+fn is_client_fault(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
     matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset)
 }
 
-fn receive(
+fn accept(
     limiter: &ConnectionLimiter,
     stream: TcpStream,
     address: SocketAddr,
@@ -94,23 +100,23 @@ fn receive(
     closing: &watch::Sender<()>,
 ) {
     let permit = match limiter.admit(address.ip()) {
-        Admission::ConnectionPermit(permit) | Admission::Spare(permit) => permit,
+        Admission::Admitted(permit) | Admission::Spare(permit) => permit,
         // Closed at once.
         Admission::Refused => return,
     };
-    // Replies are short and whole: waiting to fill a packet would only delay them.
+    // Replies are short and written at once: waiting to fill a packet would only delay them.
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!(%error, "TCP_NODELAY was refused");
     }
     let limits = *limiter.limits();
     let limits = if permit.is_spare() { ConnectionLimits { head: SPARE_TIME, ..limits } } else { limits };
     let number = permit.number();
-    let task = tokio::spawn(attend(stream, permit, limits, Arc::clone(service), closing.subscribe()));
+    let task = tokio::spawn(serve_connection(stream, permit, limits, Arc::clone(service), closing.subscribe()));
     limiter.started(number, task.abort_handle());
 }
 
 /// Serves a connection to its end.
-async fn attend(
+async fn serve_connection(
     stream: TcpStream,
     permit: ConnectionPermit,
     limits: ConnectionLimits,
@@ -121,10 +127,11 @@ async fn attend(
     let stream = TokioIo::new(Socket::new(stream, Arc::clone(&activity)));
     let answer = service_fn(|request| Arc::clone(&service).serve(Arc::clone(&activity), spare, request));
     let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(limits.idle);
     http.keep_alive(!spare).max_header_size(HEAD).max_buf_size(BUFFER);
     let mut connection = pin!(http.serve_connection(stream, answer));
-    let mut alarm = pin!(sleep(limits.shortest()));
-    let mut told = false;
+    let mut check = pin!(sleep(limits.shortest()));
+    let mut shutting_down = false;
     loop {
         tokio::select! {
             biased;
@@ -134,12 +141,12 @@ async fn attend(
                 }
                 break;
             }
-            _ = closing.changed(), if !told => {
-                told = true;
+            _ = closing.changed(), if !shutting_down => {
+                shutting_down = true;
                 connection.as_mut().graceful_shutdown();
             }
-            () = alarm.as_mut() => match activity.next_look(&limits) {
-                Some(then) => alarm.set(sleep_until(then)),
+            () = check.as_mut() => match activity.next_check(&limits) {
+                Some(then) => check.set(sleep_until(then)),
                 None => {
                     tracing::debug!("a client has taken too long, and its connection is closed");
                     break;

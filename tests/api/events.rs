@@ -182,7 +182,7 @@ async fn a_fault_in_last_event_id_is_named() {
 
 #[tokio::test]
 async fn there_are_so_many_listeners_and_no_more() {
-    let pool = Pool::of_the_machine();
+    let pool = Pool::with_defaults();
     let sessions = Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY);
     let server = Server::over(sessions.clone(), pool).await;
     let id = server.client.create(&create(), &Options::default()).await.unwrap().id;

@@ -37,7 +37,7 @@ impl Server {
 
     /// A server over a store, with so many bytes of states at hand.
     pub async fn with(store: Arc<dyn Store>, capacity: usize) -> Server {
-        let pool = Pool::of_the_machine();
+        let pool = Pool::with_defaults();
         let jobs = Jobs::new(Arc::clone(&store), pool.clone());
         let sessions = Sessions::new(store, pool.clone(), capacity);
         Server::of(sessions, jobs, pool).await

@@ -151,7 +151,7 @@ fn table(points: usize) -> CreateRequest {
 async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() {
     let budget = 150_000;
     let store = Arc::new(MemoryStore::new());
-    let pool = Pool::of_the_machine();
+    let pool = Pool::with_defaults();
     let sessions = Sessions::new(store.clone(), pool.clone(), budget);
     let server = Server::over(sessions.clone(), pool).await;
     let (client, options) = (&server.client, Options::default());
@@ -187,7 +187,7 @@ async fn a_tiny_cache_under_load_stays_within_its_bytes_and_changes_no_result() 
 #[tokio::test]
 async fn what_is_not_touched_and_what_does_not_exist_takes_no_room() {
     let store = Arc::new(MemoryStore::new());
-    let pool = Pool::of_the_machine();
+    let pool = Pool::with_defaults();
     let (client, options) = {
         let server = Server::with(store.clone(), NO_CACHE).await;
         (server.client, Options::default())
@@ -223,7 +223,7 @@ async fn what_is_not_touched_and_what_does_not_exist_takes_no_room() {
 #[tokio::test]
 async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_hand() {
     let store = Arc::new(MemoryStore::new());
-    let pool = Pool::of_the_machine();
+    let pool = Pool::with_defaults();
     let sessions = Sessions::new(store, pool.clone(), 1 << 20);
     let server = Server::over(sessions.clone(), pool).await;
     let (client, options) = (&server.client, Options::default());

@@ -1,4 +1,4 @@
-//! What a connection is doing, and since when.
+//! What a connection is doing and since when, as its timers and the connection limiter need it.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,7 +7,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::ConnectionLimits;
-use crate::server::limits::PROGRESS;
+use crate::server::limits::LEAST_PROGRESS;
 
 /// What a connection is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,44 +18,44 @@ enum Phase {
     Idle,
     /// A request is under way, or its reply.
     Busy,
-    /// It has to make room for another.
+    /// It is being closed to free its place for another.
     Closing,
 }
 
-/// Noted by the socket and the service of a connection, and looked at by its alarm and by whoever needs room. Nothing is
-/// published through it, so that no ordering is needed.
+/// Written by the socket and the service of a connection, read by its timer and by the limiter. No other memory is published
+/// through it, so relaxed ordering suffices.
 #[derive(Debug)]
 pub struct ConnectionActivity {
     opened: Instant,
     /// The phase in the lowest two bits, the milliseconds after `opened` at which it began in the others.
     state: AtomicU64,
-    /// Milliseconds after `opened` since when the client has been taking nothing, plus one; nought if it is taking.
-    stalled: AtomicU64,
-    /// What it has taken since then all the same.
-    taken: AtomicU64,
+    /// Milliseconds after `opened` at which writing to the client began to block, plus one; zero if it does not block.
+    blocked_since: AtomicU64,
+    /// Bytes written since then.
+    written: AtomicU64,
     fault: OnceLock<&'static str>,
 }
 
-/// What something that has been read belongs to.
+/// What received bytes belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum Received {
     /// The beginning of a head.
-    First,
-    /// The rest of it.
-    More,
-    /// A request that is being served already.
+    HeadStart,
+    /// The rest of a head.
+    HeadRest,
+    /// A request that is already being served.
     Body,
 }
 
 impl ConnectionActivity {
-    /// Of a connection that has just been opened.
+    /// The activity of a connection that has just been opened.
     pub fn new() -> ConnectionActivity {
         let state = AtomicU64::new(packed(Phase::Head, 0));
-        let (stalled, taken) = (AtomicU64::new(0), AtomicU64::new(0));
-        ConnectionActivity { opened: Instant::now(), state, stalled, taken, fault: OnceLock::new() }
+        let (blocked_since, written) = (AtomicU64::new(0), AtomicU64::new(0));
+        ConnectionActivity { opened: Instant::now(), state, blocked_since, written, fault: OnceLock::new() }
     }
 
-    fn now(&self) -> u64 {
+    fn elapsed_ms(&self) -> u64 {
         self.opened.elapsed().as_millis() as u64
     }
 
@@ -63,90 +63,91 @@ impl ConnectionActivity {
         unpacked(self.state.load(Ordering::Relaxed))
     }
 
-    /// Something has been read; says what it belongs to.
-    pub fn heard(&self) -> Heard {
+    /// Records that bytes were received, and returns what they belong to.
+    pub fn received(&self) -> Received {
         let state = self.state.load(Ordering::Relaxed);
         match unpacked(state).0 {
             Phase::Idle => {
-                let heard = packed(Phase::Head, self.now());
+                let head = packed(Phase::Head, self.elapsed_ms());
                 // Unless it is being closed.
-                let _ = self.state.compare_exchange(state, heard, Ordering::Relaxed, Ordering::Relaxed);
-                Heard::First
+                let _ = self.state.compare_exchange(state, head, Ordering::Relaxed, Ordering::Relaxed);
+                Received::HeadStart
             }
-            Phase::Head => Heard::More,
-            Phase::Busy | Phase::Closing => Heard::Body,
+            Phase::Head => Received::HeadRest,
+            Phase::Busy | Phase::Closing => Received::Body,
         }
     }
 
-    /// The head that is coming is not to be served.
-    pub fn object(&self, fault: &'static str) {
+    /// Marks the head that is being received as one that must not be served.
+    pub fn reject_head(&self, fault: &'static str) {
         // The first fault is as good as any.
         let _ = self.fault.set(fault);
     }
 
-    /// Why the head that has come is not to be served. There is no other on this connection then.
-    pub fn fault(&self) -> Option<&'static str> {
+    /// Why the received head must not be served, if so. No other request follows on this connection then.
+    pub fn head_fault(&self) -> Option<&'static str> {
         self.fault.get().copied()
     }
 
-    /// A request is there. False if it is too late for one.
-    pub fn begin(&self) -> bool {
+    /// Records the start of a request. False if the connection is being closed already.
+    pub fn begin_request(&self) -> bool {
         unpacked(self.state.swap(packed(Phase::Busy, 0), Ordering::Relaxed)).0 != Phase::Closing
     }
 
-    /// The reply to it has been handed on.
-    pub fn end(&self) {
-        self.state.store(packed(Phase::Idle, self.now()), Ordering::Relaxed);
+    /// Records that the reply has been handed to the socket.
+    pub fn end_request(&self) {
+        self.state.store(packed(Phase::Idle, self.elapsed_ms()), Ordering::Relaxed);
     }
 
-    /// The client takes nothing.
-    pub fn blocked(&self) {
-        if self.stalled.load(Ordering::Relaxed) == 0 {
-            self.taken.store(0, Ordering::Relaxed);
-            self.stalled.store(self.now() + 1, Ordering::Relaxed);
+    /// Records that a write blocked: the client reads nothing.
+    pub fn write_blocked(&self) {
+        if self.blocked_since.load(Ordering::Relaxed) == 0 {
+            self.written.store(0, Ordering::Relaxed);
+            self.blocked_since.store(self.elapsed_ms() + 1, Ordering::Relaxed);
         }
     }
 
-    /// The client takes something.
-    pub fn took(&self, bytes: usize) {
-        if self.stalled.load(Ordering::Relaxed) != 0 {
-            self.taken.fetch_add(bytes as u64, Ordering::Relaxed);
+    /// Records bytes that the client has accepted.
+    pub fn wrote(&self, bytes: usize) {
+        if self.blocked_since.load(Ordering::Relaxed) != 0 {
+            self.written.fetch_add(bytes as u64, Ordering::Relaxed);
         }
     }
 
-    /// The client has taken everything.
+    /// Records that everything has been written.
     pub fn flushed(&self) {
-        if self.stalled.load(Ordering::Relaxed) != 0 {
-            self.stalled.store(0, Ordering::Relaxed);
+        if self.blocked_since.load(Ordering::Relaxed) != 0 {
+            self.blocked_since.store(0, Ordering::Relaxed);
         }
     }
 
-    /// When to look again; none if the client has kept the server waiting for too long.
-    pub fn next_look(&self, limits: &ConnectionLimits) -> Option<Instant> {
-        let now = self.now();
+    /// When to check the client next; none if it has taken too long. The HTTP library times idle connections itself.
+    pub fn next_check(&self, limits: &ConnectionLimits) -> Option<Instant> {
+        let now = self.elapsed_ms();
         let after = |since: u64, allowed: Duration| since + allowed.as_millis() as u64;
-        // What comes next may have a shorter time.
+        // The next phase may have a shorter limit.
         let soon = after(now, limits.shortest());
-        let stalled = self.stalled.load(Ordering::Relaxed);
-        let due = if stalled != 0 {
-            if now >= after(stalled - 1, limits.stall) && self.taken.swap(0, Ordering::Relaxed) >= PROGRESS as u64 {
-                self.stalled.store(now + 1, Ordering::Relaxed);
+        let blocked = self.blocked_since.load(Ordering::Relaxed);
+        let due = if blocked != 0 {
+            if now >= after(blocked - 1, limits.stall)
+                && self.written.swap(0, Ordering::Relaxed) >= LEAST_PROGRESS as u64
+            {
+                self.blocked_since.store(now + 1, Ordering::Relaxed);
                 after(now, limits.stall)
             } else {
-                after(stalled - 1, limits.stall)
+                after(blocked - 1, limits.stall)
             }
         } else {
             match self.state() {
                 (Phase::Head, since) => after(since, limits.head),
-                (Phase::Idle, since) => after(since, limits.idle),
-                (Phase::Busy, _) => soon,
+                (Phase::Idle | Phase::Busy, _) => soon,
                 (Phase::Closing, _) => 0,
             }
         };
         (due > now).then(|| self.opened + Duration::from_millis(due.min(soon)))
     }
 
-    /// Since when it has been waiting for its client, if it is and no request is under way.
+    /// Since when the connection has waited for its client; none while a request is being served.
     pub fn waiting_since(&self) -> Option<Instant> {
         match self.state() {
             (Phase::Head | Phase::Idle, since) => Some(self.opened + Duration::from_millis(since)),
@@ -154,8 +155,8 @@ impl ConnectionActivity {
         }
     }
 
-    /// Closes it unless a request has come meanwhile; says whether it did.
-    pub fn close(&self) -> bool {
+    /// Marks the connection as closing unless a request has begun meanwhile, and returns whether it did.
+    pub fn try_close(&self) -> bool {
         let state = self.state.load(Ordering::Relaxed);
         matches!(unpacked(state).0, Phase::Head | Phase::Idle)
             && self

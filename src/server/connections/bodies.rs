@@ -1,4 +1,4 @@
-//! Bodies on their way: those of requests are timed, those of replies keep what their request holds until they are sent.
+//! Bodies of requests with a deadline, and bodies of replies that hold the resources of their request until they are sent.
 
 use std::pin::Pin;
 use std::sync::Arc;
@@ -19,18 +19,18 @@ use crate::server::limits::PIECE;
 #[error("the body did not arrive in time")]
 pub struct SlowBody;
 
-/// The body of a request, all of which must arrive within a time.
+/// The body of a request, which must arrive completely within a time limit.
 pub struct DeadlineBody {
     body: Incoming,
     time: Duration,
-    // Most bodies are there with the head, and never need it.
-    alarm: Option<Pin<Box<Sleep>>>,
+    // Created on the first wait: most bodies arrive together with the head.
+    deadline: Option<Pin<Box<Sleep>>>,
 }
 
 impl DeadlineBody {
-    /// The time runs from the first wait.
+    /// The time limit runs from the first wait for data.
     pub fn new(body: Incoming, time: Duration) -> DeadlineBody {
-        DeadlineBody { body, time, alarm: None }
+        DeadlineBody { body, time, deadline: None }
     }
 }
 
@@ -46,8 +46,8 @@ impl http_body::Body for DeadlineBody {
             return Poll::Ready(frame.map(|frame| frame.map_err(Into::into)));
         }
         let time = self.time;
-        let alarm = self.alarm.get_or_insert_with(|| Box::pin(sleep(time)));
-        alarm.as_mut().poll(cx).map(|()| Some(Err(SlowBody.into())))
+        let deadline = self.deadline.get_or_insert_with(|| Box::pin(sleep(time)));
+        deadline.as_mut().poll(cx).map(|()| Some(Err(SlowBody.into())))
     }
 
     fn is_end_stream(&self) -> bool {
@@ -59,34 +59,39 @@ impl http_body::Body for DeadlineBody {
     }
 }
 
-/// Says that the connection is busy, until dropped.
-pub struct Busy(pub Arc<ConnectionActivity>);
+/// Marks the connection as serving a request until dropped.
+pub struct RequestInProgress(pub Arc<ConnectionActivity>);
 
-impl Drop for Busy {
+impl Drop for RequestInProgress {
     fn drop(&mut self) {
-        self.0.end();
+        self.0.end_request();
     }
 }
 
-/// The body of a reply, in pieces of which each has memory of its own: what the request holds is free when the last of
-/// them has been handed on, and no more than that is still on its way then.
+/// The body of a reply, sent in pieces that own their memory: when the last piece has been handed to the socket, the resources
+/// of the request are free, and no more than that piece is still in flight.
 pub struct TrackedBody {
     body: Body,
     rest: Bytes,
-    _busy: Busy,
+    _request: RequestInProgress,
     _place: Option<Place>,
     _memory: Option<Arc<Reservation>>,
 }
 
 impl TrackedBody {
-    /// With what goes when it does.
-    pub fn new(body: Body, busy: Busy, place: Option<Place>, memory: Option<Arc<Reservation>>) -> TrackedBody {
-        // A stream without an end has a bound of its own, and works on nothing.
+    /// A body that releases `request`, `place` and `memory` when it is dropped.
+    pub fn new(
+        body: Body,
+        request: RequestInProgress,
+        place: Option<Place>,
+        memory: Option<Arc<Reservation>>,
+    ) -> TrackedBody {
+        // An endless stream has a limit of its own and occupies no solver.
         let place = place.filter(|_| http_body::Body::size_hint(&body).exact().is_some());
-        TrackedBody { body, rest: Bytes::new(), _busy: busy, _place: place, _memory: memory }
+        TrackedBody { body, rest: Bytes::new(), _request: request, _place: place, _memory: memory }
     }
 
-    fn piece(&mut self) -> Bytes {
+    fn next_piece(&mut self) -> Bytes {
         let piece = self.rest.split_to(self.rest.len().min(PIECE));
         Bytes::copy_from_slice(&piece)
     }
@@ -98,14 +103,14 @@ impl http_body::Body for TrackedBody {
 
     fn poll_frame(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
         if !self.rest.is_empty() {
-            return Poll::Ready(Some(Ok(Frame::data(self.piece()))));
+            return Poll::Ready(Some(Ok(Frame::data(self.next_piece()))));
         }
         let Poll::Ready(frame) = Pin::new(&mut self.body).poll_frame(cx) else { return Poll::Pending };
         let Some(Ok(frame)) = frame else { return Poll::Ready(frame) };
         match frame.into_data() {
             Ok(data) if data.len() > PIECE => {
                 self.rest = data;
-                Poll::Ready(Some(Ok(Frame::data(self.piece()))))
+                Poll::Ready(Some(Ok(Frame::data(self.next_piece()))))
             }
             Ok(data) => Poll::Ready(Some(Ok(Frame::data(data)))),
             Err(frame) => Poll::Ready(Some(Ok(frame))),

@@ -1,4 +1,4 @@
-//! Who is connected.
+//! Admits connections up to the limits, and closes those that wait longest for their clients when all places are taken.
 
 use std::cmp::Reverse;
 use std::collections::HashMap;
@@ -10,14 +10,14 @@ use tokio::task::AbortHandle;
 use tokio::time::Instant;
 
 use super::{ConnectionActivity, ConnectionLimits};
-use crate::server::limits::{SHORTEST_VISIT, SPARE_CONNECTIONS};
+use crate::server::limits::{LEAST_WAIT, SPARE_CONNECTIONS};
 
-/// Room is made for this share of all connections at a time, so that looking for it costs little for each.
-const SHARE: usize = 16;
-/// How long nobody is looked for after nobody was found.
-const PAUSE: Duration = Duration::from_millis(100);
+/// One part in so many of all connections is freed at a time, so that the search costs little for each.
+const FREED_SHARE: usize = 16;
+/// How long a search that found nothing is not repeated.
+const SEARCH_PAUSE: Duration = Duration::from_millis(100);
 
-/// All connections. Clones are handles on the same.
+/// All connections of the server. Clones share it.
 #[derive(Clone, Debug)]
 pub struct ConnectionLimiter {
     limits: ConnectionLimits,
@@ -34,14 +34,14 @@ struct Table {
     spare: usize,
     refused: u64,
     closed: u64,
-    looked_in_vain: Option<Instant>,
+    searched_in_vain: Option<Instant>,
 }
 
 #[derive(Debug)]
 struct Connection {
     client: IpAddr,
     activity: Arc<ConnectionActivity>,
-    // None until its task has been started.
+    // None until its task has started.
     task: Option<AbortHandle>,
 }
 
@@ -58,13 +58,13 @@ pub struct ConnectionCounts {
     pub closed: u64,
 }
 
-/// What somebody who knocks is told.
+/// The decision on a new connection.
 pub enum Admission {
-    /// Come in.
-    ConnectionPermit(ConnectionPermit),
-    /// Only to be told that there is no room, or that the server is well.
+    /// It is served.
+    Admitted(ConnectionPermit),
+    /// It is answered for the health of the server alone; every other request is refused.
     Spare(ConnectionPermit),
-    /// Not even that.
+    /// It is closed at once.
     Refused,
 }
 
@@ -78,7 +78,7 @@ pub struct ConnectionPermit {
 }
 
 impl ConnectionLimiter {
-    /// Nobody is connected yet.
+    /// A limiter without connections.
     #[must_use]
     pub fn new(limits: ConnectionLimits) -> ConnectionLimiter {
         ConnectionLimiter { limits, table: Arc::default() }
@@ -106,12 +106,12 @@ impl ConnectionLimiter {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Somebody has connected from an address.
+    /// Decides on a connection from `address`.
     pub(crate) fn admit(&self, address: IpAddr) -> Admission {
         let (client, activity) = (client(address), Arc::new(ConnectionActivity::new()));
         let mut table = self.table();
         if table.connections.len() >= self.limits.most {
-            table.make_room(self.limits.most.div_ceil(SHARE));
+            table.make_room(self.limits.most.div_ceil(FREED_SHARE));
         }
         let mine = table.clients.get(&client).copied().unwrap_or(0);
         let permit = |number| ConnectionPermit { limiter: self.clone(), number, activity: Arc::clone(&activity) };
@@ -120,7 +120,7 @@ impl ConnectionLimiter {
             table.next += 1;
             table.clients.insert(client, mine + 1);
             table.connections.insert(number, Connection { client, activity: Arc::clone(&activity), task: None });
-            Admission::ConnectionPermit(permit(Some(number)))
+            Admission::Admitted(permit(Some(number)))
         } else if table.spare < SPARE_CONNECTIONS {
             table.spare += 1;
             Admission::Spare(permit(None))
@@ -130,7 +130,7 @@ impl ConnectionLimiter {
         }
     }
 
-    /// The task that serves a connection: what has to be ended to close it.
+    /// Registers the task that serves a connection, which is aborted to close it.
     pub(crate) fn started(&self, number: Option<u64>, task: AbortHandle) {
         let mut table = self.table();
         // It may have ended already.
@@ -148,25 +148,25 @@ impl ConnectionLimiter {
 }
 
 impl Table {
-    /// Closes so many connections at the most that wait for their clients: of those with the most connections first, and
-    /// of these the one that has been waiting longest.
+    /// Closes at most `most` connections that wait for their clients: those of the clients with the most connections first,
+    /// and of these the ones that have waited longest.
     fn make_room(&mut self, most: usize) {
         let now = Instant::now();
-        if self.looked_in_vain.is_some_and(|last| now < last + PAUSE) {
+        if self.searched_in_vain.is_some_and(|last| now < last + SEARCH_PAUSE) {
             return;
         }
         let mut waiting: Vec<_> = self
             .connections
             .iter()
             .filter_map(|(number, connection)| Some((*number, connection.client, connection.activity.waiting_since()?)))
-            .filter(|(.., since)| now.duration_since(*since) >= SHORTEST_VISIT)
+            .filter(|(.., since)| now.duration_since(*since) >= LEAST_WAIT)
             .collect();
         waiting.sort_by_key(|(_, client, since)| (Reverse(self.clients.get(client).copied()), *since));
         let mut found = false;
         for (number, ..) in waiting.into_iter().take(most) {
-            // Its permit is given away now; the task only has to end.
-            if self.connections.get(&number).is_some_and(|connection| connection.activity.close())
-                && let Some(connection) = self.leave(number)
+            // Its place is free from now on; the task only has to end.
+            if self.connections.get(&number).is_some_and(|connection| connection.activity.try_close())
+                && let Some(connection) = self.remove(number)
             {
                 found = true;
                 self.closed += 1;
@@ -175,10 +175,10 @@ impl Table {
                 }
             }
         }
-        self.looked_in_vain = (!found).then_some(now);
+        self.searched_in_vain = (!found).then_some(now);
     }
 
-    fn leave(&mut self, number: u64) -> Option<Connection> {
+    fn remove(&mut self, number: u64) -> Option<Connection> {
         let connection = self.connections.remove(&number)?;
         if let Some(count) = self.clients.get_mut(&connection.client) {
             *count -= 1;
@@ -196,7 +196,7 @@ impl ConnectionPermit {
         self.number.is_none()
     }
 
-    /// Its number, if it may have to make room.
+    /// Its number; none for a spare one, which is never closed to make room.
     pub fn number(&self) -> Option<u64> {
         self.number
     }
@@ -206,13 +206,13 @@ impl Drop for ConnectionPermit {
     fn drop(&mut self) {
         let mut table = self.limiter.table();
         match self.number {
-            Some(number) => drop(table.leave(number)),
+            Some(number) => drop(table.remove(number)),
             None => table.spare -= 1,
         }
     }
 }
 
-/// A client by its address: of the newer addresses it has a whole network.
+/// The client of an address: an IPv6 client owns a whole /64 network.
 fn client(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => {

@@ -1,10 +1,10 @@
-//! ConnectionLimits: who may come in, how long a client may keep the server waiting, and who has to make room.
+//! Connections: how many are admitted, how long a client may take, and which are closed to make room.
 //!
-//! So many connections are open at a time (`limiter.rs`). A client that sends nothing, or takes nothing of a reply, is timed
-//! by what the connection is doing (`activity.rs`), which the socket and the service note as they go. When all are taken, those
-//! that have been waiting longest for their clients are closed to make room, those of the client with the most
-//! connections first; connections that are being served are never closed. Where nobody can go, a few spare connections
-//! still answer for the health of the server, and refuse everything else with a document.
+//! The limiter (`limiter.rs`) admits a bounded number. A client that sends nothing, or reads nothing of a reply, is timed by what
+//! its connection is doing (`activity.rs`), as the socket and the service record it; the HTTP library times idle connections.
+//! When all places are taken, connections that have waited longest for their clients are closed, those of the client with the
+//! most connections first; connections that are being served are never closed. If none can be closed, a few spare
+//! connections still answer for the health of the server, and refuse everything else with a document.
 
 mod activity;
 mod bodies;
@@ -22,8 +22,8 @@ pub use limiter::{ConnectionCounts, ConnectionLimiter};
 pub use service::{Refusal, Service};
 pub(crate) use socket::Socket;
 
-/// ConnectionLimits at a time unless told otherwise.
-pub const MOST: usize = 4096;
+/// Connections at a time by default.
+pub const DEFAULT_CONNECTIONS: usize = 4096;
 
 /// How many connections there are, and how long they may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,17 +43,17 @@ pub struct ConnectionLimits {
 }
 
 impl ConnectionLimits {
-    /// The shortest of the times that are measured by the connection.
+    /// The shortest of the times that [`ConnectionActivity`] measures.
     pub(crate) fn shortest(&self) -> Duration {
-        self.head.min(self.idle).min(self.stall)
+        self.head.min(self.stall)
     }
 }
 
 impl Default for ConnectionLimits {
     fn default() -> Self {
         ConnectionLimits {
-            most: MOST,
-            per_client: MOST / 2,
+            most: DEFAULT_CONNECTIONS,
+            per_client: DEFAULT_CONNECTIONS / 2,
             head: Duration::from_secs(10),
             body: Duration::from_secs(30),
             idle: Duration::from_secs(60),

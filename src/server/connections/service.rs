@@ -1,4 +1,4 @@
-//! What a connection does with a request: a place for it, the router, and a reply that gives the place back.
+//! Serves one request of a connection: acquires a place, calls the router, and returns a reply that releases the place.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,21 +10,21 @@ use hyper::body::Incoming;
 use tower_service::Service as _;
 
 use super::ConnectionActivity;
-use super::bodies::{Busy, DeadlineBody, TrackedBody};
+use super::bodies::{DeadlineBody, RequestInProgress, TrackedBody};
 use crate::admission::{Pool, PoolError, Reservation};
 
 /// Paths that are answered however busy the server is.
-const ALWAYS: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
+const ALWAYS_ANSWERED: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
 
-/// The request came when the connection was being closed to make room.
+/// The request arrived while its connection was being closed to make room.
 #[derive(Debug, thiserror::Error)]
 #[error("closed to make room")]
 pub struct Closed;
 
-/// Why a request does not come as far as a handler.
+/// Why a request is refused before it reaches a handler.
 #[derive(Clone, Copy, Debug)]
 pub enum Refusal {
-    /// There is no room for it.
+    /// The server has no capacity for it.
     Full(PoolError),
     /// Its head can be read in more than one way.
     Ambiguous(&'static str),
@@ -32,38 +32,38 @@ pub enum Refusal {
 
 /// What serves the requests of all connections.
 pub struct Service {
-    /// Everything.
+    /// All routes.
     pub router: Router,
-    /// The answer to what there is no room for.
+    /// Answers refused requests.
     pub refusals: Router,
-    /// Who gives places.
+    /// Where requests get their places.
     pub pool: Pool,
-    /// How long a body may take.
+    /// How long a body may take to arrive.
     pub body_time: Duration,
 }
 
 impl Service {
-    /// Serves a request of a connection; of a spare one, only if it asks whether the server is well.
+    /// Serves a request; on a spare connection only those for the health of the server.
     pub async fn serve(
         self: Arc<Self>,
         activity: Arc<ConnectionActivity>,
         spare: bool,
         request: Request<Incoming>,
     ) -> Result<Response<TrackedBody>, Closed> {
-        if !activity.begin() {
+        if !activity.begin_request() {
             return Err(Closed);
         }
-        let busy = Busy(activity);
+        let in_progress = RequestInProgress(activity);
         let mut request = request.map(|body| Body::new(DeadlineBody::new(body, self.body_time)));
-        let fault = busy.0.fault();
+        let fault = in_progress.0.head_fault();
         let place = if let Some(fault) = fault {
             Err(Refusal::Ambiguous(fault))
-        } else if ALWAYS.contains(&request.uri().path()) {
+        } else if ALWAYS_ANSWERED.contains(&request.uri().path()) {
             Ok(None)
         } else if spare {
             Err(Refusal::Full(PoolError::Busy))
         } else if request.method() == Method::POST {
-            // It takes its place when its body is there.
+            // It acquires its place once its body has arrived.
             Ok(None)
         } else {
             self.pool.enter().await.map(Some).map_err(Refusal::Full)
@@ -80,6 +80,6 @@ impl Service {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
         let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
-        Ok(reply.map(|body| TrackedBody::new(body, busy, place, memory)))
+        Ok(reply.map(|body| TrackedBody::new(body, in_progress, place, memory)))
     }
 }

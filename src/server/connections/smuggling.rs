@@ -1,14 +1,14 @@
-//! Heads that two readers might end in different places, or give different bodies: a proxy and this server, say.
+//! A guard against request smuggling: heads that a proxy and this server might end in different places, or give different bodies.
 //!
-//! The HTTP library takes some that the standard lets it take: lines that end in a line feed alone, a length beside a
-//! transfer coding, the same length twice. This looks at the head as it comes, and has such requests refused.
+//! The HTTP library accepts some that the standard allows: lines that end in a line feed alone, a length beside a transfer
+//! coding, the same length twice. The guard inspects the bytes of a head as they arrive, and such requests are refused.
 
 use memchr::memchr;
 
-/// Bytes of a line that are enough to know the header by.
+/// Bytes of a line that identify the header.
 const NAME: usize = 20;
 
-/// Looks at heads, in whatever pieces they come.
+/// Inspects heads, in whatever pieces they arrive.
 #[derive(Debug, Default)]
 pub struct RequestSmugglingGuard {
     /// The beginning of the line.
@@ -25,7 +25,7 @@ pub struct RequestSmugglingGuard {
 }
 
 impl RequestSmugglingGuard {
-    /// Takes more bytes; what follows the head does not matter. Says what is wrong, if something is.
+    /// Inspects more bytes and returns what is wrong, if anything. Bytes after the head are ignored.
     pub fn inspect(&mut self, bytes: &[u8]) -> Option<&'static str> {
         let mut rest = bytes;
         while !rest.is_empty() && !self.over {
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_read_in_two_ways_is_found() {
+    fn ambiguous_heads_are_found() {
         for head in [
             "GET / HTTP/1.1\nHost: a\n\n",
             "GET / HTTP/1.1\r\nHost: a\n\r\n",
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_clear_is_let_through() {
+    fn unambiguous_heads_pass() {
         for head in [
             "GET / HTTP/1.1\r\nHost: a\r\n\r\n",
             "\r\n\r\nGET / HTTP/1.1\r\nHost: a\r\n\r\n",

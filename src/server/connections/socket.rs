@@ -1,4 +1,4 @@
-//! A TCP stream that notes what the client sends and takes.
+//! A TCP stream that records what the client sends and reads, and inspects the heads of its requests.
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;
@@ -9,7 +9,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
 use super::ConnectionActivity;
-use super::activity::Heard;
+use super::activity::Received;
 use super::smuggling::RequestSmugglingGuard;
 
 /// The stream of a connection.
@@ -21,15 +21,15 @@ pub struct Socket {
 }
 
 impl Socket {
-    /// Of this connection.
+    /// The stream of a connection with this activity.
     pub fn new(stream: TcpStream, activity: Arc<ConnectionActivity>) -> Socket {
         Socket { stream, activity, head: RequestSmugglingGuard::default() }
     }
 
-    fn noted(&self, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
+    fn record(&self, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
         match &written {
-            Poll::Pending => self.activity.blocked(),
-            Poll::Ready(Ok(bytes)) => self.activity.took(*bytes),
+            Poll::Pending => self.activity.write_blocked(),
+            Poll::Ready(Ok(bytes)) => self.activity.wrote(*bytes),
             Poll::Ready(Err(_)) => {}
         }
         written
@@ -41,13 +41,13 @@ impl AsyncRead for Socket {
         let before = buffer.filled().len();
         let read = Pin::new(&mut self.stream).poll_read(cx, buffer);
         if read.is_ready() {
-            match self.activity.heard() {
-                Heard::First => self.head = RequestSmugglingGuard::default(),
-                Heard::More => {}
-                Heard::Body => return read,
+            match self.activity.received() {
+                Received::HeadStart => self.head = RequestSmugglingGuard::default(),
+                Received::HeadRest => {}
+                Received::Body => return read,
             }
             if let Some(fault) = self.head.inspect(&buffer.filled()[before..]) {
-                self.activity.object(fault);
+                self.activity.reject_head(fault);
             }
         }
         read
@@ -57,7 +57,7 @@ impl AsyncRead for Socket {
 impl AsyncWrite for Socket {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.stream).poll_write(cx, bytes);
-        self.noted(written)
+        self.record(written)
     }
 
     fn poll_write_vectored(
@@ -66,7 +66,7 @@ impl AsyncWrite for Socket {
         slices: &[IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.stream).poll_write_vectored(cx, slices);
-        self.noted(written)
+        self.record(written)
     }
 
     fn is_write_vectored(&self) -> bool {
@@ -74,7 +74,7 @@ impl AsyncWrite for Socket {
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        // Asked for once nothing is left to be written.
+        // The HTTP library flushes once nothing is left to write.
         self.activity.flushed();
         Pin::new(&mut self.stream).poll_flush(cx)
     }
