@@ -381,7 +381,7 @@ mod tests {
             range::FRICTION.check(-1.0).unwrap_err(),
             mechanics::Error::BeyondProfile { radius: 2.0, limit: 1.0 },
             mechanics::Error::NotConvexEnough { radius: 1.0 },
-            mechanics::Error::Table { what: "r falls", index: 1 },
+            mechanics::Error::Table { fault: mechanics::TableFault::RadiusNotRising, index: 1 },
             mechanics::Error::ForceExceedsFriction { target: 2.0, limit: 1.0, part: 0.5 },
             mechanics::Error::BrokenOff,
             mechanics::Error::Unsupported { what: "this" },

@@ -171,7 +171,7 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let stress = advance.stress.as_ref().map(|sampling| stresses(&live.contact, sampling, stop)).transpose()?;
     let accuracy = accuracy(&live.contact, timer, REASON);
     let missed = missed(error, tolerance, advance.plan.curved());
-    let warnings = news(&live.session.definition.profile, &live.contact, before, largest, missed);
+    let warnings = news(&live.contact, before, largest, missed);
     let id = live.session.id;
     let states = records.iter().map(|record| record.state);
     let body = match (&advance.plan, advance.steps) {

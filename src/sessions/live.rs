@@ -45,7 +45,7 @@ impl Live {
         let Figures { contact_radius, e_star, indentation, .. } = figures;
         let noise = contact.profile().noise(contact_radius);
         let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
-        let warnings = warnings(&session.definition.profile, &elasticity, &seen);
+        let warnings = warnings(contact.profile(), &elasticity, &seen);
         let about = Arc::new(About { figures, warnings });
         Ok(Live { session, about, contact, beyond: Beyond::default(), shared: false })
     }

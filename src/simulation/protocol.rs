@@ -195,7 +195,7 @@ fn noted(subject: &Subject<'_>) -> Vec<Warning> {
     let noise = contact.profile().noise(contact_radius);
     let seen =
         Seen { contact_radius, e_star: elasticity.e_star(), indentation: contact.indentation(), noise, missed: None };
-    warnings(&subject.definition.profile, &elasticity, &seen)
+    warnings(contact.profile(), &elasticity, &seen)
 }
 
 fn objective(judged: &Judged) -> String {

@@ -97,7 +97,7 @@ fn run<S: Solver>(
         stress,
         residual,
         protocol,
-        warnings: warnings(&simulation.definition.profile, &simulation.setup.elasticity, &seen),
+        warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &seen),
         accuracy,
     })
 }

@@ -1,7 +1,7 @@
 //! What to know about a result that is nevertheless given. Each code has its paragraph in `docs/warnings.md`.
 
-use stickslip_mechanics::{Contact, Elasticity};
-use stickslip_wire::{Profile, Warning};
+use stickslip_mechanics::{Contact, Elasticity, Profile};
+use stickslip_wire::Warning;
 
 /// Dundurs' β beyond which the bodies are no longer called alike; round-off of like bodies stays below it.
 const BETA: f64 = 1e-12;
@@ -33,7 +33,7 @@ pub struct Seen {
 /// What a request to a contact that lives has shown for the first time: nothing that held for it already at the contact radius
 /// `before`, m. `largest` is the largest contact radius since, m, and `missed` the error of the force if it is beyond the tolerance.
 #[must_use]
-pub fn news(profile: &Profile, contact: &Contact, before: f64, largest: f64, missed: Option<f64>) -> Vec<Warning> {
+pub fn news(contact: &Contact, before: f64, largest: f64, missed: Option<f64>) -> Vec<Warning> {
     if largest <= before && missed.is_none() {
         return Vec::new();
     }
@@ -41,11 +41,8 @@ pub fn news(profile: &Profile, contact: &Contact, before: f64, largest: f64, mis
     let at = |contact_radius: f64, missed: Option<f64>| {
         let shape = contact.profile();
         let (indentation, noise) = (shape.level(contact_radius), shape.noise(contact_radius));
-        warnings(
-            profile,
-            &elasticity,
-            &Seen { contact_radius, e_star: elasticity.e_star(), indentation, noise, missed },
-        )
+        let seen = Seen { contact_radius, e_star: elasticity.e_star(), indentation, noise, missed };
+        warnings(shape, &elasticity, &seen)
     };
     let known = at(before, None);
     let mut found = at(largest, missed);
@@ -81,7 +78,7 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<
             ),
         );
     }
-    let slope = profile.slope(seen.contact_radius);
+    let slope = profile.surface_slope(seen.contact_radius);
     if seen.contact_radius > 0.0 && slope > STEEP {
         warn(
             "large_contact",

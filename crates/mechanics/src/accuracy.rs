@@ -33,11 +33,11 @@ impl Contact {
         let steepness = radius * self.profile.slope(radius) / indentation;
         let steepness = if steepness.is_finite() { steepness.clamp(0.0, STEEPEST) } else { 0.0 };
         let mean_pressure = mean_pressure(self.normal_force(), radius);
-        let doubt = self.profile.doubt(radius);
+        let error = self.profile.interpolation_error(radius);
         let bend =
-            self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * doubt.kernel) / mean_pressure;
+            self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * error.kernel) / mean_pressure;
         let bend = if bend.is_finite() { bend } else { 0.0 };
-        let open = 2.0 * self.elasticity.e_star() * doubt.load / self.normal_force();
+        let open = 2.0 * self.elasticity.e_star() * error.load / self.normal_force();
         let open = if open.is_finite() { open } else { 0.0 };
         let unit = f64::EPSILON * self.profile.cancellation(radius);
         Estimate {

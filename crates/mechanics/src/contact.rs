@@ -6,7 +6,7 @@ use super::double_double::DoubleDouble;
 use super::elasticity::Elasticity;
 use super::error::Error;
 use super::normal::{self, Figures, Preload};
-use super::profile::{At, Point, Profile};
+use super::profile::{Point, Profile, StressRadius};
 use super::range;
 use super::route::{Approach, DEFAULT_TOLERANCE, Route, Stop, Tangent};
 use super::slip_history::Memory;
@@ -255,7 +255,7 @@ impl Contact {
     /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &At::radius(radius))
+        normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &StressRadius::new(radius))
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
@@ -328,7 +328,7 @@ impl Contact {
     #[must_use]
     pub fn state(&self) -> State {
         #[cfg(test)]
-        super::profile::count::add(|calls| &mut calls.states);
+        super::profile::call_count::add(|calls| &mut calls.states);
         let edge = self.memory.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();

@@ -32,10 +32,10 @@ pub enum Error {
         radius: f64,
     },
     /// A table that is not one.
-    #[error("the table is not usable: {what} at index {index}")]
+    #[error("the table is not usable: {fault} at index {index}")]
     Table {
-        /// What is wrong; it begins with the name of the column, `r` or `z`.
-        what: &'static str,
+        /// What is wrong.
+        fault: TableFault,
         /// The first point at which it is.
         index: usize,
     },
@@ -61,4 +61,21 @@ pub enum Error {
         /// What cannot be followed.
         what: &'static str,
     },
+}
+
+/// Why two columns of radii r and heights z are not a profile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+pub enum TableFault {
+    /// The columns differ in length.
+    #[error("r and z differ in length")]
+    LengthsDiffer,
+    /// The first radius is not zero.
+    #[error("r does not begin at 0")]
+    FirstRadiusNotZero,
+    /// A radius is not above the one before it.
+    #[error("r does not rise")]
+    RadiusNotRising,
+    /// No height is above the one at the centre.
+    #[error("z does not rise anywhere")]
+    HeightNeverRises,
 }

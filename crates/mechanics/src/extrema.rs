@@ -8,7 +8,7 @@
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
-use super::profile::At;
+use super::profile::StressRadius;
 use super::traction::Peak;
 
 /// Towards a kink of the memory each distance is smaller by this factor, as a logarithm: beneath a thin ring the derivative
@@ -44,8 +44,8 @@ enum End {
 /// A stretch of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end to
 /// infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their squares.
 struct Stretch {
-    inner: At,
-    outer: At,
+    inner: StressRadius,
+    outer: StressRadius,
     /// How it begins, and the sign of the derivative there, nought if unknown.
     start: (End, f64),
     /// How it ends, likewise.
@@ -66,13 +66,13 @@ impl Stretch {
         0.5 * (self.outer.square - self.inner.square).value()
     }
 
-    fn at(&self, place: f64) -> At {
+    fn at(&self, place: f64) -> StressRadius {
         if place.is_infinite() {
             return if place > 0.0 { self.outer } else { self.inner };
         }
         let distance = DoubleDouble::from(self.half() * (-place.abs()).exp());
         let square = if place > 0.0 { self.outer.square - distance } else { self.inner.square + distance };
-        At { radius: square.value().max(0.0).sqrt(), square }
+        StressRadius { radius: square.value().max(0.0).sqrt(), square }
     }
 
     /// What dips stand out by: the derivative grows with the inverse of this.
@@ -130,7 +130,7 @@ impl Stretch {
 
 impl Contact {
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; nought where it is nought to round-off or unknown.
-    fn trend(&self, at: &At) -> f64 {
+    fn trend(&self, at: &StressRadius) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
         for (ring, line) in self.memory.rings() {
             if ring.outer.radius < at.radius {
@@ -149,7 +149,7 @@ impl Contact {
 
     /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `go_on` said no.
     pub(super) fn peaks(&self, go_on: impl Fn() -> bool) -> Option<Vec<Peak>> {
-        let edge = At::point(self.memory.edge());
+        let edge = StressRadius::of_point(self.memory.edge());
         let bends = self.bends();
         let settled = self.settled_from(&bends);
         let pieces = self.memory.pieces();
@@ -161,13 +161,13 @@ impl Contact {
                 return None;
             }
             // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
-            let from = if index == 0 { At::radius(0.0) } else { At::point(&pieces[index].inner) };
+            let from = if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) };
             if from.square >= edge.square {
                 // The rest lies at a vertical edge.
                 break;
             }
             let outer = pieces.get(index + 1).map_or(*self.memory.edge(), |next| next.inner);
-            let to = At::point(&outer);
+            let to = StressRadius::of_point(&outer);
             if settled[index] {
                 search.pass(&from, -bend);
                 continue;
@@ -183,14 +183,14 @@ impl Contact {
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
             let brief = ends - begins > MANY;
             let within = knots[begins..ends].iter().map(|&knot| {
-                let at = At::radius(knot);
+                let at = StressRadius::new(knot);
                 let rim = singular.contains(&knot);
                 // At the same distance on either side a logarithm has the same value: one look serves both.
                 let beside = DoubleDouble::square_of(knot) * (1.0 + FLOOR);
                 let infinite = if rim {
                     self.trend(&at)
                 } else if brief {
-                    self.trend(&At { radius: knot, square: beside })
+                    self.trend(&StressRadius { radius: knot, square: beside })
                 } else {
                     0.0
                 };
@@ -217,7 +217,7 @@ impl Contact {
     }
 
     /// How the derivative begins beyond kink `index` of the memory, the centre for the first.
-    fn start(&self, index: usize, from: &At, knots: &[f64]) -> (End, f64) {
+    fn start(&self, index: usize, from: &StressRadius, knots: &[f64]) -> (End, f64) {
         let sign = self.trend(from);
         let end = if index == 0 {
             let slips = self.memory.pieces()[0].line.slope.value().abs() > 0.0;
@@ -261,12 +261,12 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn found(&mut self, at: &At) {
+    fn found(&mut self, at: &StressRadius) {
         self.peaks.push(Peak { radius: at.radius, shear: self.contact.shear_at(at) });
     }
 
     /// Crosses a radius beyond which the derivative has the sign of `value`.
-    fn pass(&mut self, at: &At, value: f64) {
+    fn pass(&mut self, at: &StressRadius, value: f64) {
         if self.sign * value.signum() < 0.0 {
             self.found(at);
         }

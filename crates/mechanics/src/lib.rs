@@ -59,7 +59,7 @@ pub use accuracy::Estimate;
 pub use contact::Contact;
 pub use double_double::DoubleDouble;
 pub use elasticity::{Body, Elasticity};
-pub use error::Error;
+pub use error::{Error, TableFault};
 pub use normal::{Figures, Preload};
 pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};

@@ -5,7 +5,7 @@
 
 use super::elasticity::Elasticity;
 use super::error::Error;
-use super::profile::{At, Point, Profile, Ring};
+use super::profile::{Point, Profile, Ring, StressRadius};
 use super::range::short;
 
 /// Radii at which the largest pressure is looked for first.
@@ -102,7 +102,7 @@ pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Erro
 }
 
 /// Pressure, Pa, at radius r; nought outside the contact.
-pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point, at: &At) -> f64 {
+pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point, at: &StressRadius) -> f64 {
     let ring = whole(profile, edge);
     if ring.depth <= 0.0 {
         return 0.0;
@@ -122,7 +122,7 @@ pub(super) fn pressures(profile: &Profile, elasticity: &Elasticity, edge: &Point
 
 /// The largest pressure, Pa; `None` where it is infinite.
 pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
-    let at = |radius: f64| pressure(profile, elasticity, edge, &At::radius(radius));
+    let at = |radius: f64| pressure(profile, elasticity, edge, &StressRadius::new(radius));
     let inside = |radius: &f64| *radius <= edge.radius;
     let spikes = profile.singular_radii().into_iter().filter(inside).chain([edge.radius]);
     if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {

@@ -8,7 +8,7 @@
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::error::Error;
-use super::profile::{At, Ring};
+use super::profile::{Ring, StressRadius};
 
 /// Error of the tangential force, relative to mu F_N, that a path may cost unless the caller says otherwise.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -191,7 +191,8 @@ impl Contact {
         let touched = Ring::between(self.profile.point(lower), edge);
         let width = if turns { edge.radius } else { self.profile.moments(&touched).width };
         // A parabola's slope is four times its height over its base off its chord's.
-        let kernel = 4.0 * off / rise.abs().value() * self.profile.kernel(&At::point(&touched.inner), &touched);
+        let kernel =
+            4.0 * off / rise.abs().value() * self.profile.kernel(&StressRadius::of_point(&touched.inner), &touched);
         Deviation { integral: off * width, turns, kernel }
     }
 

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
-use super::profile::{At, Point};
+use super::profile::{Point, StressRadius};
 
 impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least nought, inside the contact or outside.
@@ -18,7 +18,7 @@ impl Contact {
         let carried = self.spread(radius);
         self.scale()
             * if radius > 0.0 {
-                carried + shift * FRAC_2_PI * arc_to(self.memory.edge(), &At::radius(radius))
+                carried + shift * FRAC_2_PI * arc_to(self.memory.edge(), &StressRadius::new(radius))
             } else {
                 carried + shift
             }
@@ -47,7 +47,7 @@ impl Contact {
         if radius <= 0.0 {
             return at_core;
         }
-        let at = At::radius(radius);
+        let at = StressRadius::new(radius);
         let mut sum = 0.0;
         if core.inner.radius > 0.0 {
             // A flat core belongs to no ring.
@@ -64,7 +64,7 @@ impl Contact {
 }
 
 /// int_0^min(r, x) dt/sqrt(r^2 - t^2) up to the radius x of a point, from the squares, which are exact where x is not.
-fn arc_to(point: &Point, at: &At) -> f64 {
+fn arc_to(point: &Point, at: &StressRadius) -> f64 {
     let beyond = (at.square - point.square).value();
     if beyond > 0.0 { point.radius.atan2(beyond.sqrt()) } else { std::f64::consts::FRAC_PI_2 }
 }

@@ -4,7 +4,7 @@
 //! kernel (eq. 19 of Kraft & Pohrt 2016, by parts over the levels). The search for extrema is in `extrema`.
 
 use super::contact::Contact;
-use super::profile::At;
+use super::profile::StressRadius;
 
 /// A local extremum of the shear stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Contact {
     /// Shear stress, Pa, at a radius (m) of at least nought; nought outside the contact.
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
-        self.shear_at(&At::radius(radius))
+        self.shear_at(&StressRadius::new(radius))
     }
 
     /// [`Contact::shear`] at each of `radii`, m: quicker than one by one.
@@ -65,7 +65,7 @@ impl Contact {
         self.elasticity.g_star() * self.scale() / std::f64::consts::PI
     }
 
-    pub(super) fn shear_at(&self, at: &At) -> f64 {
+    pub(super) fn shear_at(&self, at: &StressRadius) -> f64 {
         let mut sum = 0.0;
         for (ring, line) in self.memory.rings() {
             if ring.outer.radius < at.radius {

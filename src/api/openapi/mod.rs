@@ -50,13 +50,7 @@ pub struct IdempotencyKey {
 #[derive(OpenApi)]
 #[openapi(
     info(title = "stickslip"),
-    // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
-    components(schemas(
-        ProblemDocument, EndEvent, JobEndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
-        profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
-        profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
-        profile::TabulatedProfile, profile::SumProfile
-    )),
+    components(schemas(ProblemDocument, EndEvent, JobEndEvent)),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "protocols", description = "How to move so that little shear stress remains"),
@@ -71,6 +65,7 @@ struct Base;
 pub fn base() -> utoipa::openapi::OpenApi {
     let mut base = Base::openapi();
     base.info.description = Some(introduction());
+    base.components.get_or_insert_default().schemas.extend(profile::schemas());
     base
 }
 
@@ -122,20 +117,6 @@ fn limited() -> Vec<(&'static str, &'static str, Limit)> {
     use Limit::{Count, Items, Length, Number, Numbers, Tolerance};
     let (moves, radii, points) = (&limits::PATH_MOVES, &limits::STRESS_RADII, &limits::TABLE_POINTS);
     let mut all = vec![
-        ("SphereProfile", "radius", Number(range::RADIUS)),
-        ("ExactSphereProfile", "radius", Number(range::RADIUS)),
-        ("ConeProfile", "slope", Number(range::SLOPE)),
-        ("PowerLawProfile", "exponent", Number(range::EXPONENT)),
-        ("PowerLawProfile", "coefficient", Number(range::COEFFICIENT)),
-        ("FlatPunchProfile", "radius", Number(range::RADIUS)),
-        ("TruncatedConeProfile", "slope", Number(range::SLOPE)),
-        ("TruncatedConeProfile", "flat_radius", Number(range::FLAT_RADIUS)),
-        ("TruncatedSphereProfile", "radius", Number(range::RADIUS)),
-        ("TruncatedSphereProfile", "flat_radius", Number(range::FLAT_RADIUS)),
-        ("RoundedPunchProfile", "flat_radius", Number(range::FLAT_RADIUS)),
-        ("RoundedPunchProfile", "edge_radius", Number(range::EDGE_RADIUS)),
-        ("RoundedConeProfile", "slope", Number(range::SLOPE)),
-        ("RoundedConeProfile", "tip_radius", Number(range::TIP_RADIUS)),
         ("TabulatedProfile", "r", Numbers(*points.start(), *points.end(), range::TABLE_RADIUS)),
         ("TabulatedProfile", "z", Numbers(*points.start(), *points.end(), range::TABLE_HEIGHT)),
         ("SumProfile", "parts", Items(*limits::SUM_PARTS.start(), *limits::SUM_PARTS.end())),
@@ -168,6 +149,7 @@ fn limited() -> Vec<(&'static str, &'static str, Limit)> {
         ("Span", "count", Count(*limits::AXIS_COUNT.start(), *limits::AXIS_COUNT.end())),
         ("Springs", "count", Count(range::SPRING_COUNT.min as usize, range::SPRING_COUNT.max as usize)),
     ];
+    all.extend(profile::NUMBERS.iter().map(|&(schema, property, range)| (schema, property, Number(range))));
     all.push(("AccuracyRequest", "solvers", Items(*limits::SOLVERS.start(), *limits::SOLVERS.end())));
     let reversals = &limits::PROTOCOL_REVERSALS;
     for schema in ["ProtocolRequest", "RelaxRequest"] {

@@ -9,7 +9,7 @@
 use super::gauss::along_strip;
 use super::roots::{descend, increasing};
 use super::zone::Zone;
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A profile for x >= b, given through t.
 pub(super) trait Chart {
@@ -141,7 +141,7 @@ fn zone(chart: &impl Chart, span: &Span) -> Zone {
 }
 
 /// The lift of a span above the core, `above` the level added to h.
-pub(super) fn lift(chart: &impl Chart, at: &At, span: &Span, above: f64) -> f64 {
+pub(super) fn lift(chart: &impl Chart, at: &StressRadius, span: &Span, above: f64) -> f64 {
     let zone = zone(chart, span);
     zone.lift(span, at, above, |node| chart.rise_at(node.t, zone.high, node.dt))
 }
@@ -158,7 +158,7 @@ struct Path {
 
 impl Path {
     /// For radii above r in a span; none if there are none.
-    fn new(chart: &impl Chart, at: &At, span: &Span) -> Option<Path> {
+    fn new(chart: &impl Chart, at: &StressRadius, span: &Span) -> Option<Path> {
         let square = DoubleDouble::square_of(chart.core());
         let span = span.above(square, chart.core())?;
         let (inner, outer) = span.excess(at.square);
@@ -198,7 +198,7 @@ impl Path {
 }
 
 /// K over a span.
-pub(super) fn kernel(chart: &impl Chart, at: &At, span: &Span) -> f64 {
+pub(super) fn kernel(chart: &impl Chart, at: &StressRadius, span: &Span) -> f64 {
     let Some(path) = Path::new(chart, at, span) else { return 0.0 };
     if path.low + path.v_low <= 0.0 && chart.jumps() {
         return f64::INFINITY;
@@ -207,7 +207,7 @@ pub(super) fn kernel(chart: &impl Chart, at: &At, span: &Span) -> f64 {
 }
 
 /// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from nought or nearly so.
-pub(super) fn kernel_slope(chart: &impl Chart, at: &At, span: &Span) -> f64 {
+pub(super) fn kernel_slope(chart: &impl Chart, at: &StressRadius, span: &Span) -> f64 {
     let Some(path) = Path::new(chart, at, span) else { return 0.0 };
     let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
     if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
@@ -222,9 +222,9 @@ pub(super) fn kernel_slope(chart: &impl Chart, at: &At, span: &Span) -> f64 {
     0.5 * (bend + start - chart.slope_at(high) / (high * v_high))
 }
 
-/// A whole family out of a chart with a flat core: everything but its loads.
+/// A whole family out of a chart with a flat core: everything but its loads and the methods given.
 macro_rules! flat_core {
-    ($family:ty) => {
+    ($family:ty { $($methods:item)* }) => {
         impl $crate::profile::shape::Shape for $family {
             fn level(&self, radius: f64) -> f64 {
                 self.level_at(chart::t_of(self, radius))
@@ -256,15 +256,19 @@ macro_rules! flat_core {
             fn moments(&self, span: &Span) -> Moments {
                 chart::moments(self, span)
             }
-            fn lift(&self, at: &At, span: &Span) -> f64 {
+            fn lift(&self, at: &StressRadius, span: &Span) -> f64 {
                 chart::lift(self, at, span, 0.0)
             }
-            fn kernel(&self, at: &At, span: &Span) -> f64 {
+            fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
                 chart::kernel(self, at, span)
             }
-            fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+            fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
                 chart::kernel_slope(self, at, span)
             }
+            fn singular_radii(&self) -> Vec<f64> {
+                if self.jumps() { vec![self.core()] } else { Vec::new() }
+            }
+            $($methods)*
         }
     };
 }

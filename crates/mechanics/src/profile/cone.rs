@@ -7,11 +7,13 @@ use std::f64::consts::FRAC_PI_2;
 use super::super::error::Error;
 use super::super::range;
 use super::shape::Shape;
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
+    /// T, pure number.
+    slope: f64,
     /// g', pi T/2.
     rise: f64,
 }
@@ -22,7 +24,8 @@ impl Cone {
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::SLOPE`].
     pub fn new(slope: f64) -> Result<Cone, Error> {
-        Ok(Cone { rise: FRAC_PI_2 * range::SLOPE.check(slope)? })
+        let slope = range::SLOPE.check(slope)?;
+        Ok(Cone { slope, rise: FRAC_PI_2 * slope })
     }
 }
 
@@ -70,7 +73,7 @@ impl Shape for Cone {
         Moments { width, first: 0.5 * depth * width, second: depth * depth * width / 3.0 }
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
@@ -82,7 +85,7 @@ impl Shape for Cone {
         self.rise * (step / (low + v_low)).ln_1p()
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
@@ -104,11 +107,27 @@ impl Shape for Cone {
         // The difference of the reciprocals, from that of v (x + v).
         self.rise * 0.5 * (dv * (span.outer_radius + v) + v_low * (dx + dv)) / (ends * starts)
     }
+
+    fn surface_slope(&self, _r: f64) -> f64 {
+        self.slope
+    }
+
+    fn kernel_falls(&self) -> bool {
+        true
+    }
+
+    fn singular_radii(&self) -> Vec<f64> {
+        vec![0.0]
+    }
+
+    fn smooth_centre(&self) -> bool {
+        false
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{At, DoubleDouble, Ring};
+    use super::super::{DoubleDouble, Ring, StressRadius};
     use super::{Cone, Shape};
 
     #[test]
@@ -118,7 +137,7 @@ mod tests {
             let square = cone.square(DoubleDouble::from(level));
             super::super::Point { level: level.into(), radius: cone.radius(level), square }
         };
-        let tip = At::radius(0.0);
+        let tip = StressRadius::new(0.0);
         let inner = cone.span(&Ring::between(point(0.0), point(0.1)));
         let outer = cone.span(&Ring::between(point(0.1), point(0.2)));
         assert_eq!(cone.kernel(&tip, &inner).to_bits(), f64::INFINITY.to_bits());

@@ -9,8 +9,8 @@ use super::super::range;
 use super::chart::{self, Chart};
 use super::gauss::{Singular, along_strip};
 use super::roots::increasing;
-use super::shape::Shape;
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::shape::{End, Shape};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +34,6 @@ impl ExactSphere {
     /// [`Error::OutOfRange`] by [`range::RADIUS`].
     pub fn new(radius: f64) -> Result<ExactSphere, Error> {
         Ok(ExactSphere { radius: range::RADIUS.check(radius)? })
-    }
-
-    /// What every contact radius must stay below, m: R less a millionth of a millionth, nearer to which X says nothing of the level.
-    pub(super) fn limit(&self) -> f64 {
-        self.radius * (1.0 - 1e-12)
     }
 
     /// x/R, below one even where rounding has x = R, so that levels stay finite.
@@ -220,7 +215,7 @@ impl Shape for ExactSphere {
         Moments { width: span.width(), first, second }
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
@@ -243,14 +238,27 @@ impl Shape for ExactSphere {
         stretch * length + curved
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         if at.radius > 0.0 || span.inner_radius > 0.0 {
             return chart::kernel_slope(self, at, span);
         }
         // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
         let start = 1e-9 * span.outer_radius;
         let (radius, square) = (start, DoubleDouble::square_of(start));
-        chart::kernel_slope(self, &At { radius, square }, span)
+        chart::kernel_slope(self, &StressRadius { radius, square }, span)
+    }
+
+    fn surface_slope(&self, r: f64) -> f64 {
+        r / ((self.radius - r) * (self.radius + r)).max(0.0).sqrt()
+    }
+
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.radius)
+    }
+
+    fn known_to(&self) -> Option<End> {
+        // Nearer to R than a millionth of a millionth X says nothing of the level.
+        Some(End { radius: self.radius * (1.0 - 1e-12), falls: false })
     }
 }
 

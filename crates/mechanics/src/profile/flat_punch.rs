@@ -4,7 +4,7 @@
 use super::super::error::Error;
 use super::super::range;
 use super::shape::Shape;
-use super::{At, Moments, Span};
+use super::{Moments, Span, StressRadius};
 
 /// A cylinder pressed in with its flat end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,11 +55,15 @@ impl Shape for FlatPunch {
         Moments::default()
     }
 
-    fn kernel(&self, _at: &At, _span: &Span) -> f64 {
+    fn kernel(&self, _at: &StressRadius, _span: &Span) -> f64 {
         0.0
     }
 
-    fn kernel_slope(&self, _at: &At, _span: &Span) -> f64 {
+    fn kernel_slope(&self, _at: &StressRadius, _span: &Span) -> f64 {
+        0.0
+    }
+
+    fn surface_slope(&self, _r: f64) -> f64 {
         0.0
     }
 }

@@ -2,25 +2,32 @@
 //!
 //! By the method of dimensionality reduction a profile z = f(r) is known through g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr.
 //! A *level* y is a value of g, a *radius* x its inverse X(y); a level beyond the last radius (a vertical edge) keeps that
-//! radius. All that follows — normal contact, memory, stresses — reads a profile through rings between two levels, so no
-//! other module knows which family it deals with.
+//! radius. Normal contact, slip history and stresses read a profile through rings between two levels, so no other module
+//! knows which family it deals with.
+//!
+//! # Adding a family
+//! 1. Write `my_family.rs`: a struct, its checked constructor, and its [`shape::Shape`].
+//! 2. Add `mod my_family;` below and its entry to [`for_each_family!`](crate::for_each_family), parameters in the order of
+//!    the constructor; a new parameter also needs its range in [`range`](super::range).
+//! 3. The JSON documents, their checks and the OpenAPI document follow from that entry.
 
 mod angle;
+#[cfg(test)]
+pub(crate) mod call_count;
 mod chart;
 mod cone;
-#[cfg(test)]
-pub(crate) mod count;
 mod exact_sphere;
 mod flat_punch;
 pub(super) mod gauss;
-mod many;
-mod measured;
+mod interpolation;
+mod kernel_sums;
 mod power_law;
+mod ring;
 mod roots;
 mod rounded_cone;
 mod rounded_punch;
-mod seams;
 mod shape;
+mod singularities;
 mod span;
 mod sphere;
 mod sum;
@@ -29,132 +36,145 @@ mod truncated_cone;
 mod truncated_sphere;
 mod zone;
 
-pub use cone::Cone;
-pub use exact_sphere::ExactSphere;
-pub use flat_punch::FlatPunch;
-pub use power_law::PowerLaw;
-pub use rounded_cone::RoundedCone;
-pub use rounded_punch::RoundedPunch;
-pub use sphere::Sphere;
+pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;
-pub use tabulated::{Doubt, Tabulated};
-pub use truncated_cone::TruncatedCone;
-pub use truncated_sphere::TruncatedSphere;
+pub use tabulated::{InterpolationError, Tabulated};
 
 use super::double_double::DoubleDouble;
 use super::error::Error;
-use shape::Shape;
+use shape::{End, Shape};
 use span::Span;
 
-/// A closed set of families: one variant a file.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Profile {
-    /// Hertz's parabola.
-    Sphere(Sphere),
-    /// The sphere itself.
-    ExactSphere(ExactSphere),
-    /// Cone.
-    Cone(Cone),
-    /// Height as a power of the radius.
-    PowerLaw(PowerLaw),
-    /// Cylinder with a sharp edge.
-    FlatPunch(FlatPunch),
-    /// Cone with a flat end.
-    TruncatedCone(TruncatedCone),
-    /// Paraboloid with a flat end.
-    TruncatedSphere(TruncatedSphere),
-    /// Cylinder with a rounded edge.
-    RoundedPunch(RoundedPunch),
-    /// Cone with a rounded tip.
-    RoundedCone(RoundedCone),
-    /// A table of heights.
-    Tabulated(Tabulated),
-    /// Several profiles added up.
-    Sum(Sum),
-}
-
-/// Evaluates an expression for whichever family it is.
-macro_rules! each {
-    ($profile:expr, $shape:ident => $value:expr) => {
-        match $profile {
-            Profile::Sphere($shape) => $value,
-            Profile::ExactSphere($shape) => $value,
-            Profile::Cone($shape) => $value,
-            Profile::PowerLaw($shape) => $value,
-            Profile::FlatPunch($shape) => $value,
-            Profile::TruncatedCone($shape) => $value,
-            Profile::TruncatedSphere($shape) => $value,
-            Profile::RoundedPunch($shape) => $value,
-            Profile::RoundedCone($shape) => $value,
-            Profile::Tabulated($shape) => $value,
-            Profile::Sum($shape) => $value,
+/// The table of the families whose parameters are plain numbers: calls the macro `$callback` with all entries, after `$prefix`.
+///
+/// An entry is a description, `module::Family`, the description and the name of its JSON document, and the parameters in the
+/// order of the constructor: a description with the unit, the name and the constant of [`range`](crate::range) that bounds it.
+/// The `type` in JSON is the name of the family in snake case. The two families made of other things, [`Tabulated`] and
+/// [`Sum`], are not in the table.
+#[macro_export]
+macro_rules! for_each_family {
+    ($callback:ident $($prefix:tt)*) => {
+        $callback! {
+            $($prefix)*
+            /// Hertz's parabola z = r²/(2R), the shape that is meant by a sphere in contact mechanics.
+            sphere::Sphere,
+            /// A sphere in Hertz's approximation.
+            SphereProfile {
+                /// Radius of curvature R of the gap, m; for two spheres 1/R = 1/R₁ + 1/R₂.
+                radius: RADIUS,
+            }
+            /// The sphere itself, z = R − √(R² − r²).
+            exact_sphere::ExactSphere,
+            /// A sphere without approximation.
+            ExactSphereProfile {
+                /// Radius R, m; the contact radius stays below it.
+                radius: RADIUS,
+            }
+            /// A cone, z = slope · r. Pressure and shear stress are infinite at its tip.
+            cone::Cone,
+            /// A cone.
+            ConeProfile {
+                /// Slope dz/dr, a pure number.
+                slope: SLOPE,
+            }
+            /// A power of the radius, z = coefficient · r^exponent.
+            power_law::PowerLaw,
+            /// A power law.
+            PowerLawProfile {
+                /// Exponent n, a pure number.
+                exponent: EXPONENT,
+                /// Coefficient, m^(1−n).
+                coefficient: COEFFICIENT,
+            }
+            /// A cylinder with a sharp edge, where pressure and shear stress are infinite.
+            flat_punch::FlatPunch,
+            /// A flat punch.
+            FlatPunchProfile {
+                /// Radius of the punch, m.
+                radius: RADIUS,
+            }
+            /// A cone with a flat end. Pressure and shear stress are infinite at the rim of the flat.
+            truncated_cone::TruncatedCone,
+            /// A truncated cone.
+            TruncatedConeProfile {
+                /// Slope dz/dr outside the flat, a pure number.
+                slope: SLOPE,
+                /// Radius of the flat end, m.
+                flat_radius: FLAT_RADIUS,
+            }
+            /// A worn sphere: a parabola with a flat end, at whose rim pressure and shear stress are infinite.
+            truncated_sphere::TruncatedSphere,
+            /// A truncated sphere.
+            TruncatedSphereProfile {
+                /// Radius of curvature R, m.
+                radius: RADIUS,
+                /// Radius of the flat end, m.
+                flat_radius: FLAT_RADIUS,
+            }
+            /// A flat end with a rounded edge, z = (r − flat_radius)²/(2 · edge_radius) outside the flat.
+            rounded_punch::RoundedPunch,
+            /// A flat punch with a rounded edge.
+            RoundedPunchProfile {
+                /// Radius of the flat end, m.
+                flat_radius: FLAT_RADIUS,
+                /// Radius of curvature of the edge, m.
+                edge_radius: EDGE_RADIUS,
+            }
+            /// A cone whose tip is a parabola up to `tip_radius`.
+            rounded_cone::RoundedCone,
+            /// A cone with a rounded tip.
+            RoundedConeProfile {
+                /// Slope dz/dr of the cone, a pure number.
+                slope: SLOPE,
+                /// Radius up to which the tip is a parabola, m.
+                tip_radius: TIP_RADIUS,
+            }
         }
     };
 }
 
-/// A level, with the radius that belongs to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// y = g(x), m, with twice the digits.
-    pub level: DoubleDouble,
-    /// x = X(y), m.
-    pub radius: f64,
-    /// x^2, m^2, as exact as the family can give it: stresses have a cusp at x that turns an error e into sqrt(e).
-    pub square: DoubleDouble,
-}
+/// The enum of all families and `each!`, which evaluates an expression for whichever family a profile is of.
+macro_rules! profile {
+    ($dollar:tt $(
+        $(#[$about:meta])* $module:ident::$Family:ident,
+        $(#[$about_document:meta])* $Document:ident { $($(#[$about_parameter:meta])* $parameter:ident: $RANGE:ident,)+ }
+    )+) => {
+        $(pub use $module::$Family;)+
 
-/// The part of the contact between two levels, `inner` the nearer to the centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ring {
-    /// The lower level.
-    pub inner: Point,
-    /// The upper level.
-    pub outer: Point,
-    /// Difference of the levels, m, exact even where they nearly agree.
-    pub depth: f64,
-}
+        /// A profile of one of the families: a closed set.
+        ///
+        /// ```
+        /// use stickslip_mechanics::profile::{Profile, Ring, Sphere, StressRadius};
+        ///
+        /// // A sphere of radius 10 mm pressed in by 1 µm: the contact radius is sqrt(R d).
+        /// let sphere = Profile::Sphere(Sphere::new(0.01)?);
+        /// assert!((sphere.radius(1e-6) - 1e-4).abs() < 1e-18);
+        /// // Pressure is E*/pi times the kernel of the whole contact, (2/R) sqrt(a^2 - r^2).
+        /// let whole = Ring::between(sphere.point(0.0.into()), sphere.point(1e-6.into()));
+        /// assert!((sphere.kernel(&StressRadius::new(6e-5), &whole) - 0.016).abs() < 1e-16);
+        /// # Ok::<(), stickslip_mechanics::Error>(())
+        /// ```
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Profile {
+            $($(#[$about])* $Family($Family),)+
+            /// A measured profile, through whose points a smooth curve is drawn that keeps their monotony and convexity.
+            Tabulated(Tabulated),
+            /// Several profiles added up, z = Σ zᵢ.
+            Sum(Sum),
+        }
 
-/// Integrals over the radii of a ring, with h(x) = y_outer - g(x) >= 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments {
-    /// int dx, m.
-    pub width: f64,
-    /// int h dx, m^2.
-    pub first: f64,
-    /// int h^2 dx, m^3.
-    pub second: f64,
+        macro_rules! each {
+            ($dollar profile:expr, $dollar shape:ident => $dollar value:expr) => {
+                match $dollar profile {
+                    $(Profile::$Family($dollar shape) => $dollar value,)+
+                    Profile::Tabulated($dollar shape) => $dollar value,
+                    Profile::Sum($dollar shape) => $dollar value,
+                }
+            };
+        }
+    };
 }
-
-/// A radius at which a stress is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct At {
-    /// r, m.
-    pub radius: f64,
-    /// r^2, m^2, exact.
-    pub square: DoubleDouble,
-}
-
-impl At {
-    /// The radius r, m.
-    #[must_use]
-    pub fn radius(radius: f64) -> At {
-        At { radius, square: DoubleDouble::square_of(radius) }
-    }
-
-    /// The radius of `point`, to all the digits of its square.
-    #[must_use]
-    pub fn point(point: &Point) -> At {
-        At { radius: point.radius, square: point.square }
-    }
-}
-
-impl Ring {
-    /// The ring between two points of one profile.
-    #[must_use]
-    pub fn between(inner: Point, outer: Point) -> Ring {
-        Ring { inner, outer, depth: (outer.level - inner.level).value() }
-    }
-}
+for_each_family!(profile $);
 
 impl Profile {
     /// g(x), m, for a radius x >= 0, m.
@@ -192,7 +212,7 @@ impl Profile {
     #[must_use]
     pub fn moments(&self, ring: &Ring) -> Moments {
         #[cfg(test)]
-        count::add(|calls| &mut calls.moments);
+        call_count::add(|calls| &mut calls.moments);
         each!(self, shape => {
             let span = shape.span(ring);
             Moments::stack(shape.moments(&span), Moments::default(), span.edge)
@@ -203,9 +223,9 @@ impl Profile {
     /// stress. For a smooth profile this is K(r, x_outer) - K(r, max(r, x_inner)), K(r, c) = int_r^c g'(x)/sqrt(x^2 - r^2) dx.
     /// Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.
     #[must_use]
-    pub fn kernel(&self, at: &At, ring: &Ring) -> f64 {
+    pub fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
-        count::add(|calls| &mut calls.kernel);
+        call_count::add(|calls| &mut calls.kernel);
         each!(self, shape => {
             let span = shape.span(ring);
             let face = shape.kernel(at, &span);
@@ -215,9 +235,9 @@ impl Profile {
 
     /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner radius.
     #[must_use]
-    pub fn kernel_slope(&self, at: &At, ring: &Ring) -> f64 {
+    pub fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
-        count::add(|calls| &mut calls.kernel_slope);
+        call_count::add(|calls| &mut calls.kernel_slope);
         each!(self, shape => {
             let span = shape.span(ring);
             let face = shape.kernel_slope(at, &span);
@@ -228,9 +248,9 @@ impl Profile {
     /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the displacement
     /// of the surface at r.
     #[must_use]
-    pub fn lift(&self, at: &At, ring: &Ring) -> f64 {
+    pub fn lift(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
-        count::add(|calls| &mut calls.lift);
+        call_count::add(|calls| &mut calls.lift);
         each!(self, shape => {
             let span = shape.span(ring);
             let face = shape.lift(at, &span);
@@ -241,7 +261,7 @@ impl Profile {
     /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core, belongs
     /// to no ring: there it is asin(min(1, X(0)/r)).
     #[must_use]
-    pub fn arc(&self, at: &At, ring: &Ring) -> f64 {
+    pub fn arc(&self, at: &StressRadius, ring: &Ring) -> f64 {
         each!(self, shape => shape.span(ring).arc(at))
     }
 
@@ -255,7 +275,7 @@ impl Profile {
     /// A punch's edge is no such limit.
     #[must_use]
     pub fn limit_radius(&self) -> Option<f64> {
-        self.limit().map(|(radius, _)| radius)
+        Shape::limit(self).map(|end| end.radius)
     }
 
     /// The radius, m, of a vertical edge, which the contact keeps under every higher load.
@@ -270,131 +290,90 @@ impl Profile {
     /// If it is not below [`Profile::limit_radius`]: [`Error::NotConvexEnough`] where g falls from there on,
     /// [`Error::BeyondProfile`] where the profile ends.
     pub fn check_radius(&self, radius: f64) -> Result<f64, Error> {
-        match self.limit() {
-            Some((limit, falls)) if radius >= limit => Err(if falls {
-                Error::NotConvexEnough { radius: limit }
-            } else {
-                Error::BeyondProfile { radius, limit }
-            }),
+        match Shape::limit(self) {
+            Some(End { radius: limit, falls: true }) if radius >= limit => {
+                Err(Error::NotConvexEnough { radius: limit })
+            }
+            Some(End { radius: limit, falls: false }) if radius >= limit => Err(Error::BeyondProfile { radius, limit }),
             _ => Ok(radius),
-        }
-    }
-
-    /// The limit, and whether it is there because g falls.
-    fn limit(&self) -> Option<(f64, bool)> {
-        match self {
-            Profile::Tabulated(table) => Some(table.limit()),
-            Profile::Sum(sum) => sum.limit(),
-            _ => self.reach(),
-        }
-    }
-
-    /// How far, m, g is known, though it may fall before, and whether it ends because it falls.
-    fn reach(&self) -> Option<(f64, bool)> {
-        match self {
-            Profile::ExactSphere(sphere) => Some((sphere.limit(), false)),
-            Profile::Tabulated(table) => Some(table.reach()),
-            Profile::Sum(sum) => sum.limit(),
-            _ => None,
-        }
-    }
-
-    /// Whether g falls somewhere within its reach.
-    fn falls_within(&self) -> bool {
-        matches!(self, Profile::Tabulated(table) if table.falls_within())
-    }
-
-    /// The radius, m, of a flat core.
-    fn foot(&self) -> f64 {
-        match self {
-            Profile::Tabulated(table) => table.foot(),
-            _ => self.radius(0.0),
         }
     }
 
     /// How many times larger than g at the radius `x`, m, the parts are that it is the sum of: what their rounding grows by.
     #[must_use]
     pub fn cancellation(&self, x: f64) -> f64 {
-        match self {
-            Profile::Sum(sum) if sum.parts().iter().any(Profile::falls_within) => {
-                let grown = |f: &dyn Fn(&Profile) -> f64| {
-                    let (sum, sizes) =
-                        sum.parts().iter().map(f).fold((0.0, 0.0), |(a, b), part| (a + part, b + part.abs()));
-                    if sum > 0.0 { sizes / sum } else { 1.0 }
-                };
-                grown(&|part| part.level(x)).max(grown(&|part| part.slope(x)))
-            }
-            _ => 1.0,
-        }
+        Shape::cancellation(self, x)
+    }
+
+    /// dz/dr of the undeformed surface at the radius r, m (pure number); of a table, the slope of its chord there.
+    ///
+    /// ```
+    /// use stickslip_mechanics::profile::{Profile, RoundedCone};
+    ///
+    /// let cone = Profile::RoundedCone(RoundedCone::new(0.1, 1e-3)?);
+    /// assert_eq!([0.0, 5e-4, 2e-3].map(|r| cone.surface_slope(r)), [0.0, 0.05, 0.1]);
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
+    #[must_use]
+    pub fn surface_slope(&self, r: f64) -> f64 {
+        Shape::surface_slope(self, r)
+    }
+
+    /// The radius of curvature, m, where the shape is given by one: the smallest of a sum.
+    #[must_use]
+    pub fn curvature_radius(&self) -> Option<f64> {
+        Shape::curvature_radius(self)
     }
 }
 
 /// What the levels at a vertical edge add to a kernel.
-fn edge(at: &At, span: &Span) -> f64 {
+fn edge(at: &StressRadius, span: &Span) -> f64 {
     let square = (span.outer - at.square).value();
     if square < 0.0 { 0.0 } else { span.edge / square.sqrt() }
 }
 
 /// What they add to its slope.
-fn edge_slope(at: &At, span: &Span) -> f64 {
+fn edge_slope(at: &StressRadius, span: &Span) -> f64 {
     let square = (span.outer - at.square).value();
     if square < 0.0 { 0.0 } else { 0.5 * span.edge / square / square.sqrt() }
 }
 
-impl Shape for Profile {
-    fn level(&self, radius: f64) -> f64 {
-        each!(self, shape => Shape::level(shape, radius))
-    }
-
-    fn slope(&self, radius: f64) -> f64 {
-        each!(self, shape => Shape::slope(shape, radius))
-    }
-
-    fn radius(&self, level: f64) -> f64 {
-        each!(self, shape => Shape::radius(shape, level))
-    }
-
-    fn square(&self, level: DoubleDouble) -> DoubleDouble {
-        each!(self, shape => Shape::square(shape, level))
-    }
-
-    fn load(&self, radius: f64) -> f64 {
-        each!(self, shape => Shape::load(shape, radius))
-    }
-
-    fn indentation_for(&self, load: f64) -> f64 {
-        each!(self, shape => Shape::indentation_for(shape, load))
-    }
-
-    fn rise(&self, span: &Span) -> f64 {
-        each!(self, shape => Shape::rise(shape, span))
-    }
-
-    fn rim(&self) -> Option<(f64, f64)> {
-        each!(self, shape => Shape::rim(shape))
-    }
-
-    fn kink_below(&self, radius: f64) -> f64 {
-        each!(self, shape => Shape::kink_below(shape, radius))
-    }
-
-    fn analytic_tip(&self) -> bool {
-        each!(self, shape => Shape::analytic_tip(shape))
-    }
-
-    fn ceiling(&self) -> f64 {
-        each!(self, shape => Shape::ceiling(shape))
-    }
-
-    fn power(&self) -> f64 {
-        each!(self, shape => Shape::power(shape))
-    }
-
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
-        each!(self, shape => Shape::kernel(shape, at, span))
-    }
-
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
-        each!(self, shape => Shape::kernel_slope(shape, at, span))
-    }
+/// Implements [`Shape`] for [`Profile`] by the family's own methods.
+macro_rules! dispatch {
+    ($($method:ident($($argument:ident: $Type:ty),*) -> $Result:ty;)+) => {
+        impl Shape for Profile {
+            $(fn $method(&self, $($argument: $Type),*) -> $Result {
+                each!(self, shape => Shape::$method(shape, $($argument),*))
+            })+
+        }
+    };
+}
+dispatch! {
+    level(radius: f64) -> f64;
+    slope(radius: f64) -> f64;
+    radius(level: f64) -> f64;
+    square(level: DoubleDouble) -> DoubleDouble;
+    load(radius: f64) -> f64;
+    indentation_for(load: f64) -> f64;
+    rise(span: &Span) -> f64;
+    rim() -> Option<(f64, f64)>;
+    kink_below(radius: f64) -> f64;
+    analytic_tip() -> bool;
+    ceiling() -> f64;
+    power() -> f64;
+    kernel(at: &StressRadius, span: &Span) -> f64;
+    kernel_slope(at: &StressRadius, span: &Span) -> f64;
+    kernel_sums(rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>>;
+    surface_slope(r: f64) -> f64;
+    curvature_radius() -> Option<f64>;
+    limit() -> Option<End>;
+    known_to() -> Option<End>;
+    falls_within() -> bool;
+    flat_radius() -> f64;
+    cancellation(x: f64) -> f64;
+    kernel_falls() -> bool;
+    singular_radii() -> Vec<f64>;
+    smooth_centre() -> bool;
+    interpolation_error(radius: f64) -> InterpolationError;
+    noise(radius: f64) -> Option<(f64, f64)>;
 }

@@ -8,7 +8,7 @@ use super::super::range;
 use super::chart::{self, Chart};
 use super::gauss::Singular;
 use super::shape::Shape;
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
 const MOST_TERMS: u16 = 24;
@@ -21,6 +21,8 @@ const FAR: f64 = 1e8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
     exponent: f64,
+    /// c, m^(1-n).
+    coefficient: f64,
     /// B = kappa c, m^(1-n).
     scale: f64,
     /// n where it is whole and small.
@@ -36,10 +38,11 @@ impl PowerLaw {
     /// [`Error::OutOfRange`] by [`range::EXPONENT`] and [`range::COEFFICIENT`].
     pub fn new(exponent: f64, coefficient: f64) -> Result<PowerLaw, Error> {
         let exponent = range::EXPONENT.check(exponent)?;
-        let scale = kappa(exponent) * range::COEFFICIENT.check(coefficient)?;
+        let coefficient = range::COEFFICIENT.check(coefficient)?;
+        let scale = kappa(exponent) * coefficient;
         let order = (1..=MOST_TERMS).find(|&n| f64::from(n).to_bits() == exponent.to_bits());
         let halves = (1..=MOST_HALVES).find(|&m| (0.5 * f64::from(m)).to_bits() == exponent.to_bits());
-        Ok(PowerLaw { exponent, scale, order, halves })
+        Ok(PowerLaw { exponent, coefficient, scale, order, halves })
     }
 
     /// ln(x_outer/x_inner) of a span.
@@ -56,7 +59,7 @@ impl PowerLaw {
     }
 
     /// The kernel by recursion, all radii in units of the outer one.
-    fn by_recursion(&self, order: u16, at: &At, span: &Span) -> f64 {
+    fn by_recursion(&self, order: u16, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         let unit = span.outer_radius;
         let (x, v, gap) =
@@ -233,7 +236,7 @@ impl Shape for PowerLaw {
         Moments { width, first: x * y * first, second: x * y * (y * second) }
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return 0.0;
@@ -255,7 +258,7 @@ impl Shape for PowerLaw {
             })
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         if at.radius > 0.0 || span.inner_radius > 0.0 {
             return chart::kernel_slope(self, at, span);
         }
@@ -273,6 +276,22 @@ impl Shape for PowerLaw {
         } else {
             f64::NEG_INFINITY
         }
+    }
+
+    fn surface_slope(&self, r: f64) -> f64 {
+        self.exponent * self.coefficient * r.powf(self.exponent - 1.0)
+    }
+
+    fn kernel_falls(&self) -> bool {
+        self.exponent <= 2.0
+    }
+
+    fn singular_radii(&self) -> Vec<f64> {
+        if self.exponent <= 1.0 { vec![0.0] } else { Vec::new() }
+    }
+
+    fn smooth_centre(&self) -> bool {
+        self.exponent.to_bits() == 2f64.to_bits()
     }
 }
 

@@ -11,7 +11,7 @@ use super::chart::{self, Chart};
 use super::roots::descend;
 use super::shape::Shape;
 use super::sphere::Sphere;
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A cone whose tip is a paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,15 +182,23 @@ impl Shape for RoundedCone {
         Moments::stack(tip.map_or(Moments::default(), |span| self.tip.moments(&span)), outer, above)
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         let (tip, flank) = self.parts(span);
         tip.map_or(0.0, |span| self.tip.kernel(at, &span))
             + flank.map_or(0.0, |span| chart::kernel(&self.flank, at, &span))
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let (tip, flank) = self.parts(span);
         tip.map_or(0.0, |span| self.tip.kernel_slope(at, &span))
             + flank.map_or(0.0, |span| chart::kernel_slope(&self.flank, at, &span))
+    }
+
+    fn surface_slope(&self, r: f64) -> f64 {
+        self.flank.slope * (r / self.flank.tip_radius).min(1.0)
+    }
+
+    fn kernel_falls(&self) -> bool {
+        true
     }
 }

@@ -7,7 +7,7 @@ use super::super::error::Error;
 use super::super::range;
 use super::angle::tangent_less_angle;
 use super::chart::{self, Chart, flat_core};
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A flat punch with a rounded edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,4 +77,12 @@ impl Chart for RoundedPunch {
     }
 }
 
-flat_core!(RoundedPunch);
+flat_core!(RoundedPunch {
+    fn surface_slope(&self, r: f64) -> f64 {
+        (r - self.flat_radius).max(0.0) / self.edge_radius
+    }
+
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.edge_radius)
+    }
+});

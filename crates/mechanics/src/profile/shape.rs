@@ -2,7 +2,16 @@
 
 use super::roots::increasing;
 use super::zone::{Node, Zone};
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
+
+/// Where contacts end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct End {
+    /// The radius, m, that every contact must stay below.
+    pub(super) radius: f64,
+    /// Whether it is there because g falls from there on, rather than because the profile ends.
+    pub(super) falls: bool,
+}
 
 /// The functions of one family. Radii in m, levels in m; a span's vertical edge is the caller's affair, not theirs.
 pub(super) trait Shape {
@@ -124,7 +133,7 @@ pub(super) trait Shape {
     }
 
     /// int h dx / sqrt(r^2 - x^2) below r, with h = g(x_outer) - g(x).
-    fn lift(&self, at: &At, span: &Span) -> f64 {
+    fn lift(&self, at: &StressRadius, span: &Span) -> f64 {
         let (mut sum, mut above) = (0.0, 0.0);
         let mut rest = Some(*span);
         while let Some(span) = rest.filter(|span| span.gap > 0.0) {
@@ -137,10 +146,73 @@ pub(super) trait Shape {
     }
 
     /// int g'(x) dx / sqrt(x^2 - r^2) over the radii of the span above r.
-    fn kernel(&self, at: &At, span: &Span) -> f64;
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64;
 
     /// Its derivative with respect to r^2, from the right.
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64;
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64;
+
+    /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than ring by ring.
+    fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// f'(r), the slope of the undeformed surface.
+    fn surface_slope(&self, r: f64) -> f64;
+
+    /// The radius of curvature, where the shape is given by one.
+    fn curvature_radius(&self) -> Option<f64> {
+        None
+    }
+
+    /// Where contacts end, if they do before a vertical edge.
+    fn limit(&self) -> Option<End> {
+        self.known_to()
+    }
+
+    /// Up to where g is known, though it may fall before.
+    fn known_to(&self) -> Option<End> {
+        None
+    }
+
+    /// Whether g falls somewhere before [`Shape::known_to`].
+    fn falls_within(&self) -> bool {
+        false
+    }
+
+    /// The radius of a flat core.
+    fn flat_radius(&self) -> f64 {
+        self.radius(0.0)
+    }
+
+    /// How many times larger than g the parts are that it is the sum of.
+    fn cancellation(&self, _x: f64) -> f64 {
+        1.0
+    }
+
+    /// Whether g'(x)/x does not rise anywhere; `false` is always safe.
+    fn kernel_falls(&self) -> bool {
+        false
+    }
+
+    /// Radii at which f' jumps by a finite amount, so that stresses are log-infinite, increasing.
+    fn singular_radii(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether stresses are analytic in r^2 at the centre.
+    fn smooth_centre(&self) -> bool {
+        true
+    }
+
+    /// What interpolation leaves open in a contact of this radius.
+    fn interpolation_error(&self, _radius: f64) -> InterpolationError {
+        InterpolationError::default()
+    }
+
+    /// Noise of g, and how many times that of the heights it is.
+    fn noise(&self, _radius: f64) -> Option<(f64, f64)> {
+        None
+    }
 }
 
 /// The stretch from a node of a zone up to the zone's top.

@@ -4,7 +4,7 @@
 //! carries the squares with twice the digits and their difference on its own, since that comes from the depth of the ring.
 
 use super::super::double_double::DoubleDouble;
-use super::{At, Moments, Ring};
+use super::{Moments, Ring, StressRadius};
 
 /// The radii of a ring, and the levels it crosses at a vertical edge.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +81,7 @@ impl Span {
     }
 
     /// int dx/sqrt(r^2 - x^2) over the radii of the span below r (pure number).
-    pub(super) fn arc(&self, at: &At) -> f64 {
+    pub(super) fn arc(&self, at: &StressRadius) -> f64 {
         let (inner, outer) = self.excess(at.square);
         if inner >= 0.0 {
             return 0.0;
@@ -108,7 +108,7 @@ impl Moments {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{At, DoubleDouble};
+    use super::super::{DoubleDouble, StressRadius};
     use super::Span;
 
     #[test]
@@ -117,13 +117,13 @@ mod tests {
         let sliver = Span::under(DoubleDouble::from(0.25), 0.5, gap);
         // dx / sqrt(r^2 - x^2) with dx = gap / (2 x) and r = 1.
         let exact = gap / (2.0 * 0.5) / 0.75f64.sqrt();
-        assert!((sliver.arc(&At::radius(1.0)) / exact - 1.0).abs() < 1e-15);
+        assert!((sliver.arc(&StressRadius::new(1.0)) / exact - 1.0).abs() < 1e-15);
     }
 
     #[test]
     fn the_arc_up_to_r_is_a_quarter_turn() {
         let whole = Span::under(DoubleDouble::from(4.0), 2.0, 4.0);
-        assert!((whole.arc(&At::radius(1.5)) - std::f64::consts::FRAC_PI_2).abs() < 1e-16);
-        assert!((whole.arc(&At::radius(4.0)) - 0.5f64.asin()).abs() < 1e-16);
+        assert!((whole.arc(&StressRadius::new(1.5)) - std::f64::consts::FRAC_PI_2).abs() < 1e-16);
+        assert!((whole.arc(&StressRadius::new(4.0)) - 0.5f64.asin()).abs() < 1e-16);
     }
 }

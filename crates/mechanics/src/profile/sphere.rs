@@ -5,8 +5,9 @@
 
 use super::super::error::Error;
 use super::super::range;
+use super::kernel_sums::Roots;
 use super::shape::Shape;
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +22,6 @@ impl Sphere {
     /// [`Error::OutOfRange`] by [`range::RADIUS`].
     pub fn new(radius: f64) -> Result<Sphere, Error> {
         Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
-    }
-
-    /// Curvature radius R, m.
-    pub(super) fn curvature_radius(&self) -> f64 {
-        self.curvature_radius
     }
 
     /// The same where R follows from other, checked numbers.
@@ -80,7 +76,7 @@ impl Shape for Sphere {
         }
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             0.0
@@ -91,7 +87,7 @@ impl Shape for Sphere {
         }
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             0.0
@@ -101,6 +97,22 @@ impl Shape for Sphere {
         } else {
             -1.0 / (self.curvature_radius * outer.sqrt())
         }
+    }
+
+    fn surface_slope(&self, r: f64) -> f64 {
+        r / self.curvature_radius
+    }
+
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.curvature_radius)
+    }
+
+    fn kernel_falls(&self) -> bool {
+        true
+    }
+
+    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+        Some(Roots::new(self.curvature_radius, rings).sums(radii))
     }
 }
 

@@ -8,8 +8,8 @@ use super::super::double_double::DoubleDouble;
 use super::super::error::Error;
 use super::super::range;
 use super::roots::increasing;
-use super::shape::Shape;
-use super::{At, Point, Profile, Ring, Span, Tabulated};
+use super::shape::{End, Shape};
+use super::{InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated};
 
 /// How far beyond a kink, relative to its radius, a radius still lacks digits that a level has.
 const NEAR: f64 = 1e-2;
@@ -25,8 +25,8 @@ pub struct Sum {
     /// Radii at which one of the parts is not smooth, rising.
     kinks: Vec<f64>,
     rim: Option<(f64, f64)>,
-    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
-    limit: Option<(f64, bool)>,
+    /// Where contacts end.
+    limit: Option<End>,
     /// Where X(y) is sought if a part's own inverse is of no help: from the foot of the sum to its rim, m.
     bracket: Option<(f64, f64)>,
     ceiling: f64,
@@ -59,7 +59,7 @@ impl Sum {
         }
         kinks.sort_by(f64::total_cmp);
         kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
-        let limit = flat.iter().filter_map(Profile::reach).reduce(|a, b| if b.0 < a.0 { b } else { a });
+        let limit = flat.iter().filter_map(Shape::known_to).reduce(|a, b| if b.radius < a.radius { b } else { a });
         let mut sum = Sum {
             rim: None,
             limit,
@@ -73,14 +73,14 @@ impl Sum {
         let rim = sum.parts.iter().filter_map(Shape::rim).map(|(radius, _)| radius).fold(f64::INFINITY, f64::min);
         let falls = sum.first_fall(rim);
         if let Some(radius) = falls {
-            sum.limit = Some((radius, true));
+            sum.limit = Some(End { radius, falls: true });
         }
         let rim = falls.unwrap_or(rim);
         if rim < sum.ceiling {
             sum.rim = Some((rim, sum.level(rim)));
         }
-        if sum.parts.iter().any(Profile::falls_within) {
-            let foot = sum.parts.iter().map(Profile::foot).fold(rim, f64::min);
+        if sum.parts.iter().any(Shape::falls_within) {
+            let foot = sum.parts.iter().map(Shape::flat_radius).fold(rim, f64::min);
             if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
                 return Err(Error::NotConvexEnough { radius: foot });
             }
@@ -95,7 +95,8 @@ impl Sum {
             Profile::Tabulated(table) => Some(table),
             _ => None,
         });
-        let mut looks: Vec<f64> = tables.flat_map(Tabulated::looks).filter(|&radius| radius < rim).collect();
+        let mut looks: Vec<f64> =
+            tables.flat_map(Tabulated::slope_check_radii).filter(|&radius| radius < rim).collect();
         looks.sort_by(f64::total_cmp);
         let sizes = |x: f64| self.total(|part| part.slope(x).abs());
         // Parts that cancel leave their rounding.
@@ -107,11 +108,6 @@ impl Sum {
             if falls(middle) { high = middle } else { low = middle }
         }
         Some(low)
-    }
-
-    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
-    pub(super) fn limit(&self) -> Option<(f64, bool)> {
-        self.limit
     }
 
     /// The parts, none of them a sum.
@@ -259,11 +255,59 @@ impl Shape for Sum {
         self.power
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         self.total(|part| Shape::kernel(part, at, span))
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         self.total(|part| Shape::kernel_slope(part, at, span))
+    }
+
+    fn surface_slope(&self, r: f64) -> f64 {
+        self.total(|part| part.surface_slope(r))
+    }
+
+    fn curvature_radius(&self) -> Option<f64> {
+        self.parts.iter().filter_map(Profile::curvature_radius).reduce(f64::min)
+    }
+
+    fn known_to(&self) -> Option<End> {
+        self.limit
+    }
+
+    fn cancellation(&self, x: f64) -> f64 {
+        if !self.parts.iter().any(Shape::falls_within) {
+            return 1.0;
+        }
+        let growth = |f: &dyn Fn(&Profile) -> f64| {
+            let (sum, sizes) = self.parts.iter().map(f).fold((0.0, 0.0), |(a, b), part| (a + part, b + part.abs()));
+            if sum > 0.0 { sizes / sum } else { 1.0 }
+        };
+        growth(&|part| part.level(x)).max(growth(&|part| part.slope(x)))
+    }
+
+    fn kernel_falls(&self) -> bool {
+        self.parts.iter().all(Profile::kernel_falls)
+    }
+
+    fn singular_radii(&self) -> Vec<f64> {
+        let mut radii: Vec<f64> = self.parts.iter().flat_map(Profile::singular_radii).collect();
+        radii.sort_by(f64::total_cmp);
+        radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        radii
+    }
+
+    fn smooth_centre(&self) -> bool {
+        self.parts.iter().all(Profile::smooth_centre)
+    }
+
+    fn interpolation_error(&self, radius: f64) -> InterpolationError {
+        let errors = self.parts.iter().map(|part| part.interpolation_error(radius));
+        errors.fold(InterpolationError::default(), InterpolationError::and)
+    }
+
+    fn noise(&self, radius: f64) -> Option<(f64, f64)> {
+        let noises = self.parts.iter().filter_map(|part| part.noise(radius));
+        noises.reduce(|one, other| if one.0 > other.0 { one } else { other })
     }
 }

@@ -6,7 +6,7 @@
 use super::super::error::Error;
 use super::super::range;
 use super::chart::{self, Chart, flat_core};
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A truncated cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +22,6 @@ impl TruncatedCone {
     /// [`Error::OutOfRange`] by [`range::SLOPE`] and [`range::FLAT_RADIUS`].
     pub fn new(slope: f64, flat_radius: f64) -> Result<TruncatedCone, Error> {
         Ok(TruncatedCone { slope: range::SLOPE.check(slope)?, flat_radius: range::FLAT_RADIUS.check(flat_radius)? })
-    }
-
-    /// The radius b at which the slope jumps, m.
-    pub(super) fn kink(&self) -> f64 {
-        self.flat_radius
     }
 
     fn load_at(&self, t: f64) -> f64 {
@@ -68,7 +63,11 @@ impl Chart for TruncatedCone {
     }
 }
 
-flat_core!(TruncatedCone);
+flat_core!(TruncatedCone {
+    fn surface_slope(&self, r: f64) -> f64 {
+        if r > self.flat_radius { self.slope } else { 0.0 }
+    }
+});
 
 #[cfg(test)]
 mod tests {

@@ -6,7 +6,7 @@
 use super::super::error::Error;
 use super::super::range;
 use super::chart::{self, Chart, flat_core};
-use super::{At, DoubleDouble, Moments, Ring, Span};
+use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A paraboloid with a flat end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,11 +25,6 @@ impl TruncatedSphere {
             curvature_radius: range::RADIUS.check(radius)?,
             flat_radius: range::FLAT_RADIUS.check(flat_radius)?,
         })
-    }
-
-    /// The radius b at which the slope jumps, m.
-    pub(super) fn kink(&self) -> f64 {
-        self.flat_radius
     }
 
     fn load_at(&self, t: f64) -> f64 {
@@ -78,7 +73,15 @@ impl Chart for TruncatedSphere {
     }
 }
 
-flat_core!(TruncatedSphere);
+flat_core!(TruncatedSphere {
+    fn surface_slope(&self, r: f64) -> f64 {
+        if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
+    }
+
+    fn curvature_radius(&self) -> Option<f64> {
+        Some(self.curvature_radius)
+    }
+});
 
 #[cfg(test)]
 mod tests {

@@ -7,7 +7,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::gauss::{Panel, Singular};
-use super::{At, DoubleDouble, Moments, Span};
+use super::{DoubleDouble, Moments, Span, StressRadius};
 
 /// A stretch of radii in the coordinate t of the kink beneath it.
 #[derive(Clone, Copy)]
@@ -100,7 +100,7 @@ impl Zone {
     }
 
     /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the zone below r, with t = tau sin(theta), tau^2 = r^2 - k^2.
-    pub(super) fn lift(&self, span: &Span, at: &At, above: f64, rise: impl Fn(Node) -> f64) -> f64 {
+    pub(super) fn lift(&self, span: &Span, at: &StressRadius, above: f64, rise: impl Fn(Node) -> f64) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if inner >= 0.0 || self.gap <= 0.0 {
             return 0.0;

@@ -4,7 +4,7 @@
 //! such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the other from the edge
 //! inwards: each where the stress first meets E with the other sign. E is then lowered until the centre meets it too.
 
-use super::super::profile::{At, Point, Profile, Ring};
+use super::super::profile::{Point, Profile, Ring, StressRadius};
 use super::DoubleDouble;
 
 /// Looks at the level E at the most, after it has been bracketed.
@@ -55,12 +55,12 @@ pub(super) struct Problem<'a> {
 
 impl Problem<'_> {
     /// Shear stress over G* m/pi after the kinks, but for the sign of the last stroke.
-    fn shear(&self, kinks: &[Point], at: &At) -> f64 {
+    fn shear(&self, kinks: &[Point], at: &StressRadius) -> f64 {
         self.shear_down_to(self.profile.point(DoubleDouble::ZERO), kinks, at)
     }
 
     /// The share of that of the rings beyond `least`.
-    pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &At) -> f64 {
+    pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &StressRadius) -> f64 {
         let (mut outer, mut sign, mut sum) = (self.edge, 1.0, 0.0);
         for inner in kinks.iter().copied().chain([least]) {
             if outer.radius < at.radius {
@@ -79,7 +79,7 @@ impl Problem<'_> {
         let least = if self.cutoff > 0.0 { self.profile.level(self.cutoff) } else { 0.0 };
         let missing = |level: f64| {
             let point = self.profile.point(DoubleDouble::from(level));
-            limit - sign * self.shear(kinks, &At::point(&point))
+            limit - sign * self.shear(kinks, &StressRadius::of_point(&point))
         };
         // Steps of a fraction of the last spacing, and ever longer ones: a stress that turns back is not stepped over.
         let before = match kinks {
@@ -132,7 +132,7 @@ impl Problem<'_> {
         let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
         let width = kinks.last().unwrap_or(&self.edge).radius - self.cutoff;
         let looks = if self.profile.kernel_falls() { 1 } else { CORE };
-        let value = |part: f64| sign * self.shear(kinks, &At::radius(self.cutoff + width * part));
+        let value = |part: f64| sign * self.shear(kinks, &StressRadius::new(self.cutoff + width * part));
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
         let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
         if looks > 1 {
@@ -214,7 +214,7 @@ impl Problem<'_> {
 
     /// The smallest E, and its kinks; `None` if `go_on` said no, or there is no such E.
     pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Equal> {
-        let middle = At::radius(0.5 * (self.cutoff + self.edge.radius));
+        let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.shear(&[], &middle) / (self.reversals as f64).sqrt();
         if !(guess > 0.0 && guess.is_finite()) {
             return None;

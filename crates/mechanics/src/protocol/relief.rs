@@ -9,7 +9,7 @@
 //! stroke, during which nothing slips but the edge itself, takes the load off it.
 
 use super::super::contact::Contact;
-use super::super::profile::{At, Point, Ring};
+use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
 use super::minimax::Problem;
 use super::{DoubleDouble, End, cutoff_of, outermost_singular};
@@ -151,7 +151,7 @@ impl<'a> Relief<'a> {
             worst = worst.max(stress.abs());
         }
         if cut.radius > self.problem.cutoff {
-            let at = At::point(cut);
+            let at = StressRadius::of_point(cut);
             worst = worst.max(self.problem.shear_down_to(*cut, kinks, &at).abs());
         }
         worst
@@ -219,7 +219,7 @@ impl<'a> Relief<'a> {
     /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `go_on` said no.
     pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Vec<f64>> {
         let problem = &self.problem;
-        let middle = At::radius(0.5 * (problem.cutoff + problem.edge.radius));
+        let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
         let guess = problem.shear_down_to(zero, &[], &middle) / (problem.reversals as f64 + 1.0).sqrt();
         if !(guess > 0.0 && guess.is_finite()) {
@@ -294,7 +294,7 @@ impl<'a> Relief<'a> {
 
 /// A radius where the inside is looked at.
 struct Look {
-    at: At,
+    at: StressRadius,
     /// The stress there of so many rings of the history, from the centre outward, over G* m/pi.
     below: Vec<f64>,
 }
@@ -302,11 +302,11 @@ struct Look {
 /// Even radii, and the kinks of the history.
 fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Look> {
     let (least, most) = (problem.cutoff, problem.edge.radius);
-    let even = (0..GRID).map(|index| At::radius(least + (most - least) * index as f64 / GRID as f64));
+    let even = (0..GRID).map(|index| StressRadius::new(least + (most - least) * index as f64 / GRID as f64));
     let bends = history.iter().map(|(ring, _)| ring.inner).filter(|bend| bend.radius > least && bend.radius < most);
-    let mut all: Vec<At> = even.chain(bends.map(|bend| At::point(&bend))).collect();
+    let mut all: Vec<StressRadius> = even.chain(bends.map(|bend| StressRadius::of_point(&bend))).collect();
     all.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-    let look = |at: At| {
+    let look = |at: StressRadius| {
         let mut below = Vec::with_capacity(history.len() + 1);
         let mut sum = 0.0;
         for (ring, line) in history {

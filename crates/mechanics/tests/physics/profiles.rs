@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use stickslip_mechanics::DoubleDouble;
 use stickslip_mechanics::Error;
 use stickslip_mechanics::profile::{
-    At, Cone, ExactSphere, FlatPunch, Moments, PowerLaw, Profile, Ring, RoundedCone, RoundedPunch, Sphere, Sum,
-    Tabulated, TruncatedCone, TruncatedSphere,
+    Cone, ExactSphere, FlatPunch, Moments, PowerLaw, Profile, Ring, RoundedCone, RoundedPunch, Sphere, StressRadius,
+    Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
 
 fn profile(family: &str, parameters: &str) -> Profile {
@@ -47,9 +47,9 @@ fn evaluate(profile: &Profile, function: &str, a: &[f64]) -> f64 {
         "width" => profile.moments(&ring(profile, a[0], a[1])).width,
         "first" => profile.moments(&ring(profile, a[0], a[1])).first,
         "second" => profile.moments(&ring(profile, a[0], a[1])).second,
-        "kernel" => profile.kernel(&At::radius(a[2]), &ring(profile, a[0], a[1])),
-        "kernel_slope" => profile.kernel_slope(&At::radius(a[2]), &ring(profile, a[0], a[1])),
-        "lift" => profile.lift(&At::radius(a[2]), &ring(profile, a[0], a[1])),
+        "kernel" => profile.kernel(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
+        "kernel_slope" => profile.kernel_slope(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
+        "lift" => profile.lift(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
         other => panic!("no function {other}"),
     }
 }
@@ -65,7 +65,7 @@ fn cusp(profile: &Profile, function: &str, a: &[f64]) -> f64 {
         if v < 1e-2 * point.radius {
             size += match function {
                 "kernel" if r < point.radius => profile.slope(point.radius) * point.radius / v,
-                "kernel_slope" => profile.kernel_slope(&At::radius(r), &ring).abs() * (point.radius / v).powi(2),
+                "kernel_slope" => profile.kernel_slope(&StressRadius::new(r), &ring).abs() * (point.radius / v).powi(2),
                 "lift" if r > point.radius => depth * point.radius / v,
                 _ => 0.0,
             };
@@ -108,10 +108,10 @@ fn a_flat_punch_is_all_edge() {
     let m = punch.moments(&ring);
     assert!(m.width + m.first + m.second < 1e-300);
     assert!((punch.radius(1.0) - 0.002).abs() < 1e-300 && (punch.radius(0.0) - 0.002).abs() < 1e-300);
-    let kernel = punch.kernel(&At::radius(0.0012), &ring);
+    let kernel = punch.kernel(&StressRadius::new(0.0012), &ring);
     assert!((kernel / (depth / 0.0016) - 1.0).abs() < 1e-15);
-    assert!(punch.kernel(&At::radius(0.002), &ring).is_infinite());
-    assert!(punch.kernel(&At::radius(0.003), &ring) < 1e-300);
+    assert!(punch.kernel(&StressRadius::new(0.002), &ring).is_infinite());
+    assert!(punch.kernel(&StressRadius::new(0.003), &ring) < 1e-300);
     assert!((punch.indentation_for(1e-8) / 5e-6 - 1.0).abs() < 1e-15);
     assert!(punch.limit_radius().is_none() && punch.check_radius(0.002).is_ok());
 }
@@ -127,10 +127,10 @@ fn a_punch_caps_a_sum() {
     let (m, n) = (sum.moments(&ring), sphere.moments(&face));
     assert!((m.width / n.width - 1.0).abs() < 1e-14);
     assert!((m.first / (n.first + 0.5 * rim * n.width) - 1.0).abs() < 1e-14);
-    let at = At::radius(0.0008);
+    let at = StressRadius::new(0.0008);
     let kernel = sphere.kernel(&at, &face) + 0.5 * rim / 0.0006;
     assert!((sum.kernel(&at, &ring) / kernel - 1.0).abs() < 1e-14);
-    assert!(sum.kernel(&At::radius(0.001), &ring).is_infinite());
+    assert!(sum.kernel(&StressRadius::new(0.001), &ring).is_infinite());
     // int_0^d X dy = int_0^rim sqrt(R y) dy + (d - rim) b.
     let load = 2.0 / 3.0 * 0.001 * rim + 0.5 * rim * 0.001;
     assert!((sum.indentation_for(load) / (1.5 * rim) - 1.0).abs() < 1e-14);
@@ -154,16 +154,16 @@ fn infinities_are_where_they_belong_and_never_nan() {
         let d = profile.level(0.002);
         let whole = ring(&profile, d, d);
         for r in [0.0, 1e-300, 1e-20, 0.001, 0.001 * (1.0 + 1e-15), 0.002, 0.002 * (1.0 - 1e-15), 0.003, 1e9] {
-            let at = At::radius(r);
+            let at = StressRadius::new(r);
             let (k, s) = (profile.kernel(&at, &whole), profile.kernel_slope(&at, &whole));
             assert!(!k.is_nan() && k >= 0.0 && !s.is_nan(), "{family} {r}: {k} {s}");
             assert!(profile.lift(&at, &whole) >= 0.0 && profile.arc(&at, &whole) >= 0.0, "{family} {r}");
         }
         if let Some(r) = singular {
-            assert!(profile.kernel(&At::radius(r), &whole).is_infinite(), "{family}");
+            assert!(profile.kernel(&StressRadius::new(r), &whole).is_infinite(), "{family}");
         }
         let nothing = ring(&profile, 0.0, 0.0);
-        assert!(profile.kernel(&At::radius(0.0), &nothing).is_finite() || singular.is_some(), "{family}");
+        assert!(profile.kernel(&StressRadius::new(0.0), &nothing).is_finite() || singular.is_some(), "{family}");
         assert!(profile.moments(&nothing).first < 1e-300, "{family}");
     }
 }
@@ -182,7 +182,7 @@ fn a_profile_that_ends_says_where() {
     assert!((table.radius(1.0) / limit - 1.0).abs() < 1e-15);
     assert!(matches!(table.check_radius(limit), Err(Error::BeyondProfile { .. })));
     let beyond = ring(&table, 1.0, 1.0);
-    assert!(table.kernel(&At::radius(0.0), &beyond).is_finite() && table.moments(&beyond).first.is_finite());
+    assert!(table.kernel(&StressRadius::new(0.0), &beyond).is_finite() && table.moments(&beyond).first.is_finite());
 }
 
 /// Any profile at all, with a contact radius that suits it.
@@ -262,7 +262,7 @@ proptest! {
         prop_assert!(close(sum.width, w.width, tolerance), "{sum:?} {w:?}");
         prop_assert!(close(sum.first, w.first, tolerance), "{sum:?} {w:?}");
         prop_assert!(close(sum.second, w.second, tolerance), "{sum:?} {w:?}");
-        let at = At::radius(r * a);
+        let at = StressRadius::new(r * a);
         let apart = [inner, middle, outer].iter().all(|point| (point.radius / at.radius - 1.0).abs() > 1e-3);
         if apart {
             let (one, two) = (profile.kernel(&at, &below) + profile.kernel(&at, &above), profile.kernel(&at, &whole));
@@ -280,7 +280,7 @@ proptest! {
         let (one, two) = (ring(&whole, y, y * (1.0 - low)), ring(&sum, y, y * (1.0 - low)));
         let (m, n) = (whole.moments(&one), sum.moments(&two));
         prop_assert!(close(m.width, n.width, 1e-12) && close(m.first, n.first, 1e-12) && close(m.second, n.second, 1e-12), "{m:?} {n:?}");
-        let at = At::radius(r * a);
+        let at = StressRadius::new(r * a);
         if (one.inner.radius / at.radius - 1.0).abs() > 1e-3 && r < 0.999 {
             prop_assert!(close(whole.kernel(&at, &one), sum.kernel(&at, &two), 1e-12));
             prop_assert!(close(whole.lift(&at, &one), sum.lift(&at, &two), 1e-12));
@@ -298,7 +298,7 @@ proptest! {
         }
         let m = profile.moments(&ring);
         prop_assert!(m.width >= 0.0 && m.first >= 0.0 && m.second >= 0.0, "{m:?}");
-        for at in [At::radius(r * ring.outer.radius), At::radius(0.0), At::point(&ring.inner), At::point(&ring.outer)] {
+        for at in [StressRadius::new(r * ring.outer.radius), StressRadius::new(0.0), StressRadius::of_point(&ring.inner), StressRadius::of_point(&ring.outer)] {
             prop_assert!(profile.kernel(&at, &ring) >= 0.0, "{at:?}");
             prop_assert!(!profile.kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
             prop_assert!(profile.lift(&at, &ring) >= 0.0 && profile.arc(&at, &ring) >= 0.0, "{at:?}");

@@ -1,11 +1,11 @@
 //! From f' to the panels of a table.
 //!
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
-//! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`Far`], once for a block of panels.
+//! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
 
 use super::super::super::double_double::DoubleDouble;
 use super::super::gauss;
-use super::far::{Far, Sampled};
+use super::far_field::{FarField, Sampled};
 use super::panel::{self, Panel};
 use super::spline::Knot;
 
@@ -47,7 +47,7 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
         })
         .collect();
     let bounds: Vec<f64> = knots.iter().map(|knot| knot.radius * knot.radius).collect();
-    let far = Far::new(&bounds, |index, add| {
+    let far = FarField::new(&bounds, |index, add| {
         let (segment, width) = (&segments[index], knots[index + 1].radius - knots[index].radius);
         gauss::Panel::fine(width).visit(|step, weight| {
             let r = segment.start + step;
@@ -126,7 +126,7 @@ struct Field {
 }
 
 impl Field {
-    fn new(block: &[Stretch], segments: &[Segment], far: &Far) -> Field {
+    fn new(block: &[Stretch], segments: &[Segment], far: &FarField) -> Field {
         let (first, last) = (&block[0], &block[block.len() - 1]);
         let low = first.base * first.base + first.low * first.low;
         let high = last.base * last.base + last.high * last.high;

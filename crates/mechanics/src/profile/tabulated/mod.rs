@@ -8,22 +8,22 @@
 //! but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
-mod doubt;
-mod far;
+mod far_field;
+mod interpolation_error;
 mod panel;
 mod spline;
 #[cfg(test)]
 mod tests;
 
 use super::super::double_double::DoubleDouble;
-use super::super::error::Error;
+use super::super::error::{Error, TableFault};
 use super::super::range;
 use super::chart::{self, Chart};
 use super::gauss;
-use super::shape::Shape;
-use super::{At, Moments, Point, Ring, Span};
-pub use doubt::Doubt;
-use far::Far;
+use super::shape::{End, Shape};
+use super::{Moments, Point, Ring, Span, StressRadius};
+use far_field::FarField;
+pub use interpolation_error::InterpolationError;
 use panel::Panel;
 use spline::Knot;
 
@@ -31,15 +31,16 @@ use spline::Knot;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     radii: Vec<f64>,
+    heights: Vec<f64>,
     /// Estimate of the noise of the heights, m.
     noise: f64,
-    /// What the interpolation leaves open, at rising radii.
-    doubts: Vec<(f64, Doubt)>,
+    /// What the interpolation leaves open, at increasing radii.
+    interpolation_errors: Vec<(f64, InterpolationError)>,
     panels: Vec<Panel>,
     /// Moments and depth of all runs of panels, as a binary tree with the leaves in its second half.
     tree: Vec<(Moments, f64)>,
     /// The kernel's sources.
-    sources: Far,
+    sources: FarField,
     knots: Vec<f64>,
     /// Radius, level and load at the end.
     end: (f64, f64, f64),
@@ -70,23 +71,23 @@ impl Tabulated {
         #[expect(clippy::cast_precision_loss, reason = "a length is far below 2^52")]
         range::TABLE_POINTS.check(radii.len() as f64)?;
         if radii.len() != heights.len() {
-            return Err(Error::Table { what: "r and z differ in length", index: radii.len().min(heights.len()) });
+            return Err(Error::Table { fault: TableFault::LengthsDiffer, index: radii.len().min(heights.len()) });
         }
         for (&radius, &height) in radii.iter().zip(heights) {
             range::TABLE_RADIUS.check(radius)?;
             range::TABLE_HEIGHT.check(height)?;
         }
         if radii[0] > 0.0 {
-            return Err(Error::Table { what: "r does not begin at 0", index: 0 });
+            return Err(Error::Table { fault: TableFault::FirstRadiusNotZero, index: 0 });
         }
         if let Some(index) = radii.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(Error::Table { what: "r does not rise", index: index + 1 });
+            return Err(Error::Table { fault: TableFault::RadiusNotRising, index: index + 1 });
         }
         range::RADIUS.check(radii[1])?;
         let knots = spline::knots(radii, heights);
         let mut table = Tabulated::from_knots(&knots, whole)?;
-        table.doubts = doubt::doubts(radii, heights, &knots);
-        table.radii = radii.to_vec();
+        table.interpolation_errors = interpolation_error::up_to_radii(radii, heights, &knots);
+        (table.radii, table.heights) = (radii.to_vec(), heights.to_vec());
         table.noise = noise(radii, heights);
         Ok(table)
     }
@@ -98,7 +99,7 @@ impl Tabulated {
         let Some(last) = panels.last() else {
             return Err(match falls_at {
                 Some(radius) => Error::NotConvexEnough { radius },
-                None => Error::Table { what: "z does not rise anywhere", index: knots.len() - 1 },
+                None => Error::Table { fault: TableFault::HeightNeverRises, index: knots.len() - 1 },
             });
         };
         let end = (last.end().1, level, load);
@@ -112,7 +113,7 @@ impl Tabulated {
         }
         let mut bounds: Vec<f64> = panels.iter().map(|panel| panel.square.value()).collect();
         bounds.push(last.end().0.value());
-        let sources = Far::new(&bounds, |index, add| {
+        let sources = FarField::new(&bounds, |index, add| {
             let panel = &panels[index];
             gauss::Panel::fine(panel.high - panel.low).visit(|below, weight| {
                 let t = panel.high - below;
@@ -123,8 +124,9 @@ impl Tabulated {
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
         Ok(Tabulated {
             radii: Vec::new(),
+            heights: Vec::new(),
             noise: 0.0,
-            doubts: Vec::new(),
+            interpolation_errors: Vec::new(),
             panels,
             tree,
             sources,
@@ -135,28 +137,8 @@ impl Tabulated {
         })
     }
 
-    /// The radius, m, that every contact must stay below, and whether it is there because g falls.
-    pub(super) fn limit(&self) -> (f64, bool) {
-        (self.falls.unwrap_or(self.end.0), self.falls.is_some())
-    }
-
-    /// The radius, m, up to which g is known, and whether it ends because g falls.
-    pub(super) fn reach(&self) -> (f64, bool) {
-        (self.end.0, self.falls.is_some_and(|radius| radius >= self.end.0))
-    }
-
-    /// Whether g falls somewhere within its reach.
-    pub(super) fn falls_within(&self) -> bool {
-        self.falls.is_some_and(|radius| radius < self.end.0)
-    }
-
-    /// The radius, m, at which the surface leaves the plane.
-    pub(super) fn foot(&self) -> f64 {
-        self.panels.first().map_or(0.0, |panel| panel.radius)
-    }
-
-    /// Radii, m, rising, between which g' cannot hide a fall.
-    pub(super) fn looks(&self) -> impl Iterator<Item = f64> {
+    /// Radii, m, increasing, between which g' cannot hide a fall.
+    pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
         self.panels.iter().flat_map(|panel| {
             let mut places = panel::places(panel.low, panel.high).to_vec();
             places.extend([panel.low, panel.high]);
@@ -167,15 +149,8 @@ impl Tabulated {
 
     /// An estimate of the noise of the heights, m, from what a local cubic leaves over. A coarse table of a smooth surface has some too.
     #[must_use]
-    pub fn noise(&self) -> f64 {
+    pub fn height_noise(&self) -> f64 {
         self.noise
-    }
-
-    /// What the interpolation between the points leaves open in a contact of the radius x, m.
-    #[must_use]
-    pub fn doubt(&self, x: f64) -> Doubt {
-        let index = self.doubts.partition_point(|(radius, _)| *radius < x);
-        self.doubts.get(index).or(self.doubts.last()).map_or_else(Doubt::default, |(_, doubt)| *doubt)
     }
 
     /// By how much g at the radius x, m, has more noise than the heights do (pure number), if theirs is independent:
@@ -237,7 +212,13 @@ impl Tabulated {
     }
 
     /// Sums over the panels of a span: `panel` for one, `far` for sources that stand for many; only what lies beyond r counts.
-    fn gather(&self, at: &At, span: &Span, panel: impl Fn(&Panel, &Span) -> f64, far: impl Fn(f64, f64) -> f64) -> f64 {
+    fn gather(
+        &self,
+        at: &StressRadius,
+        span: &Span,
+        panel: impl Fn(&Panel, &Span) -> f64,
+        far: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
         let (low, whole, high) = self.parts(&span);
         let mut sum = 0.0;
@@ -356,7 +337,7 @@ impl Shape for Tabulated {
         chart::gap(&self.panels[first], &inside, depth)
     }
 
-    fn lift(&self, at: &At, span: &Span) -> f64 {
+    fn lift(&self, at: &StressRadius, span: &Span) -> f64 {
         let (low, whole, high) = self.parts(span);
         let whole = whole.map(|index| (index, self.panels[index].span()));
         let (mut sum, mut above) = (0.0, 0.0);
@@ -390,12 +371,44 @@ impl Shape for Tabulated {
         sum.0
     }
 
-    fn kernel(&self, at: &At, span: &Span) -> f64 {
+    fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         self.gather(at, span, |panel, span| chart::kernel(panel, at, span), |gap, weight| weight / gap.sqrt())
     }
 
-    fn kernel_slope(&self, at: &At, span: &Span) -> f64 {
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
         self.gather(at, span, |panel, span| chart::kernel_slope(panel, at, span), far)
+    }
+
+    fn surface_slope(&self, r: f64) -> f64 {
+        let index = self.radii.partition_point(|point| *point < r).clamp(1, self.radii.len() - 1);
+        (self.heights[index] - self.heights[index - 1]) / (self.radii[index] - self.radii[index - 1])
+    }
+
+    fn limit(&self) -> Option<End> {
+        Some(End { radius: self.falls.unwrap_or(self.end.0), falls: self.falls.is_some() })
+    }
+
+    fn known_to(&self) -> Option<End> {
+        Some(End { radius: self.end.0, falls: self.falls.is_some_and(|radius| radius >= self.end.0) })
+    }
+
+    fn falls_within(&self) -> bool {
+        self.falls.is_some_and(|radius| radius < self.end.0)
+    }
+
+    fn flat_radius(&self) -> f64 {
+        self.panels.first().map_or(0.0, |panel| panel.radius)
+    }
+
+    fn interpolation_error(&self, radius: f64) -> InterpolationError {
+        let errors = &self.interpolation_errors;
+        let index = errors.partition_point(|(end, _)| *end < radius);
+        errors.get(index).or(errors.last()).map_or_else(InterpolationError::default, |(_, error)| *error)
+    }
+
+    fn noise(&self, radius: f64) -> Option<(f64, f64)> {
+        let amplification = self.noise_amplification(radius);
+        Some((self.noise * amplification, amplification))
     }
 }

@@ -6,7 +6,7 @@
 use super::super::super::double_double::DoubleDouble;
 use super::super::chart::Chart;
 use super::super::zone::Zone;
-use super::super::{At, Moments, Span};
+use super::super::{Moments, Span, StressRadius};
 
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
@@ -159,7 +159,7 @@ impl Panel {
     }
 
     /// The lift of a span within, `above` the level added to h.
-    pub(super) fn lift(&self, at: &At, span: &Span, above: f64) -> f64 {
+    pub(super) fn lift(&self, at: &StressRadius, span: &Span, above: f64) -> f64 {
         let zone = self.zone(span);
         zone.lift(span, at, above, |node| self.rise_at(node.t, zone.high, node.dt))
     }

@@ -1,6 +1,6 @@
 //! A table against the sum of a sphere and rounded punches that it is.
 
-use super::super::{At, Profile, Ring, RoundedPunch, Sphere, Sum};
+use super::super::{Profile, Ring, RoundedPunch, Sphere, StressRadius, Sum};
 use super::*;
 
 /// Radii and jumps of f'' of a convex profile, the first at the centre.
@@ -67,7 +67,7 @@ fn rings_of_a_table_are_those_of_the_sum() {
             let error = worst(&[(m.width, n.width), (m.first, n.first), (m.second, n.second)]);
             assert!(error < 1e-12, "{idle} {inner} {outer}: {error:e}");
             for share in [0.2, 0.45, 0.999, 1.0, 1.2] {
-                let at = At::radius(inner + share * (outer - inner));
+                let at = StressRadius::new(inner + share * (outer - inner));
                 let mut pairs = vec![(table.lift(&at, &ours), sum.lift(&at, &exact))];
                 if share < 1.0 {
                     pairs.push((table.kernel(&at, &ours), sum.kernel(&at, &exact)));
@@ -100,7 +100,7 @@ fn a_hollow_is_refused_where_g_falls() {
     let radii: Vec<f64> = (0..100u32).map(|i| 0.01 * f64::from(i)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| r * r - 0.9 * r.powi(4)).collect();
     let table = Tabulated::new(&radii, &heights).unwrap();
-    let (limit, falls) = table.limit();
+    let End { radius: limit, falls } = table.limit().unwrap();
     // g = 2 x^2 - 0.9 (8/3) x^4: g' = 0 at x^2 = 4/9.6.
     assert!(falls && (limit - (4.0f64 / 9.6).sqrt()).abs() < 2e-3, "{limit}");
     let hole: Vec<f64> = radii.iter().map(|r| -r * r).collect();
@@ -136,6 +136,6 @@ fn amplified_noise() {
     let sigma = 1e-12 / 12f64.sqrt();
     let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 + 1e-12 * random()).collect();
     let table = Tabulated::new(&radii, &heights).unwrap();
-    assert!((table.noise() / sigma - 1.0).abs() < 0.1, "{}", table.noise() / sigma);
+    assert!((table.height_noise() / sigma - 1.0).abs() < 0.1, "{}", table.height_noise() / sigma);
     assert!((20.0..50.0).contains(&table.noise_amplification(1e-3)), "{}", table.noise_amplification(1e-3));
 }

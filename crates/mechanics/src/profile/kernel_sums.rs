@@ -5,8 +5,9 @@
 
 use super::super::double_double::DoubleDouble;
 #[cfg(test)]
-use super::count;
-use super::{At, Profile, Ring, Sphere};
+use super::call_count;
+use super::shape::Shape;
+use super::{Profile, Ring, StressRadius};
 
 /// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
 const LANES: usize = 8;
@@ -16,20 +17,18 @@ impl Profile {
     /// `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
-        if let Profile::Sphere(sphere) = self {
-            return Roots::new(sphere, rings).sums(radii);
-        }
-        radii.iter().map(|&radius| self.kernel_sum(rings, &At::radius(radius))).collect()
+        let ring_by_ring = || radii.iter().map(|&radius| self.kernel_sum(rings, &StressRadius::new(radius))).collect();
+        Shape::kernel_sums(self, rings, radii).unwrap_or_else(ring_by_ring)
     }
 
-    fn kernel_sum(&self, rings: &[(Ring, f64)], at: &At) -> f64 {
+    fn kernel_sum(&self, rings: &[(Ring, f64)], at: &StressRadius) -> f64 {
         let beyond = rings.iter().rev().take_while(|(ring, _)| ring.outer.radius >= at.radius);
         beyond.filter(|(_, weight)| weight.abs() > 0.0).map(|(ring, weight)| weight * self.kernel(at, ring)).sum()
     }
 }
 
 /// Rings of a sphere as arrays, from the edge inward.
-struct Roots {
+pub(super) struct Roots {
     /// The outer edge.
     edge: DoubleDouble,
     rings: Vec<Inward>,
@@ -47,8 +46,9 @@ struct Inward {
 }
 
 impl Roots {
-    fn new(sphere: &Sphere, rings: &[(Ring, f64)]) -> Roots {
-        let factor = 2.0 / sphere.curvature_radius();
+    /// The rings of a sphere of this curvature radius, m, and their weights.
+    pub(super) fn new(curvature_radius: f64, rings: &[(Ring, f64)]) -> Roots {
+        let factor = 2.0 / curvature_radius;
         let inward = |(ring, weight): &(Ring, f64)| {
             let (square, rest) = ring.inner.square.parts();
             // x_outer^2 - x_inner^2 = R (y_outer - y_inner).
@@ -60,7 +60,8 @@ impl Roots {
         }
     }
 
-    fn sums(&self, radii: &[f64]) -> Vec<f64> {
+    /// The sums at each radius, m.
+    pub(super) fn sums(&self, radii: &[f64]) -> Vec<f64> {
         let mut sums = Vec::with_capacity(radii.len());
         for radii in radii.chunks(LANES) {
             // Lanes left over repeat the first.
@@ -88,7 +89,7 @@ impl Roots {
         let (beyond, others) = self.rings.split_at(self.rings.partition_point(|ring| ring.square > clear));
         for ring in beyond {
             #[cfg(test)]
-            count::add(|calls| &mut calls.kernel);
+            call_count::add(|calls| &mut calls.kernel);
             let root: [f64; LANES] = std::array::from_fn(|lane| excess(lane, ring.square, ring.rest).sqrt());
             for lane in 0..LANES {
                 sums[lane] += ring.share / (reached[lane] + root[lane]);
@@ -97,7 +98,7 @@ impl Roots {
         }
         for ring in others {
             #[cfg(test)]
-            count::add(|calls| &mut calls.kernel);
+            call_count::add(|calls| &mut calls.kernel);
             let root: [f64; LANES] = std::array::from_fn(|lane| root_of(excess(lane, ring.square, ring.rest)));
             for lane in 0..LANES {
                 let whole = ring.share / (reached[lane] + root[lane]);

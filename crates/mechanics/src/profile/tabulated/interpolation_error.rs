@@ -2,33 +2,33 @@
 //!
 //! f' of the curve through every other point is taken from f' of the curve through all. On smooth data the difference is some
 //! three times the error of the latter, whose order is n^-2, and nearer to once where the surface has a kink: half of it is
-//! the doubt. Its Abel integral is the doubt about g, itself that about the pressure: a step of f' of T adds (pi/2) T arcosh
+//! the error estimate. Its Abel integral estimates the error of g, itself that of the pressure: a step of f' of T adds (pi/2) T arcosh
 //! to the kernel.
 
 use super::spline::{Knot, knots};
 
-/// Radii at which doubts are worked out.
+/// Radii at which errors are estimated.
 const RADII: usize = 16;
 
 /// What the interpolation leaves open up to a radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Doubt {
+pub struct InterpolationError {
     /// int |error of g| dx + a max |error of g|, m^2: a force over 2 E*.
     pub load: f64,
     /// Error of the kernel, pure number.
     pub kernel: f64,
 }
 
-impl Doubt {
+impl InterpolationError {
     /// Of two profiles added up.
     #[must_use]
-    pub fn and(self, other: Doubt) -> Doubt {
-        Doubt { load: self.load + other.load, kernel: self.kernel + other.kernel }
+    pub fn and(self, other: InterpolationError) -> InterpolationError {
+        InterpolationError { load: self.load + other.load, kernel: self.kernel + other.kernel }
     }
 }
 
-/// Doubts at rising radii, m, each for all the radii up to it.
-pub(super) fn doubts(radii: &[f64], heights: &[f64], curve: &[Knot]) -> Vec<(f64, Doubt)> {
+/// Error estimates at increasing radii, m, each for all the radii up to it.
+pub(super) fn up_to_radii(radii: &[f64], heights: &[f64], curve: &[Knot]) -> Vec<(f64, InterpolationError)> {
     let difference = difference(curve, &through_half(radii, heights));
     let end = radii[radii.len() - 1];
     let mut found = Vec::with_capacity(RADII);
@@ -40,7 +40,7 @@ pub(super) fn doubts(radii: &[f64], heights: &[f64], curve: &[Knot]) -> Vec<(f64
         level = level.max(here);
         let steepest = difference.iter().take_while(|knot| knot.radius < radius).map(|knot| knot.slope.abs());
         let kernel = std::f64::consts::FRAC_PI_2 * steepest.fold(0.0, f64::max);
-        found.push((radius, Doubt { load: area + radius * level, kernel }));
+        found.push((radius, InterpolationError { load: area + radius * level, kernel }));
     }
     found
 }

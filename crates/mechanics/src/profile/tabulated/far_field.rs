@@ -22,7 +22,7 @@ struct Cluster {
 
 /// A tree of clusters over items in rising order.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Far {
+pub(super) struct FarField {
     clusters: Vec<Cluster>,
 }
 
@@ -96,11 +96,11 @@ fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
     shares.map(|share| share / total)
 }
 
-impl Far {
+impl FarField {
     /// The clusters of items that fill the intervals between consecutive `bounds`; `sources` gives an item's sources, place and
     /// weight each.
-    pub(super) fn new(bounds: &[f64], sources: impl Fn(usize, &mut dyn FnMut(f64, f64))) -> Far {
-        let mut far = Far { clusters: Vec::new() };
+    pub(super) fn new(bounds: &[f64], sources: impl Fn(usize, &mut dyn FnMut(f64, f64))) -> FarField {
+        let mut far = FarField { clusters: Vec::new() };
         if bounds.len() > 1 {
             far.build(bounds, &sources, 0, bounds.len() - 1);
         }
@@ -208,13 +208,13 @@ impl Sampled {
 
 #[cfg(test)]
 mod tests {
-    use super::Far;
+    use super::FarField;
 
     #[test]
     fn far_and_near_together_are_the_whole() {
         let bounds: Vec<f64> = (0..=100u32).map(|i| f64::from(i * i)).collect();
         let source = |item: usize| (0.3 * bounds[item] + 0.7 * bounds[item + 1], 1.0 + bounds[item].sin());
-        let far = Far::new(&bounds, |item, add| {
+        let far = FarField::new(&bounds, |item, add| {
             let (at, weight) = source(item);
             add(at, weight);
         });
