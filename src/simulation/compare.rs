@@ -13,7 +13,8 @@ use stickslip_wire::{
     SolverKind, limits,
 };
 
-use super::run::{contact, equal_peaks, follow, foundation, stresses};
+use super::path::equal_peaks;
+use super::run::{contact, follow, foundation, stresses};
 use super::{Failure, Solver};
 use crate::admission::Stop;
 

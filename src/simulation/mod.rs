@@ -5,6 +5,7 @@
 
 mod compare;
 pub mod cost;
+mod path;
 mod protocol;
 mod robustness;
 mod rows;
@@ -15,9 +16,10 @@ mod sweep;
 mod warnings;
 
 pub use compare::compare;
+pub use path::equal_peaks;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use rows::Rows;
-pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
+pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use sweep::{Sweep, SweepError, Workers};
 pub use warnings::{Seen, missed, news, warnings};

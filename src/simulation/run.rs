@@ -10,7 +10,9 @@ use stickslip_wire::{
 };
 
 use super::{
-    Failure, Solver, cost, quantity,
+    Failure, Solver, cost,
+    path::{equal_peaks, moves},
+    quantity,
     warnings::{Seen, missed, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
@@ -118,7 +120,7 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
 pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
-    let moves = plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
+    let moves = moves(plan, start.gross_slip_displacement(), None).map(|step| step.step());
     let springs = springs::reach(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
     springs.map_err(refused_at("/contact", setup.preload))
 }
@@ -135,15 +137,6 @@ fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Fail
     }
 }
 
-/// The displacements of a plan that follows the law of equal peaks, on the contact as it stands.
-///
-/// # Errors
-/// [`Failure::Refused`] for a cut-off radius that the contact does not allow.
-pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
-    plan.protocol(solver.exact())
-        .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })
-}
-
 /// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
 /// [`equal_peaks`] has found for the plan.
 ///
@@ -157,8 +150,7 @@ pub fn follow<S: Solver>(
     stop: &Stop,
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
-    let moves = plan.moves(solver.gross_slip_displacement(), protocol);
-    for (index, step) in moves.enumerate() {
+    for (index, step) in moves(plan, solver.gross_slip_displacement(), protocol).enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, &plan.place_of(index, None)),

@@ -3,12 +3,11 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{self as mechanics, Contact, Normal, Tangential, protocol, range, range::Range};
+use stickslip_mechanics::{self as mechanics, Normal, Tangential, range, range::Range};
 
 use super::check::{At, Faults};
 use super::limits;
 use super::one_key::{given, one_key};
-use super::reply::Protocol;
 
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
@@ -238,40 +237,6 @@ impl Plan {
             Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
             Plan::Single(step) => usize::from(step.is_curved()),
             Plan::Displacement(_) | Plan::Force(_) | Plan::FallingAmplitude(_) | Plan::EqualPeaks(_) => 0,
-        }
-    }
-
-    /// The displacements that the law of equal peaks gives on `contact`, if the path follows it.
-    ///
-    /// # Errors
-    /// That of [`protocol::equal_peaks`].
-    pub fn protocol(&self, contact: &Contact) -> Result<Option<Protocol>, mechanics::Error> {
-        let Plan::EqualPeaks(peaks) = self else { return Ok(None) };
-        let protocol::EqualPeaks { displacements, cutoff_radius } =
-            protocol::equal_peaks(contact, peaks.reversals, peaks.cutoff_radius)?;
-        Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
-    }
-
-    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and `protocol` what
-    /// [`Plan::protocol`] has found for it.
-    pub fn moves<'a>(
-        &'a self,
-        gross_slip: f64,
-        protocol: Option<&'a Protocol>,
-    ) -> Box<dyn Iterator<Item = Move> + Send + 'a> {
-        match self {
-            Plan::Moves(moves) => Box::new(moves.iter().copied()),
-            Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
-            Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
-            Plan::FallingAmplitude(fall) => {
-                let amplitude = fall.amplitude.unwrap_or(gross_slip);
-                Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
-            }
-            Plan::EqualPeaks(_) => {
-                let displacements = protocol.into_iter().flat_map(|protocol| &protocol.displacement);
-                Box::new(displacements.copied().map(Move::displacement))
-            }
-            Plan::Single(step) => Box::new(std::iter::once(*step)),
         }
     }
 
