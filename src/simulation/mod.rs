@@ -26,7 +26,7 @@ pub use warnings::{Seen, missed, news, warnings};
 
 use std::time::Duration;
 
-use stickslip_mechanics as mechanics;
+use stickslip_mechanics::{self as mechanics, range::Quantity};
 use stickslip_wire::limits;
 
 use crate::admission::Interrupted;
@@ -88,7 +88,7 @@ impl Failure {
                 mechanics::Error::BeyondProfile { .. } => "beyond_profile",
                 mechanics::Error::NotConvexEnough { .. } => "profile_not_convex_enough",
                 mechanics::Error::ForceExceedsFriction { .. } => "force_exceeds_friction",
-                mechanics::Error::BrokenOff => "too_much_work",
+                mechanics::Error::Interrupted => "too_much_work",
                 mechanics::Error::Unsupported { .. } => "unsupported_move",
             },
             Failure::MemoryFull { .. } => "conflict",
@@ -98,15 +98,10 @@ impl Failure {
     }
 }
 
-/// The member of the wire documents that an error is about, if it is about one.
-fn quantity(error: &mechanics::Error) -> Option<&'static str> {
+/// The quantity that an error is about, if it is about one.
+fn quantity(error: &mechanics::Error) -> Option<Quantity> {
     match error {
-        mechanics::Error::OutOfRange { quantity, .. } => Some(quantity),
-        mechanics::Error::BeyondProfile { .. }
-        | mechanics::Error::NotConvexEnough { .. }
-        | mechanics::Error::Table { .. }
-        | mechanics::Error::ForceExceedsFriction { .. }
-        | mechanics::Error::BrokenOff
-        | mechanics::Error::Unsupported { .. } => None,
+        mechanics::Error::OutOfRange { quantity, .. } => Some(*quantity),
+        _ => None,
     }
 }

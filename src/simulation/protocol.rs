@@ -1,6 +1,7 @@
 //! From a protocol asked for to the path, what it leaves, and what the others would.
 
 use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
+use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
 use stickslip_wire::limits;
 use stickslip_wire::protocol::{
@@ -35,9 +36,9 @@ impl Subject<'_> {
     /// A JSON pointer to what the mechanics finds fault with.
     fn place(&self, error: &Error) -> &'static str {
         match error {
-            Error::OutOfRange { quantity: "friction", .. } if self.setup.is_some() => "/contact/friction",
-            Error::OutOfRange { quantity: "indentation", .. } if self.setup.is_some() => "/contact/preload",
-            Error::OutOfRange { quantity: "displacement", .. } => "/start/displacement",
+            Error::OutOfRange { quantity: Quantity::Friction, .. } if self.setup.is_some() => "/contact/friction",
+            Error::OutOfRange { quantity: Quantity::Indentation, .. } if self.setup.is_some() => "/contact/preload",
+            Error::OutOfRange { quantity: Quantity::Displacement, .. } => "/start/displacement",
             _ => "",
         }
     }
@@ -62,7 +63,7 @@ impl Subject<'_> {
             }
             if high == most {
                 let error = Error::OutOfRange {
-                    quantity: "target",
+                    quantity: Quantity::ProtocolTarget,
                     value: target,
                     allowed: format!("what {most} reversals reach, {:.3e}, or more", target * design.largest / largest),
                 };

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_mechanics::{self as mechanics, Contact, Estimate, Preload, Setup, Springs, springs};
+use stickslip_mechanics::{self as mechanics, Contact, Estimate, Preload, Setup, Springs, range::Quantity, springs};
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
@@ -127,12 +127,12 @@ pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Spr
 
 fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
     move |error| {
-        let quantity = match error {
-            mechanics::Error::NotConvexEnough { .. } => Some("profile"),
-            mechanics::Error::BeyondProfile { .. } => Some("contact_radius"),
-            _ => quantity(&error),
+        let place_of = |quantity| ContactDefinition::place_of(quantity, &preload);
+        let place = match error {
+            mechanics::Error::NotConvexEnough { .. } => "/profile",
+            mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
+            _ => quantity(&error).map_or("", place_of),
         };
-        let place = quantity.map_or("", |quantity| ContactDefinition::place_of(quantity, &preload));
         Failure::Refused { pointer: format!("{base}{place}"), error }
     }
 }
@@ -155,7 +155,7 @@ pub fn follow<S: Solver>(
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, &plan.place_of(index, None)),
             Ok(()) => {
-                let named = quantity(&error).filter(|name| step.names(name));
+                let named = quantity(&error).filter(|quantity| step.names(*quantity));
                 Failure::Refused { pointer: plan.place_of(index, named), error }
             }
         })?;

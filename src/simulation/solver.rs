@@ -15,7 +15,7 @@ pub trait Solver {
     /// Makes a move while `go_on` says so; a refused one changes nothing. The tolerance is for what is not exact.
     ///
     /// # Errors
-    /// What the mechanics has no answer to, and [`Error::BrokenOff`].
+    /// What the mechanics has no answer to, and [`Error::Interrupted`].
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error>;
     /// The state after the last move.
     fn state(&self) -> State;

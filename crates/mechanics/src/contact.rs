@@ -113,7 +113,7 @@ impl Contact {
     /// As [`Contact::apply_within`], for as long as `go_on` says so: a curved move can take seconds.
     ///
     /// # Errors
-    /// As [`Contact::apply_within`], and [`Error::BrokenOff`].
+    /// As [`Contact::apply_within`], and [`Error::Interrupted`].
     pub fn apply_while(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
         let approach = self.approach(step)?;
         let tangent = self.tangent(step)?;

@@ -2,7 +2,7 @@
 
 use thiserror::Error as ThisError;
 
-use super::range::short;
+use super::range::{Quantity, short};
 
 /// A request that has no answer. Nothing has changed when one is returned.
 #[derive(Clone, Debug, PartialEq, ThisError)]
@@ -10,9 +10,9 @@ pub enum Error {
     /// A number outside what is accepted.
     #[error("{quantity} = {} is out of range: allowed is {allowed}", short(*value))]
     OutOfRange {
-        /// The name that clients know the quantity by.
-        quantity: &'static str,
         /// What was given.
+        quantity: Quantity,
+        /// Its value, in its SI unit.
         value: f64,
         /// The range, in words.
         allowed: String,
@@ -32,10 +32,10 @@ pub enum Error {
         radius: f64,
     },
     /// A table that is not one.
-    #[error("the table is not usable: {what} at index {index}")]
+    #[error("the table is not usable: {fault} at index {index}")]
     Table {
-        /// What is wrong; it begins with the name of the column, `r` or `z`.
-        what: &'static str,
+        /// What is wrong.
+        fault: TableFault,
         /// The first point at which it is.
         index: usize,
     },
@@ -52,13 +52,38 @@ pub enum Error {
         /// Where along the move that is, from 0 to 1.
         part: f64,
     },
-    /// The caller has broken the move off.
-    #[error("broken off")]
-    BrokenOff,
+    /// The caller has ended the computation before it was complete.
+    #[error("interrupted")]
+    Interrupted,
     /// The solver cannot follow this pair of targets.
-    #[error("{what}")]
-    Unsupported {
-        /// What cannot be followed.
-        what: &'static str,
-    },
+    #[error("{0}")]
+    Unsupported(UnsupportedMove),
+}
+
+/// Why two columns of radii r and heights z are not a profile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+pub enum TableFault {
+    /// The columns differ in length.
+    #[error("r and z differ in length")]
+    LengthsDiffer,
+    /// The first radius is not zero.
+    #[error("r does not begin at 0")]
+    FirstRadiusNotZero,
+    /// A radius is not above the one before it.
+    #[error("r does not rise")]
+    RadiusNotRising,
+    /// No height is above the one at the centre.
+    #[error("z does not rise anywhere")]
+    HeightNeverRises,
+}
+
+/// A pair of targets that the spring foundation has no rule for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+pub enum UnsupportedMove {
+    /// A normal force together with a tangential target.
+    #[error("springs follow a normal force only without a tangential target")]
+    NormalForceWithTangentialTarget,
+    /// A tangential force while the indentation changes.
+    #[error("springs follow a tangential force only at constant indentation")]
+    TangentialForceWithNormalTarget,
 }

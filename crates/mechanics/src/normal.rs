@@ -6,7 +6,7 @@
 use super::elasticity::Elasticity;
 use super::error::Error;
 use super::profile::{At, Point, Profile, Ring};
-use super::range::short;
+use super::range::{Quantity, short};
 
 /// Radii at which the largest pressure is looked for first.
 const PRESSURE_SCAN: usize = 64;
@@ -84,7 +84,7 @@ pub(super) fn indentation(profile: &Profile, elasticity: &Elasticity, normal_for
 /// # Errors
 /// [`Error::OutOfRange`] for a radius that is not that of one load alone: below a flat end, or from a vertical edge on.
 pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Error> {
-    let allowed = |allowed: String| Error::OutOfRange { quantity: "contact_radius", value: radius, allowed };
+    let allowed = |allowed: String| Error::OutOfRange { quantity: Quantity::ContactRadius, value: radius, allowed };
     profile.check_radius(radius)?;
     let flat = profile.radius(0.0);
     if radius < flat {

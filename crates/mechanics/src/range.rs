@@ -3,12 +3,13 @@
 use std::fmt;
 
 use super::error::Error;
+pub use super::quantity::Quantity;
 
 /// A quantity's name, unit and closed interval, bounds included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// The name that clients know the quantity by.
-    pub quantity: &'static str,
+    /// What the number measures.
+    pub quantity: Quantity,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
     /// The smallest value accepted.
@@ -18,55 +19,55 @@ pub struct Range {
 }
 
 /// Any radius of a body or a contact.
-pub const RADIUS: Range = Range { quantity: "radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const RADIUS: Range = Range { quantity: Quantity::Radius, unit: "m", min: 1e-15, max: 1e9 };
 /// Radius of a flat end.
-pub const FLAT_RADIUS: Range = Range { quantity: "flat_radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const FLAT_RADIUS: Range = Range { quantity: Quantity::FlatRadius, unit: "m", min: 1e-15, max: 1e9 };
 /// Curvature radius of a rounded edge.
-pub const EDGE_RADIUS: Range = Range { quantity: "edge_radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const EDGE_RADIUS: Range = Range { quantity: Quantity::EdgeRadius, unit: "m", min: 1e-15, max: 1e9 };
 /// Radius up to which the tip of a cone is rounded.
-pub const TIP_RADIUS: Range = Range { quantity: "tip_radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const TIP_RADIUS: Range = Range { quantity: Quantity::TipRadius, unit: "m", min: 1e-15, max: 1e9 };
 /// Slope dz/dr of a cone.
-pub const SLOPE: Range = Range { quantity: "slope", unit: "", min: 1e-9, max: 1e9 };
+pub const SLOPE: Range = Range { quantity: Quantity::Slope, unit: "", min: 1e-9, max: 1e9 };
 /// Exponent of a power law.
-pub const EXPONENT: Range = Range { quantity: "exponent", unit: "", min: 0.1, max: 1000.0 };
+pub const EXPONENT: Range = Range { quantity: Quantity::Exponent, unit: "", min: 0.1, max: 1000.0 };
 /// Coefficient of a power law; its unit, m^(1 - n), hangs on the exponent.
-pub const COEFFICIENT: Range = Range { quantity: "coefficient", unit: "m^(1-n)", min: 1e-280, max: 1e280 };
+pub const COEFFICIENT: Range = Range { quantity: Quantity::Coefficient, unit: "m^(1-n)", min: 1e-280, max: 1e280 };
 /// How many points a tabulated profile may have.
-pub const TABLE_POINTS: Range = Range { quantity: "points of the table", unit: "", min: 3.0, max: 10_000.0 };
+pub const TABLE_POINTS: Range = Range { quantity: Quantity::TablePoints, unit: "", min: 3.0, max: 10_000.0 };
 /// A radius in a table.
-pub const TABLE_RADIUS: Range = Range { quantity: "r", unit: "m", min: 0.0, max: 1e9 };
+pub const TABLE_RADIUS: Range = Range { quantity: Quantity::TableRadius, unit: "m", min: 0.0, max: 1e9 };
 /// A height in a table.
-pub const TABLE_HEIGHT: Range = Range { quantity: "z", unit: "m", min: -1e9, max: 1e9 };
+pub const TABLE_HEIGHT: Range = Range { quantity: Quantity::TableHeight, unit: "m", min: -1e9, max: 1e9 };
 /// How many profiles a sum may have, sums within it counted by their parts.
-pub const PARTS: Range = Range { quantity: "number of parts", unit: "", min: 1.0, max: 16.0 };
+pub const PARTS: Range = Range { quantity: Quantity::Parts, unit: "", min: 1.0, max: 16.0 };
 /// Young's modulus of a body.
-pub const YOUNGS_MODULUS: Range = Range { quantity: "youngs_modulus", unit: "Pa", min: 1e-3, max: 1e18 };
+pub const YOUNGS_MODULUS: Range = Range { quantity: Quantity::YoungsModulus, unit: "Pa", min: 1e-3, max: 1e18 };
 /// Poisson's ratio of a body; auxetic bodies are allowed.
-pub const POISSON_RATIO: Range = Range { quantity: "poisson_ratio", unit: "", min: -0.99, max: 0.5 };
+pub const POISSON_RATIO: Range = Range { quantity: Quantity::PoissonRatio, unit: "", min: -0.99, max: 0.5 };
 /// The reduced modulus E*.
-pub const E_STAR: Range = Range { quantity: "e_star", unit: "Pa", min: 1e-3, max: 1e18 };
+pub const E_STAR: Range = Range { quantity: Quantity::EStar, unit: "Pa", min: 1e-3, max: 1e18 };
 /// The reduced shear modulus G*.
-pub const G_STAR: Range = Range { quantity: "g_star", unit: "Pa", min: 1e-3, max: 1e18 };
+pub const G_STAR: Range = Range { quantity: Quantity::GStar, unit: "Pa", min: 1e-3, max: 1e18 };
 /// Coulomb's coefficient of friction; nought means no tangential force at all.
-pub const FRICTION: Range = Range { quantity: "friction", unit: "", min: 0.0, max: 100.0 };
+pub const FRICTION: Range = Range { quantity: Quantity::Friction, unit: "", min: 0.0, max: 100.0 };
 /// The smallest coefficient of friction beside nought: below it, displacements over that of gross slip outgrow all numbers.
 pub const LEAST_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
-pub const NORMAL_FORCE: Range = Range { quantity: "normal_force", unit: "N", min: 0.0, max: 1e18 };
+pub const NORMAL_FORCE: Range = Range { quantity: Quantity::NormalForce, unit: "N", min: 0.0, max: 1e18 };
 /// The smallest normal force beside nought, N: below it, what follows from a force has no digits left.
 pub const LEAST_NORMAL_FORCE: f64 = 1e-250;
 /// The contact radius, as a preload asks for it or as it comes of a load; nought is a contact just touching.
-pub const CONTACT_RADIUS: Range = Range { quantity: "contact_radius", unit: "m", min: 0.0, max: 1e9 };
+pub const CONTACT_RADIUS: Range = Range { quantity: Quantity::ContactRadius, unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a preload may ask for.
-pub const PRELOAD_INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: 0.0, max: 1e9 };
+pub const PRELOAD_INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a move may ask for; below nought the bodies are apart.
-pub const INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: -1e9, max: 1e9 };
+pub const INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: -1e9, max: 1e9 };
 /// The tangential displacement of the indenter.
-pub const DISPLACEMENT: Range = Range { quantity: "displacement", unit: "m", min: -1e9, max: 1e9 };
+pub const DISPLACEMENT: Range = Range { quantity: Quantity::Displacement, unit: "m", min: -1e9, max: 1e9 };
 /// A tangential force.
-pub const FORCE: Range = Range { quantity: "force", unit: "N", min: -1e20, max: 1e20 };
+pub const FORCE: Range = Range { quantity: Quantity::Force, unit: "N", min: -1e20, max: 1e20 };
 /// How many springs the foundation may have.
-pub const SPRING_COUNT: Range = Range { quantity: "count", unit: "", min: 2.0, max: 1e6 };
+pub const SPRING_COUNT: Range = Range { quantity: Quantity::SpringCount, unit: "", min: 2.0, max: 1e6 };
 
 impl Range {
     /// Whether `value` lies inside, bounds included; never for a NaN.

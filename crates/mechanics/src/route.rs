@@ -93,7 +93,7 @@ impl Contact {
         let (mut done, mut step, mut chords) = (0.0, 1.0_f64, 0);
         while done < 1.0 {
             if !go_on() {
-                return Err(Error::BrokenOff);
+                return Err(Error::Interrupted);
             }
             let next = if chords < MAX_CHORDS && done + step < 1.0 { done + step } else { 1.0 };
             let end = self.stop_on(route, next);

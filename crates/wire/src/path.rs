@@ -3,7 +3,10 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{self as mechanics, Normal, Tangential, range, range::Range};
+use stickslip_mechanics::{
+    self as mechanics, Normal, Tangential, range,
+    range::{Quantity, Range},
+};
 
 use super::check::{At, Faults};
 use super::limits;
@@ -148,10 +151,16 @@ impl Move {
         ]
     }
 
-    /// Whether the move has a target of this name.
+    /// Whether the move has a target for this quantity.
     #[must_use]
-    pub fn names(&self, quantity: &str) -> bool {
-        self.targets().iter().any(|(name, value, _)| *name == quantity && value.is_some())
+    pub fn names(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::Displacement => self.displacement.is_some(),
+            Quantity::Force => self.force.is_some(),
+            Quantity::Indentation => self.indentation.is_some(),
+            Quantity::NormalForce => self.normal_force.is_some(),
+            _ => false,
+        }
     }
 
     /// Whether the move is straight in a force while the other quantity changes. Such a move is curved in displacement
@@ -242,16 +251,16 @@ impl Plan {
 
     /// Where in the body the move of this number stands, as a JSON pointer; `quantity` is the member at fault, if one is.
     #[must_use]
-    pub fn place_of(&self, index: usize, quantity: Option<&str>) -> String {
-        let quantity = quantity.map(|name| format!("/{name}")).unwrap_or_default();
+    pub fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
+        let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();
         match self {
-            Plan::Moves(_) => format!("/path/moves/{index}{quantity}"),
+            Plan::Moves(_) => format!("/path/moves/{index}{member}"),
             Plan::Displacement(_) => format!("/path/displacement/{index}"),
             Plan::Force(_) => format!("/path/force/{index}"),
             Plan::FallingAmplitude(_) => "/path/falling_amplitude".to_owned(),
-            Plan::EqualPeaks(_) if quantity == "/cutoff_radius" => format!("/path/equal_peaks{quantity}"),
+            Plan::EqualPeaks(_) if quantity == Some(Quantity::CutoffRadius) => format!("/path/equal_peaks{member}"),
             Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
-            Plan::Single(_) => quantity,
+            Plan::Single(_) => member,
         }
     }
 }

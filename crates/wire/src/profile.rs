@@ -10,7 +10,7 @@ use stickslip_mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, Profile as Shape, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated,
     TruncatedCone, TruncatedSphere,
 };
-use stickslip_mechanics::{Error, range, range::Range};
+use stickslip_mechanics::{Error, TableFault, range, range::Range};
 
 use super::check::{At, Faults};
 use super::limits;
@@ -224,10 +224,11 @@ fn noted(shape: Result<Shape, Error>, at: At<'_>, faults: &mut Faults) -> Option
         // It follows from a fault that is known already.
         Err(_) if !faults.is_empty() => {}
         Err(error @ (Error::NotConvexEnough { .. } | Error::BeyondProfile { .. })) => faults.unanswerable(at, error),
-        Err(Error::Table { what, index }) => match what.split_once(' ') {
-            // One radius is out of order; the heights, and the two lengths, are at fault as a whole.
-            Some(("r", rest)) if !rest.starts_with("and") => faults.add(at.member("r").index(index), what),
-            _ => faults.add(at.member("z"), what),
+        Err(Error::Table { fault, index }) => match fault {
+            TableFault::FirstRadiusNotZero | TableFault::RadiusNotRising => {
+                faults.add(at.member("r").index(index), fault);
+            }
+            TableFault::LengthsDiffer | TableFault::HeightNeverRises => faults.add(at.member("z"), fault),
         },
         Err(error) => faults.add(at, error),
     }

@@ -3,11 +3,13 @@
 use super::super::contact::Contact;
 use super::super::double_double::DoubleDouble;
 use super::super::error::Error;
+use super::super::range::Quantity;
 use super::super::state::{Move, Regime, Tangential};
 use super::super::traction::Residual;
-use super::relief::Relief;
+use super::from_any_state::Relief;
 use super::{
-    DEFAULT_CUTOFF, alternating, cutoff_of, ending, equal_peaks, falling_amplitude, outermost_singular, spread::Spread,
+    DEFAULT_CUTOFF, alternating, cutoff_of, end_constraint, equal_peak_measure::Spread, equal_peaks, falling_amplitude,
+    outermost_singular,
 };
 
 /// What rounding may leave of a displacement, relative to that of gross slip.
@@ -131,7 +133,7 @@ struct Task<'a> {
 /// The path of a kind. From [`Start::Here`] a path of minimax may have fewer reversals than allowed.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::BrokenOff`] if
+/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::Interrupted`] if
 /// `go_on` said no.
 pub fn design(
     contact: &Contact,
@@ -143,10 +145,10 @@ pub fn design(
 ) -> Result<Design, Error> {
     let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
     if contact.friction <= 0.0 {
-        return Err(above("friction", contact.friction, "nothing holds without friction"));
+        return Err(above(Quantity::Friction, contact.friction, "nothing holds without friction"));
     }
     if contact.indentation() <= 0.0 {
-        return Err(above("indentation", contact.indentation(), "bodies that do not touch carry no stress"));
+        return Err(above(Quantity::Indentation, contact.indentation(), "bodies that do not touch carry no stress"));
     }
     let task = Task { contact, reversals, end, judged: Judged::of(contact), go_on };
     let (first, way) = match start {
@@ -175,7 +177,7 @@ impl Task<'_> {
         let mut contact = self.contact.clone();
         for &target in path {
             if !(self.go_on)() {
-                return Err(Error::BrokenOff);
+                return Err(Error::Interrupted);
             }
             contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         }
@@ -196,7 +198,7 @@ impl Task<'_> {
         };
         path.push(target);
         contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
-        let residual = contact.residual_while(self.go_on).ok_or(Error::BrokenOff)?;
+        let residual = contact.residual_while(self.go_on).ok_or(Error::Interrupted)?;
         let largest = self.judged.largest(&contact, &residual);
         Ok(Design { displacements: path, way, spread, contact, residual, largest })
     }
@@ -245,7 +247,7 @@ impl Task<'_> {
                 }
                 Ok(())
             }
-            Err(Error::BrokenOff) => Err(Error::BrokenOff),
+            Err(Error::Interrupted) => Err(Error::Interrupted),
             // What a law or a construction cannot have is no candidate.
             Err(_) => Ok(()),
         };
@@ -269,7 +271,7 @@ impl Task<'_> {
             let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
             offer(self.judge(self.ended(path), way, spread(found)))?;
         }
-        if found.is_empty() || (self.end != End::Free && self.reversals <= ending::FEW) {
+        if found.is_empty() || (self.end != End::Free && self.reversals <= end_constraint::FEW) {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
@@ -293,7 +295,7 @@ impl Task<'_> {
             let path = falling_amplitude(self.reversals, first).collect();
             offer(Task { end: End::ForceZero, ..*self }.judge(path, way, None))?;
         }
-        if (self.go_on)() { best.ok_or(Error::BrokenOff) } else { Err(Error::BrokenOff) }
+        if (self.go_on)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
 
     /// The path with its last displacement nought if it is to be and nearly is.

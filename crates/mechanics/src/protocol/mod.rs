@@ -7,24 +7,24 @@
 
 mod bound;
 mod design;
-mod ending;
+mod end_constraint;
+mod equal_peak_measure;
+mod from_any_state;
 mod minimax;
-mod relief;
 mod robustness;
-mod spread;
 
 pub use bound::lower_bound;
 pub use design::{Design, End, Judged, Kind, Start, Way, design};
 pub use robustness::{Errors, trials};
 
+use equal_peak_measure::Spread;
 use minimax::Problem;
-use spread::Spread;
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::profile::Profile;
-use super::range::short;
+use super::range::{Quantity, short};
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;
@@ -79,7 +79,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     let cutoff = match cutoff_radius {
         Some(given) if !(least..=edge).contains(&given) => {
             let allowed = format!("{} to {} m, the contact radius", short(least), short(edge));
-            return Err(Error::OutOfRange { quantity: "cutoff_radius", value: given, allowed });
+            return Err(Error::OutOfRange { quantity: Quantity::CutoffRadius, value: given, allowed });
         }
         Some(given) => given,
         None => cutoff_of(singular, edge),
@@ -138,7 +138,7 @@ fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: 
     let levels: Vec<Vec<f64>> = if end == End::Free {
         vec![equal.levels]
     } else {
-        let found = ending::kinks(&problem, equal.limit, first / contact.scale(), end, go_on);
+        let found = end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, go_on);
         found.iter().map(|kinks| kinks.iter().map(|kink| kink.level.value()).collect()).collect()
     };
     let path = |levels: Vec<f64>| {

@@ -21,7 +21,7 @@ pub struct Errors {
 /// errors, whatever the path.
 ///
 /// # Errors
-/// What `make` and the moves refuse, and [`Error::BrokenOff`] if `go_on` said no.
+/// What `make` and the moves refuse, and [`Error::Interrupted`] if `go_on` said no.
 pub fn trials(
     make: &dyn Fn(f64) -> Result<Contact, Error>,
     path: &[f64],
@@ -33,14 +33,14 @@ pub fn trials(
     let mut found = Vec::with_capacity(samples);
     for _ in 0..samples {
         if !go_on() {
-            return Err(Error::BrokenOff);
+            return Err(Error::Interrupted);
         }
         let mut contact = make(1.0 + errors.friction * (2.0 * random.f64() - 1.0))?;
         for target in path {
             let target = target * (1.0 + errors.amplitude * normal(&mut random));
             contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         }
-        let residual = contact.residual_while(go_on).ok_or(Error::BrokenOff)?;
+        let residual = contact.residual_while(go_on).ok_or(Error::Interrupted)?;
         found.push(Judged::of(&contact).largest(&contact, &residual));
     }
     found.sort_by(f64::total_cmp);

@@ -11,7 +11,7 @@ pub use kernel::Kernel;
 
 use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
-use super::error::Error;
+use super::error::{Error, UnsupportedMove};
 use super::normal::Figures;
 use super::range;
 use super::traction::{Peak, Residual};
@@ -138,13 +138,14 @@ impl Springs {
     /// As [`Contact::apply`].
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
         if let (Some(normal), Some(tangential)) = (step.normal, step.tangential) {
-            let what = match (normal, tangential) {
-                (Normal::NormalForce(_), _) => Some("springs follow a normal force only without a tangential target"),
-                (_, Tangential::Force(_)) => Some("springs follow a tangential force only at constant indentation"),
-                _ => None,
-            };
-            if let Some(what) = what {
-                return Err(Error::Unsupported { what });
+            match (normal, tangential) {
+                (Normal::NormalForce(_), _) => {
+                    return Err(Error::Unsupported(UnsupportedMove::NormalForceWithTangentialTarget));
+                }
+                (_, Tangential::Force(_)) => {
+                    return Err(Error::Unsupported(UnsupportedMove::TangentialForceWithNormalTarget));
+                }
+                (Normal::Indentation(_), Tangential::Displacement(_)) => {}
             }
         }
         let mut normal = self.normal.clone();

@@ -6,6 +6,7 @@ use crate::support::pressed;
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated};
 use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
+use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Sphere, Tangential};
 
 fn sphere() -> Profile {
@@ -290,11 +291,11 @@ fn what_cannot_be_moved_against_is_refused_and_the_search_ends_when_told_to() {
     let contact = pressed(sphere());
     let start = Start::Displacement(contact.gross_slip_displacement());
     let stopped = design(&contact, start, Kind::Minimax, 20, End::Free, &|| false);
-    assert_eq!(stopped.unwrap_err(), Error::BrokenOff);
+    assert_eq!(stopped.unwrap_err(), Error::Interrupted);
     let mut apart = contact.clone();
     apart.apply(&Move { normal: Some(Normal::Indentation(-1.0)), ..Move::default() }).unwrap();
     assert!(matches!(
         design(&apart, Start::Here, Kind::Linear, 3, End::Free, &|| true),
-        Err(Error::OutOfRange { quantity: "indentation", .. })
+        Err(Error::OutOfRange { quantity: Quantity::Indentation, .. })
     ));
 }

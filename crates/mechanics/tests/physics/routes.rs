@@ -67,7 +67,7 @@ fn a_move_broken_off_has_changed_nothing() {
         chords.set(chords.get() + 1);
         chords.get() < 20
     };
-    assert_eq!(contact.apply_while(&curve, 1e-10, &go_on), Err(Error::BrokenOff));
+    assert_eq!(contact.apply_while(&curve, 1e-10, &go_on), Err(Error::Interrupted));
     assert_eq!((contact.state(), chords.get()), (before, 20));
     contact.apply(&curve).unwrap();
     assert!(contact.normal_force() > 1.99 * LOAD);

@@ -16,7 +16,7 @@ mod spline;
 mod tests;
 
 use super::super::double_double::DoubleDouble;
-use super::super::error::Error;
+use super::super::error::{Error, TableFault};
 use super::super::range;
 use super::chart::{self, Chart};
 use super::gauss;
@@ -70,17 +70,17 @@ impl Tabulated {
         #[expect(clippy::cast_precision_loss, reason = "a length is far below 2^52")]
         range::TABLE_POINTS.check(radii.len() as f64)?;
         if radii.len() != heights.len() {
-            return Err(Error::Table { what: "r and z differ in length", index: radii.len().min(heights.len()) });
+            return Err(Error::Table { fault: TableFault::LengthsDiffer, index: radii.len().min(heights.len()) });
         }
         for (&radius, &height) in radii.iter().zip(heights) {
             range::TABLE_RADIUS.check(radius)?;
             range::TABLE_HEIGHT.check(height)?;
         }
         if radii[0] > 0.0 {
-            return Err(Error::Table { what: "r does not begin at 0", index: 0 });
+            return Err(Error::Table { fault: TableFault::FirstRadiusNotZero, index: 0 });
         }
         if let Some(index) = radii.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(Error::Table { what: "r does not rise", index: index + 1 });
+            return Err(Error::Table { fault: TableFault::RadiusNotRising, index: index + 1 });
         }
         range::RADIUS.check(radii[1])?;
         let knots = spline::knots(radii, heights);
@@ -98,7 +98,7 @@ impl Tabulated {
         let Some(last) = panels.last() else {
             return Err(match falls_at {
                 Some(radius) => Error::NotConvexEnough { radius },
-                None => Error::Table { what: "z does not rise anywhere", index: knots.len() - 1 },
+                None => Error::Table { fault: TableFault::HeightNeverRises, index: knots.len() - 1 },
             });
         };
         let end = (last.end().1, level, load);
