@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_mechanics::{self as mechanics, Contact, Estimate, Preload, Setup, Springs, range::Quantity, springs};
+use stickslip_mechanics::{
+    self as mechanics, Contact, ErrorEstimate, Preload, Setup, Springs, range::Quantity, springs,
+};
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
@@ -60,7 +62,7 @@ fn run<S: Solver>(
     reason: &str,
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
-    let figures = solver.figures();
+    let figures = solver.summary();
     let protocol = equal_peaks(&simulation.plan, &solver)?;
     let mut largest = figures.contact_radius;
     let all = simulation.steps == Steps::All;
@@ -121,7 +123,8 @@ pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Spr
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
     let moves = moves(plan, start.gross_slip_displacement(), None).map(|step| step.step());
-    let springs = springs::reach(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
+    let springs =
+        springs::largest_contact_radius(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
     springs.map_err(refused_at("/contact", setup.preload))
 }
 
@@ -220,7 +223,7 @@ pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
     stated::<S>(&solver.accuracy(), timer, reason)
 }
 
-fn stated<S: Solver>(estimate: &Estimate, timer: Timer, reason: &str) -> Accuracy {
+fn stated<S: Solver>(estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
     Accuracy {
         solver: S::KIND,
         reason: reason.to_owned(),

@@ -8,7 +8,7 @@ const STEEPEST: f64 = 1e4;
 
 /// Estimates of what rounding, an interpolation or a coarse model has cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct ErrorEstimate {
     /// Error of the tangential force over mu F_N.
     pub force_error: f64,
     /// What curved paths have of it.
@@ -24,9 +24,9 @@ impl Contact {
     /// 2 G* m int |error of g| dx at most, and so by as much again where the load is given. A stress has cusps: the estimate
     /// holds for a radius moved by some units in its last place, or by as much as a table's g is off.
     #[must_use]
-    pub fn accuracy(&self) -> Estimate {
+    pub fn accuracy(&self) -> ErrorEstimate {
         let carried = self.friction * self.normal_force();
-        let summed = self.force_unit() * self.memory.force_size();
+        let summed = self.force_unit() * self.history.force_size();
         let terms = if carried > 0.0 { summed / carried } else { 0.0 };
         let (radius, indentation) = (self.contact_radius(), self.indentation());
         // Where g is steep, a rounded radius moves the indentation by this many units.
@@ -40,7 +40,7 @@ impl Contact {
         let open = 2.0 * self.elasticity.e_star() * doubt.load / self.normal_force();
         let open = if open.is_finite() { open } else { 0.0 };
         let unit = f64::EPSILON * self.profile.cancellation(radius);
-        Estimate {
+        ErrorEstimate {
             path_error: self.path_error,
             force_error: unit * (2.0 + 6.0 * terms + steepness) + self.path_error + open,
             stress_error: unit * (4.0 + 12.0 * terms + 2.0 * steepness) + self.path_error + open + bend,

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use super::curved_move::{CurvedMove, DEFAULT_TOLERANCE, NormalPath, PathPoint, TangentialPath};
 use super::double_double::DoubleDouble;
 use super::elasticity::Elasticity;
 use super::error::Error;
-use super::normal::{self, Figures, Preload};
+use super::normal::{self, ContactSummary, Preload};
 use super::profile::{At, Point, Profile};
 use super::range;
-use super::route::{Approach, DEFAULT_TOLERANCE, Route, Stop, Tangent};
-use super::slip_history::Memory;
-use super::state::{Move, Normal, Regime, Setup, State, Tangential};
+use super::slip_history::SlipHistory;
+use super::state::{Move, Normal, Setup, Tangential};
 
 /// A frictional contact, solved exactly.
 ///
@@ -23,7 +23,7 @@ use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 ///     friction: 0.3,
 ///     preload: Preload::NormalForce(10.0),
 /// })?;
-/// let half = 0.5 * contact.figures().gross_slip_displacement;
+/// let half = 0.5 * contact.summary().gross_slip_displacement;
 /// contact.apply(&Move { tangential: Some(Tangential::Displacement(half)), ..Move::default() })?;
 /// // Cattaneo (1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
 /// assert!((contact.state().force - 3.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-14);
@@ -35,12 +35,12 @@ pub struct Contact {
     pub(super) profile: Arc<Profile>,
     pub(super) elasticity: Elasticity,
     pub(super) friction: f64,
-    pub(super) memory: Memory,
+    pub(super) history: SlipHistory,
     pub(super) displacement: DoubleDouble,
     /// As asked for or, under a prescribed indentation, as it follows: rounding it twice would move the friction limit.
     pub(super) normal_force: f64,
     pub(super) dissipated: DoubleDouble,
-    pub(super) initial: Figures,
+    pub(super) initial: ContactSummary,
     pub(super) path_error: f64,
     pub(super) path_kernel: f64,
     /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
@@ -65,12 +65,12 @@ impl Contact {
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
         range::CONTACT_RADIUS.check(profile.check_radius(profile.radius(indentation))?)?;
-        let memory = Memory::new(&profile, DoubleDouble::from(indentation));
+        let history = SlipHistory::new(&profile, DoubleDouble::from(indentation));
         let normal_force = match preload {
             Preload::NormalForce(force) => force,
-            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, memory.edge()),
+            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
         };
-        let initial = figures(&profile, &elasticity, friction, memory.edge(), normal_force);
+        let initial = summary_of(&profile, &elasticity, friction, history.edge(), normal_force);
         let inverse_scale = if friction > 0.0 {
             DoubleDouble::from(elasticity.g_star()).over(DoubleDouble::from(elasticity.e_star()) * friction)
         } else {
@@ -80,7 +80,7 @@ impl Contact {
             profile: Arc::new(profile),
             elasticity,
             friction,
-            memory,
+            history,
             displacement: DoubleDouble::ZERO,
             normal_force,
             dissipated: DoubleDouble::ZERO,
@@ -89,6 +89,24 @@ impl Contact {
             path_kernel: 0.0,
             inverse_scale,
         })
+    }
+
+    /// The same contact at its preload, before its first move.
+    #[must_use]
+    pub fn virgin(&self) -> Contact {
+        Contact {
+            profile: self.profile.clone(),
+            elasticity: self.elasticity,
+            friction: self.friction,
+            history: SlipHistory::new(&self.profile, DoubleDouble::from(self.initial.indentation)),
+            displacement: DoubleDouble::ZERO,
+            normal_force: self.initial.normal_force,
+            dissipated: DoubleDouble::ZERO,
+            initial: self.initial,
+            path_error: 0.0,
+            path_kernel: 0.0,
+            inverse_scale: self.inverse_scale,
+        }
     }
 
     /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
@@ -110,52 +128,52 @@ impl Contact {
         self.apply_while(step, tolerance, &|| true)
     }
 
-    /// As [`Contact::apply_within`], for as long as `go_on` says so: a curved move can take seconds.
+    /// As [`Contact::apply_within`], for as long as `keep_going` says so: a curved move can take seconds.
     ///
     /// # Errors
     /// As [`Contact::apply_within`], and [`Error::Interrupted`].
-    pub fn apply_while(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
-        let approach = self.approach(step)?;
-        let tangent = self.tangent(step)?;
+    pub fn apply_while(&mut self, step: &Move, tolerance: f64, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+        let normal = self.normal_path(step)?;
+        let tangential = self.tangential_path(step)?;
         // Without a tangential target the displacement stays, and any way to the new indentation is the same.
         let straight = match (step.tangential, step.normal) {
             (None, _) => true,
             (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
             (Some(Tangential::Force(_)), _) => false,
         };
-        if let (true, Tangent::Displacement { to: displacement, .. }) = (straight, tangent) {
-            let (indentation, normal_force) = match approach {
-                Approach::Indentation { from, to } if from == to => (to, self.normal_force),
-                Approach::Indentation { to, .. } => (to, self.normal_force_at(to)),
-                Approach::Force { to, .. } => (self.indentation_for(to), to),
+        if let (true, TangentialPath::Displacement { to: displacement, .. }) = (straight, tangential) {
+            let (indentation, normal_force) = match normal {
+                NormalPath::Indentation { from, to } if from == to => (to, self.normal_force),
+                NormalPath::Indentation { to, .. } => (to, self.normal_force_at(to)),
+                NormalPath::Force { to, .. } => (self.indentation_for(to), to),
             };
-            self.advance(&Stop { indentation, normal_force, displacement });
+            self.advance(&PathPoint { indentation, normal_force, displacement });
             return Ok(());
         }
         // Only a way of many chords can be broken off half-way; a copy is nothing beside it.
         let before = self.clone();
-        let followed = self.follow(&Route { tangent, approach }, tolerance, go_on);
+        let followed = self.follow(&CurvedMove { tangential, normal }, tolerance, keep_going);
         if followed.is_err() {
             *self = before;
         }
         followed
     }
 
-    fn approach(&self, step: &Move) -> Result<Approach, Error> {
-        let here = self.memory.edge().level;
+    fn normal_path(&self, step: &Move) -> Result<NormalPath, Error> {
+        let here = self.history.edge().level;
         Ok(match step.normal {
-            None => Approach::Indentation { from: here, to: here },
+            None => NormalPath::Indentation { from: here, to: here },
             Some(Normal::Indentation(depth)) => {
                 let depth = DoubleDouble::from(depth);
                 let to = if step.relative { here + depth } else { depth };
                 self.check_indentation(to.value())?;
-                Approach::Indentation { from: here, to }
+                NormalPath::Indentation { from: here, to }
             }
             Some(Normal::NormalForce(force)) => {
                 let from = self.normal_force();
                 let to = range::check_normal_force(if step.relative { from + force } else { force })?;
                 self.check_indentation(self.indentation_for(to).value())?;
-                Approach::Force { from, to }
+                NormalPath::Force { from, to }
             }
         })
     }
@@ -169,33 +187,33 @@ impl Contact {
         Ok(())
     }
 
-    fn tangent(&self, step: &Move) -> Result<Tangent, Error> {
+    fn tangential_path(&self, step: &Move) -> Result<TangentialPath, Error> {
         let here = self.displacement;
         Ok(match step.tangential {
-            None => Tangent::Displacement { from: here, to: here },
+            None => TangentialPath::Displacement { from: here, to: here },
             Some(Tangential::Displacement(target)) => {
                 let target = DoubleDouble::from(target);
                 let to = if step.relative { here + target } else { target };
                 range::DISPLACEMENT.check(to.value())?;
-                Tangent::Displacement { from: here, to }
+                TangentialPath::Displacement { from: here, to }
             }
             Some(Tangential::Force(target)) => {
                 let from = self.force();
                 let to = range::FORCE.check(if step.relative { from + target } else { target })?;
-                Tangent::Force { from, to }
+                TangentialPath::Force { from, to }
             }
         })
     }
 
     /// The straight move in displacement and indentation that every other move is made of.
-    pub(super) fn advance(&mut self, stop: &Stop) {
-        self.displacement = stop.displacement;
-        self.normal_force = stop.normal_force;
-        let passage = self.memory.advance(&self.profile, stop.indentation, self.scaled(stop.displacement));
+    pub(super) fn advance(&mut self, point: &PathPoint) {
+        self.displacement = point.displacement;
+        self.normal_force = point.normal_force;
+        let result = self.history.advance(&self.profile, point.indentation, self.scaled(point.displacement));
         let scale = self.scale();
-        let work = 2.0 * self.elasticity.g_star() * scale * scale * passage.work;
+        let work = 2.0 * self.elasticity.g_star() * scale * scale * result.work;
         self.dissipated = self.dissipated + DoubleDouble::from(work);
-        if self.memory.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
+        if self.history.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
             // What gross slip wipes out takes its errors with it.
             self.path_error = 0.0;
             self.path_kernel = 0.0;
@@ -238,7 +256,7 @@ impl Contact {
     /// Tangential force, N.
     #[must_use]
     pub fn force(&self) -> f64 {
-        2.0 * self.elasticity.g_star() * self.scale() * self.memory.force()
+        2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
     }
 
     /// Indentation, m, that carries a normal force, N.
@@ -255,19 +273,25 @@ impl Contact {
     /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &At::radius(radius))
+        normal::pressure(&self.profile, &self.elasticity, self.history.edge(), &At::radius(radius))
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        normal::pressures(&self.profile, &self.elasticity, self.memory.edge(), radii)
+        normal::pressures(&self.profile, &self.elasticity, self.history.edge(), radii)
     }
 
     /// The shape of the indenter.
     #[must_use]
     pub fn profile(&self) -> &Profile {
         &self.profile
+    }
+
+    /// Coulomb's coefficient of friction mu.
+    #[must_use]
+    pub fn friction(&self) -> f64 {
+        self.friction
     }
 
     /// The elastic constants.
@@ -285,13 +309,13 @@ impl Contact {
     /// Contact radius a, m.
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
-        self.memory.edge().radius
+        self.history.edge().radius
     }
 
     /// Indentation d, m; below nought a gap.
     #[must_use]
     pub fn indentation(&self) -> f64 {
-        self.memory.edge().level.value()
+        self.history.edge().level.value()
     }
 
     /// Displacement of gross slip on first loading, m, at the present load.
@@ -303,69 +327,37 @@ impl Contact {
     /// How many straight pieces the history has left.
     #[must_use]
     pub fn memory_depth(&self) -> usize {
-        self.memory.pieces().len()
+        self.history.pieces().len()
     }
 
     /// Bytes that the contact takes, its history included.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Contact>() + self.memory.heap_bytes()
+        size_of::<Contact>() + self.history.heap_bytes()
     }
 
     /// The figures of the present normal load.
     #[must_use]
-    pub fn figures(&self) -> Figures {
-        figures(&self.profile, &self.elasticity, self.friction, self.memory.edge(), self.normal_force)
+    pub fn summary(&self) -> ContactSummary {
+        summary_of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
     /// The figures of the definition's preload.
     #[must_use]
-    pub fn initial_figures(&self) -> Figures {
+    pub fn initial_summary(&self) -> ContactSummary {
         self.initial
-    }
-
-    /// The state after the last move.
-    #[must_use]
-    pub fn state(&self) -> State {
-        #[cfg(test)]
-        super::profile::count::add(|calls| &mut calls.states);
-        let edge = self.memory.edge();
-        let scale = self.scale();
-        let (stick_radius, regime) = self.stick();
-        State {
-            displacement: self.displacement.value(),
-            force: self.force(),
-            indentation: edge.level.value(),
-            normal_force: self.normal_force(),
-            contact_radius: edge.radius,
-            stick_radius,
-            regime,
-            dissipated_energy: self.dissipated.value(),
-            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.memory.energy()).max(0.0),
-            memory_depth: self.memory_depth(),
-        }
-    }
-
-    fn stick(&self) -> (f64, Regime) {
-        let edge = self.memory.edge();
-        if edge.level.value() < 0.0 {
-            return (0.0, Regime::Separated);
-        }
-        if self.friction <= 0.0 {
-            return (0.0, Regime::GrossSlip);
-        }
-        match self.memory.slip_from() {
-            None => (edge.radius, Regime::Stick),
-            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
-            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
-            Some(_) => (edge.radius, Regime::Stick),
-        }
     }
 }
 
-fn figures(profile: &Profile, elasticity: &Elasticity, friction: f64, edge: &Point, normal_force: f64) -> Figures {
+fn summary_of(
+    profile: &Profile,
+    elasticity: &Elasticity,
+    friction: f64,
+    edge: &Point,
+    normal_force: f64,
+) -> ContactSummary {
     let indentation = edge.level.value();
-    Figures {
+    ContactSummary {
         e_star: elasticity.e_star(),
         g_star: elasticity.g_star(),
         indentation,

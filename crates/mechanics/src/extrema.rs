@@ -1,6 +1,6 @@
 //! The extrema of the shear stress.
 //!
-//! Just inside a kink of the memory, where the slope changes by gamma, tau falls off like -gamma sqrt(x - r), so that its
+//! Just inside a kink of the slip history, where the slope changes by gamma, tau falls off like -gamma sqrt(x - r), so that its
 //! derivative is infinite there with a known sign; where f'' of the profile jumps it is log-infinite with one sign on both
 //! sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled between these radii, ever
 //! closer to those it is infinite at, and an extremum is where its sign changes: within a stretch a root, between two the
@@ -9,9 +9,9 @@
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::profile::At;
-use super::traction::Peak;
+use super::shear_stress::Peak;
 
-/// Towards a kink of the memory each distance is smaller by this factor, as a logarithm: beneath a thin ring the derivative
+/// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the derivative
 /// has structure of every size from the whole stretch down to the ring's depth.
 const STEP: f64 = 0.511;
 /// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
@@ -132,7 +132,7 @@ impl Contact {
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; nought where it is nought to round-off or unknown.
     fn trend(&self, at: &At) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
-        for (ring, line) in self.memory.rings() {
+        for (ring, line) in self.history.rings() {
             if ring.outer.radius < at.radius {
                 break;
             }
@@ -147,17 +147,17 @@ impl Contact {
         if sum.is_infinite() || sum.abs() > NOISE * size { sum } else { 0.0 }
     }
 
-    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `go_on` said no.
-    pub(super) fn peaks(&self, go_on: impl Fn() -> bool) -> Option<Vec<Peak>> {
-        let edge = At::point(self.memory.edge());
+    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` said no.
+    pub(super) fn peaks(&self, keep_going: impl Fn() -> bool) -> Option<Vec<Peak>> {
+        let edge = At::point(self.history.edge());
         let bends = self.bends();
         let settled = self.settled_from(&bends);
-        let pieces = self.memory.pieces();
+        let pieces = self.history.pieces();
         let knots = self.profile.knots_below(edge.radius);
         let singular = self.profile.singular_radii();
         let mut search = Search { contact: self, sign: 0.0, peaks: Vec::new() };
         for (index, &bend) in bends.iter().enumerate() {
-            if !go_on() {
+            if !keep_going() {
                 return None;
             }
             // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
@@ -166,19 +166,19 @@ impl Contact {
                 // The rest lies at a vertical edge.
                 break;
             }
-            let outer = pieces.get(index + 1).map_or(*self.memory.edge(), |next| next.inner);
+            let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
             let to = At::point(&outer);
             if settled[index] {
                 search.pass(&from, -bend);
                 continue;
             }
-            let beyond = pieces.get(index + 2).map_or(*self.memory.edge(), |next| next.inner);
-            let last = if to.square >= edge.square && self.memory.edge().level.value() > self.profile.level(edge.radius)
-            {
-                (End::Logarithm, 0.0)
-            } else {
-                (End::Root((beyond.square - outer.square).value()), -bend)
-            };
+            let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
+            let last =
+                if to.square >= edge.square && self.history.edge().level.value() > self.profile.level(edge.radius) {
+                    (End::Logarithm, 0.0)
+                } else {
+                    (End::Root((beyond.square - outer.square).value()), -bend)
+                };
             let begins = knots.partition_point(|&knot| knot <= from.radius);
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
             let brief = ends - begins > MANY;
@@ -204,7 +204,7 @@ impl Contact {
             let mut start = self.start(index, &from, &knots);
             let mut inner = from;
             for (outer, end, next) in within.chain([(to, last, last)]) {
-                if !go_on() {
+                if !keep_going() {
                     return None;
                 }
                 search.through(&Stretch { inner, outer, start, end, brief });
@@ -216,11 +216,11 @@ impl Contact {
         Some(search.peaks)
     }
 
-    /// How the derivative begins beyond kink `index` of the memory, the centre for the first.
+    /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
     fn start(&self, index: usize, from: &At, knots: &[f64]) -> (End, f64) {
         let sign = self.trend(from);
         let end = if index == 0 {
-            let slips = self.memory.pieces()[0].line.slope.value().abs() > 0.0;
+            let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
             if !slips || self.profile.smooth_centre() { End::Smooth } else { End::Inverse }
         } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
             return (End::Logarithm, 0.0);
@@ -232,8 +232,8 @@ impl Contact {
 
     /// Change of slope at each kink, from the first beyond the centre to the edge.
     fn bends(&self) -> Vec<f64> {
-        let slope = |index: usize| self.memory.pieces().get(index).map_or(0.0, |piece| piece.line.slope.value());
-        (0..self.memory.pieces().len()).map(|index| slope(index + 1) - slope(index)).collect()
+        let slope = |index: usize| self.history.pieces().get(index).map_or(0.0, |piece| piece.line.slope.value());
+        (0..self.history.pieces().len()).map(|index| slope(index + 1) - slope(index)).collect()
     }
 
     /// Whether the derivative keeps one sign in the interval inside each kink, known without a search: where all bends from

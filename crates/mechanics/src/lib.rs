@@ -31,40 +31,40 @@
 //!
 //! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
 //! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `extrema`, `surface`, `accuracy`: what is
-//! asked of it. `waypoint`: where a move is on its way. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
+//! asked of it. `partial_move`: where a move is on its way. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
 //! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
 
 mod accuracy;
 mod contact;
+mod curved_move;
 mod double_double;
 pub mod elasticity;
 mod error;
 mod extrema;
-mod force;
+mod force_control;
+mod friction_work;
 mod normal;
 mod packed;
+mod partial_move;
 pub mod profile;
 pub mod protocol;
 mod quantity;
 pub mod range;
-mod release;
-mod route;
+mod shear_stress;
 mod slip_history;
 pub mod springs;
 mod state;
-mod surface;
-mod traction;
-mod waypoint;
+mod surface_displacement;
 
-pub use accuracy::Estimate;
+pub use accuracy::ErrorEstimate;
 pub use contact::Contact;
+pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use double_double::DoubleDouble;
 pub use elasticity::{Body, Elasticity};
 pub use error::{Error, TableFault, UnsupportedMove};
-pub use normal::{Figures, Preload};
+pub use normal::{ContactSummary, Preload};
 pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};
-pub use route::{DEFAULT_TOLERANCE, MAX_CHORDS};
+pub use shear_stress::{Peak, Residual};
 pub use springs::Springs;
 pub use state::{Move, Normal, Regime, Setup, State, Tangential};
-pub use traction::{Peak, Residual};

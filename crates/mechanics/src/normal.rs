@@ -24,7 +24,7 @@ pub enum Preload {
 
 /// The figures that follow from a definition and a normal load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figures {
+pub struct ContactSummary {
     /// Reduced modulus E*, Pa.
     pub e_star: f64,
     /// Reduced shear modulus G*, Pa.
@@ -43,7 +43,7 @@ pub struct Figures {
     pub gross_slip_force: f64,
 }
 
-impl Figures {
+impl ContactSummary {
     /// The pressure that stresses are compared with, Pa: the largest, or where that is infinite the mean.
     #[must_use]
     pub fn unit_pressure(&self) -> f64 {

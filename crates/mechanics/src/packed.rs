@@ -8,12 +8,12 @@
 //! | 4 | [`LAYOUT`] and, in the upper half, [`ENGINE`] |
 //! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
-//! | the rest | the memory, see `memory/packed.rs` |
+//! | the rest | the slip history, see `slip_history/packed.rs` |
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::profile::Point;
-use super::slip_history::Memory;
+use super::slip_history::SlipHistory;
 
 /// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for whatever
 /// contact: bytes of another version are not read, so that states packed by an older engine are computed anew from their
@@ -55,7 +55,7 @@ impl Reader<'_> {
     }
 
     /// Takes the versions at the beginning; whether they are those of this program.
-    fn is_ours(&mut self) -> bool {
+    fn is_current(&mut self) -> bool {
         self.version() == Some(LAYOUT) && self.version() == Some(ENGINE)
     }
 
@@ -88,7 +88,7 @@ impl Contact {
     /// How many bytes [`Contact::pack`] makes.
     #[must_use]
     pub fn packed_length(&self) -> usize {
-        2 * size_of::<u16>() + 11 * size_of::<f64>() + self.memory.packed_length()
+        2 * size_of::<u16>() + 11 * size_of::<f64>() + self.history.packed_length()
     }
 
     /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another version
@@ -99,7 +99,7 @@ impl Contact {
         bytes.extend_from_slice(&LAYOUT.to_le_bytes());
         bytes.extend_from_slice(&ENGINE.to_le_bytes());
         let mut writer = Writer(bytes);
-        for value in self.marks() {
+        for value in self.definition_marks() {
             writer.number(value);
         }
         writer.double(self.displacement);
@@ -107,14 +107,14 @@ impl Contact {
         writer.double(self.dissipated);
         writer.number(self.path_error);
         writer.number(self.path_kernel);
-        self.memory.pack(&mut writer);
+        self.history.pack(&mut writer);
         writer.0
     }
 
     /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are sound.
     #[must_use]
-    pub fn packs_like(bytes: &[u8]) -> bool {
-        Reader(bytes).is_ours()
+    pub fn is_current_packing(bytes: &[u8]) -> bool {
+        Reader(bytes).is_current()
     }
 
     /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a contact of
@@ -123,10 +123,10 @@ impl Contact {
     #[must_use]
     pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
         let mut reader = Reader(bytes);
-        if !reader.is_ours() {
+        if !reader.is_current() {
             return None;
         }
-        for value in self.marks() {
+        for value in self.definition_marks() {
             reader.any().filter(|found| found.to_bits() == value.to_bits())?;
         }
         let displacement = reader.double()?;
@@ -134,12 +134,12 @@ impl Contact {
         let dissipated = reader.double()?;
         // The error of a stress may be without bound.
         let (path_error, path_kernel) = (reader.any()?, reader.any()?);
-        let memory = Memory::unpack(&mut reader)?;
+        let history = SlipHistory::unpack(&mut reader)?;
         Some(Contact {
             profile: self.profile.clone(),
             elasticity: self.elasticity,
             friction: self.friction,
-            memory,
+            history,
             displacement,
             normal_force,
             dissipated,
@@ -151,7 +151,7 @@ impl Contact {
     }
 
     /// What tells contacts of different definitions apart well enough, and machines that compute a preload differently.
-    fn marks(&self) -> [f64; 4] {
+    fn definition_marks(&self) -> [f64; 4] {
         let (hi, lo) = self.inverse_scale.parts();
         [self.initial.indentation, self.initial.normal_force, hi, lo]
     }

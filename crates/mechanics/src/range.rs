@@ -51,11 +51,11 @@ pub const G_STAR: Range = Range { quantity: Quantity::GStar, unit: "Pa", min: 1e
 /// Coulomb's coefficient of friction; nought means no tangential force at all.
 pub const FRICTION: Range = Range { quantity: Quantity::Friction, unit: "", min: 0.0, max: 100.0 };
 /// The smallest coefficient of friction beside nought: below it, displacements over that of gross slip outgrow all numbers.
-pub const LEAST_FRICTION: f64 = 1e-9;
+pub const MIN_POSITIVE_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
 pub const NORMAL_FORCE: Range = Range { quantity: Quantity::NormalForce, unit: "N", min: 0.0, max: 1e18 };
 /// The smallest normal force beside nought, N: below it, what follows from a force has no digits left.
-pub const LEAST_NORMAL_FORCE: f64 = 1e-250;
+pub const MIN_POSITIVE_NORMAL_FORCE: f64 = 1e-250;
 /// The contact radius, as a preload asks for it or as it comes of a load; nought is a contact just touching.
 pub const CONTACT_RADIUS: Range = Range { quantity: Quantity::ContactRadius, unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a preload may ask for.
@@ -89,26 +89,26 @@ impl Range {
     }
 }
 
-/// Gives a coefficient of friction back: nought, or from [`LEAST_FRICTION`] on.
+/// Gives a coefficient of friction back: nought, or from [`MIN_POSITIVE_FRICTION`] on.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
 pub fn check_friction(friction: f64) -> Result<f64, Error> {
-    if friction > 0.0 && friction < LEAST_FRICTION {
-        let allowed = format!("0, or {} to {}", short(LEAST_FRICTION), short(FRICTION.max));
+    if friction > 0.0 && friction < MIN_POSITIVE_FRICTION {
+        let allowed = format!("0, or {} to {}", short(MIN_POSITIVE_FRICTION), short(FRICTION.max));
         return Err(Error::OutOfRange { quantity: FRICTION.quantity, value: friction, allowed });
     }
     FRICTION.check(friction)
 }
 
-/// Gives a normal force back: nought, or from [`LEAST_NORMAL_FORCE`] on.
+/// Gives a normal force back: nought, or from [`MIN_POSITIVE_NORMAL_FORCE`] on.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
 pub fn check_normal_force(force: f64) -> Result<f64, Error> {
-    if force > 0.0 && force < LEAST_NORMAL_FORCE {
+    if force > 0.0 && force < MIN_POSITIVE_NORMAL_FORCE {
         let allowed =
-            format!("0, or {} to {} {}", short(LEAST_NORMAL_FORCE), short(NORMAL_FORCE.max), NORMAL_FORCE.unit);
+            format!("0, or {} to {} {}", short(MIN_POSITIVE_NORMAL_FORCE), short(NORMAL_FORCE.max), NORMAL_FORCE.unit);
         return Err(Error::OutOfRange { quantity: NORMAL_FORCE.quantity, value: force, allowed });
     }
     NORMAL_FORCE.check(force)

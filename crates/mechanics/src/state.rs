@@ -1,5 +1,6 @@
 //! What a contact is made of, what it is told, and what it answers.
 
+use super::contact::Contact;
 use super::elasticity::Elasticity;
 use super::normal::Preload;
 use super::profile::Profile;
@@ -80,6 +81,46 @@ pub struct State {
     pub dissipated_energy: f64,
     /// Elastic energy of the tangential deformation, J.
     pub elastic_energy: f64,
-    /// Pieces held in memory.
+    /// Number of straight pieces that the slip history consists of.
     pub memory_depth: usize,
+}
+
+impl Contact {
+    /// The state after the last move.
+    #[must_use]
+    pub fn state(&self) -> State {
+        #[cfg(test)]
+        super::profile::count::add(|calls| &mut calls.states);
+        let edge = self.history.edge();
+        let scale = self.scale();
+        let (stick_radius, regime) = self.stick();
+        State {
+            displacement: self.displacement.value(),
+            force: self.force(),
+            indentation: edge.level.value(),
+            normal_force: self.normal_force(),
+            contact_radius: edge.radius,
+            stick_radius,
+            regime,
+            dissipated_energy: self.dissipated.value(),
+            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
+            memory_depth: self.memory_depth(),
+        }
+    }
+
+    fn stick(&self) -> (f64, Regime) {
+        let edge = self.history.edge();
+        if edge.level.value() < 0.0 {
+            return (0.0, Regime::Separated);
+        }
+        if self.friction <= 0.0 {
+            return (0.0, Regime::GrossSlip);
+        }
+        match self.history.slip_from() {
+            None => (edge.radius, Regime::Stick),
+            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
+            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
+            Some(_) => (edge.radius, Regime::Stick),
+        }
+    }
 }

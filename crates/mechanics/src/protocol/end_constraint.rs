@@ -1,4 +1,4 @@
-//! Equal alternating extrema with a prescribed end.
+//! EqualExtrema alternating extrema with a prescribed end.
 //!
 //! The kinks of the smallest E lead somewhere. To lead elsewhere one extremum must stay below the others. If it is one of
 //! the kinks, its share and E are the two unknowns of two equations, the end and the stress of the core, solved by Broyden's
@@ -6,8 +6,8 @@
 //! many extrema it matters little which one stays below.
 
 use super::super::profile::{Point, Ring};
-use super::minimax::{Marched, Problem};
-use super::{DoubleDouble, End};
+use super::minimax::{KinkSequence, Problem};
+use super::{DoubleDouble, PathEnd};
 
 /// So many kinks are tried one by one.
 pub(super) const FEW: usize = 8;
@@ -28,11 +28,11 @@ pub(super) fn kinks(
     problem: &Problem<'_>,
     limit: f64,
     first: f64,
-    end: End,
-    go_on: &dyn Fn() -> bool,
+    end: PathEnd,
+    keep_going: &dyn Fn() -> bool,
 ) -> Vec<Vec<Point>> {
     let tried = if problem.reversals <= FEW { problem.reversals } else { 1 };
-    let equations = Equations { problem, limit, first, end, go_on };
+    let equations = Equations { problem, limit, first, end, keep_going };
     (0..tried).filter_map(|index| equations.by_share(index)).chain(equations.by_core()).collect()
 }
 
@@ -41,14 +41,14 @@ struct Equations<'a> {
     problem: &'a Problem<'a>,
     limit: f64,
     first: f64,
-    end: End,
-    go_on: &'a dyn Fn() -> bool,
+    end: PathEnd,
+    keep_going: &'a dyn Fn() -> bool,
 }
 
 impl Equations<'_> {
     /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with what they miss.
-    fn look(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], Marched)> {
-        let marched = self.problem.march_with(self.limit * stress, (index, share), self.go_on)?;
+    fn look(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
+        let marched = self.problem.march_with(self.limit * stress, (index, share), self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
 
@@ -143,17 +143,17 @@ impl Equations<'_> {
 }
 
 /// What the end misses: of the displacement over the indentation, of the force over that of gross slip.
-fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: End) -> f64 {
+fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
     let profile = problem.profile;
     let alternating = |index: usize, size: f64| if index.is_multiple_of(2) { size } else { -size };
     match end {
-        End::Free => 0.0,
-        End::DisplacementZero => {
+        PathEnd::Free => 0.0,
+        PathEnd::DisplacementZero => {
             let strokes = kinks.iter().rev().enumerate();
             let way = strokes.map(|(index, kink)| alternating(index, 2.0 * (problem.edge.level - kink.level).value()));
             (first - way.sum::<f64>()) / problem.edge.level.value()
         }
-        End::ForceZero => {
+        PathEnd::ForceZero => {
             let load = |ring: &Ring| ring.inner.radius * ring.depth + profile.moments(ring).first;
             let zero = profile.point(DoubleDouble::ZERO);
             let whole = load(&Ring::between(zero, problem.edge));

@@ -14,7 +14,7 @@ const HALVINGS: u32 = 60;
 const TIP: f64 = 1e-290;
 
 /// s between two radii.
-pub(super) struct Spread<'a> {
+pub(super) struct EqualPeakMeasure<'a> {
     profile: &'a Profile,
     /// From the edge inwards.
     leaves: Vec<Leaf>,
@@ -52,10 +52,10 @@ impl Along {
     }
 }
 
-impl<'a> Spread<'a> {
+impl<'a> EqualPeakMeasure<'a> {
     /// `None` if s is not finite, or nought: a flat has no peaks.
-    pub(super) fn new(profile: &'a Profile, inner: f64, outer: f64) -> Option<Spread<'a>> {
-        let mut spread = Spread { profile, leaves: Vec::new(), sum: 0.0, rest: 0.0 };
+    pub(super) fn new(profile: &'a Profile, inner: f64, outer: f64) -> Option<EqualPeakMeasure<'a>> {
+        let mut spread = EqualPeakMeasure { profile, leaves: Vec::new(), sum: 0.0, rest: 0.0 };
         let mut top = outer;
         while top > inner {
             let kink = profile.kink_below(top);

@@ -12,7 +12,7 @@ use super::super::contact::Contact;
 use super::super::profile::{At, Point, Ring};
 use super::super::slip_history::Line;
 use super::minimax::Problem;
-use super::{DoubleDouble, End, cutoff_of, outermost_singular};
+use super::{DoubleDouble, PathEnd, cutoff_of, outermost_singular};
 
 /// More pieces than this inside are not looked at one by one for every E.
 const DEEPEST: usize = 256;
@@ -33,7 +33,7 @@ const TOLERANCE: f64 = 1e-8;
 const LEAST: f64 = 1e-4;
 
 /// Strokes from the state of a contact.
-pub(super) struct Relief<'a> {
+pub(super) struct FromAnyState<'a> {
     problem: Problem<'a>,
     /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else nought.
     edge: DoubleDouble,
@@ -41,12 +41,12 @@ pub(super) struct Relief<'a> {
     /// The history from the centre outward, and what turns a line into w - W.
     history: Vec<(Ring, Line)>,
     /// Where the inside is looked at, from the centre outward.
-    looks: Vec<Look>,
+    looks: Vec<SampleRadius>,
     reference: DoubleDouble,
     /// The direction of the last stroke that slips inside, and of the first.
     last: f64,
     first: f64,
-    end: End,
+    end: PathEnd,
 }
 
 /// What the strokes of one E come to, all scaled by m and for a last stroke forwards.
@@ -56,17 +56,17 @@ struct Strokes {
     first: f64,
 }
 
-impl<'a> Relief<'a> {
+impl<'a> FromAnyState<'a> {
     /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or where
-    /// the memory is too deep.
-    pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: End) -> Option<Relief<'a>> {
-        let (profile, memory) = (&*contact.profile, &contact.memory);
-        let edge = *memory.edge();
-        if memory.pieces().len() > DEEPEST {
+    /// the history is too deep.
+    pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: PathEnd) -> Option<FromAnyState<'a>> {
+        let (profile, history) = (&*contact.profile, &contact.history);
+        let edge = *history.edge();
+        if history.pieces().len() > DEEPEST {
             return None;
         }
-        let mut history: Vec<_> = memory.rings().map(|(ring, line)| (ring, *line)).collect();
-        history.reverse();
+        let mut rings: Vec<_> = history.rings().map(|(ring, line)| (ring, *line)).collect();
+        rings.reverse();
         let rim = profile.rim_radius().filter(|rim| edge.radius >= *rim).map(|rim| profile.level(rim));
         let outer = rim.map_or(edge, |level| profile.point(DoubleDouble::from(level)));
         let inner_strokes = strokes.checked_sub(usize::from(rim.is_some()))?;
@@ -78,9 +78,19 @@ impl<'a> Relief<'a> {
         let last = if rim.is_some() { -last } else { last };
         let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
         let height = rim.map_or(0.0, |level| (edge.level - DoubleDouble::from(level)).value());
-        let reference = memory.position() - memory.shift();
-        let looks = looks(&problem, &history, last);
-        Some(Relief { problem, edge: edge.level, rim: height, history, looks, reference, last, first, end })
+        let reference = history.position() - history.shift();
+        let looks = looks(&problem, &rings, last);
+        Some(FromAnyState {
+            problem,
+            edge: edge.level,
+            rim: height,
+            history: rings,
+            looks,
+            reference,
+            last,
+            first,
+            end,
+        })
     }
 
     /// w - W of the history at a level, for a last stroke forwards.
@@ -126,9 +136,9 @@ impl<'a> Relief<'a> {
     /// What the end misses with a cut at a level, in the direction of the first stroke: it falls as the cut goes outwards.
     fn miss(&self, kinks: &[Point], level: DoubleDouble) -> f64 {
         let value = match self.end {
-            End::Free => 0.0,
-            End::DisplacementZero => self.first_to(level) + self.way(kinks),
-            End::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
+            PathEnd::Free => 0.0,
+            PathEnd::DisplacementZero => self.first_to(level) + self.way(kinks),
+            PathEnd::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
         };
         self.first * value
     }
@@ -166,18 +176,18 @@ impl<'a> Relief<'a> {
         inside.map(|look| self.problem.shear_down_to(*last, beyond, &look.at)).collect()
     }
 
-    /// The strokes of a largest stress E, if there are any; `Err` if `go_on` said no.
-    fn strokes(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Result<Tried, ()> {
-        let marched = self.problem.march(limit, go_on).ok_or(())?;
+    /// The strokes of a largest stress E, if there are any; `Err` if `keep_going` said no.
+    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Result<StrokeOutcome, ()> {
+        let marched = self.problem.march(limit, keep_going).ok_or(())?;
         if marched.kinks.len() < self.problem.reversals {
-            return Ok(Tried::Loose);
+            return Ok(StrokeOutcome::Loose);
         }
         let kinks = marched.kinks;
         let profile = self.problem.profile;
         let outside = self.outside(&kinks);
         let last = kinks.last().unwrap_or(&self.problem.edge).level;
         let fits = |cut: &Point| self.worst(&outside, &kinks, cut) <= limit * (1.0 + 1e-12);
-        if self.end == End::Free {
+        if self.end == PathEnd::Free {
             let outermost = kinks.last().unwrap_or(&self.problem.edge).radius;
             let cut = |part: f64| profile.point(DoubleDouble::from(profile.level(part * outermost).min(last.value())));
             let worst = |part: f64| self.worst(&outside, &kinks, &cut(part));
@@ -185,7 +195,7 @@ impl<'a> Relief<'a> {
             let (mut best, mut least) = tried.fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
             // Ever smaller steps to both sides of the best.
             let mut step = 0.5 / CUTS as f64;
-            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && go_on() {
+            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && keep_going() {
                 let sides = [best - step, best + step].map(|part| part.clamp(0.0, 1.0)).map(|part| (part, worst(part)));
                 match sides.into_iter().find(|(_, value)| *value < least) {
                     Some(side) => (best, least) = side,
@@ -194,18 +204,22 @@ impl<'a> Relief<'a> {
             }
             let cut = cut(best);
             let first = self.first_to(cut.level);
-            return Ok(if least <= limit { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight });
+            return Ok(if least <= limit {
+                StrokeOutcome::Fits(Strokes { kinks, first })
+            } else {
+                StrokeOutcome::Tight
+            });
         }
         let (mut low, mut high) = (DoubleDouble::ZERO, last);
         if self.miss(&kinks, high) > 0.0 {
-            return Ok(Tried::Tight);
+            return Ok(StrokeOutcome::Tight);
         }
         let over = self.miss(&kinks, low);
         if over < 0.0 {
             // Sliding on as a whole changes nothing but where it ends.
             let first = self.first_to(low) - self.first * over;
-            let slides = self.end == End::DisplacementZero && fits(&profile.point(low));
-            return Ok(if slides { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight });
+            let slides = self.end == PathEnd::DisplacementZero && fits(&profile.point(low));
+            return Ok(if slides { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight });
         }
         for _ in 0..HALVINGS {
             let middle = low + (high - low) * 0.5;
@@ -213,11 +227,11 @@ impl<'a> Relief<'a> {
         }
         let cut = profile.point(high);
         let first = self.first_to(cut.level);
-        Ok(if fits(&cut) { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight })
+        Ok(if fits(&cut) { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight })
     }
 
-    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `go_on` said no.
-    pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Vec<f64>> {
+    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `keep_going` said no.
+    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<Vec<f64>> {
         let problem = &self.problem;
         let middle = At::radius(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
@@ -228,13 +242,13 @@ impl<'a> Relief<'a> {
         let (mut low, mut high);
         let mut best = None;
         let mut step = |limit: f64| -> Option<bool> {
-            Some(match self.strokes(limit, go_on).ok()? {
-                Tried::Fits(strokes) => {
+            Some(match self.strokes(limit, keep_going).ok()? {
+                StrokeOutcome::Fits(strokes) => {
                     best = Some(strokes);
                     true
                 }
-                Tried::Loose => true,
-                Tried::Tight => false,
+                StrokeOutcome::Loose => true,
+                StrokeOutcome::Tight => false,
             })
         };
         if step(guess)? {
@@ -293,14 +307,14 @@ impl<'a> Relief<'a> {
 }
 
 /// A radius where the inside is looked at.
-struct Look {
+struct SampleRadius {
     at: At,
     /// The stress there of so many rings of the history, from the centre outward, over G* m/pi.
     below: Vec<f64>,
 }
 
 /// Even radii, and the kinks of the history.
-fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Look> {
+fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<SampleRadius> {
     let (least, most) = (problem.cutoff, problem.edge.radius);
     let even = (0..GRID).map(|index| At::radius(least + (most - least) * index as f64 / GRID as f64));
     let bends = history.iter().map(|(ring, _)| ring.inner).filter(|bend| bend.radius > least && bend.radius < most);
@@ -317,13 +331,13 @@ fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Look
             }
         }
         below.push(sum);
-        Look { at, below }
+        SampleRadius { at, below }
     };
     all.into_iter().map(look).collect()
 }
 
 /// What an E comes to.
-enum Tried {
+enum StrokeOutcome {
     /// It is enough, and these are the strokes.
     Fits(Strokes),
     /// It is more than enough: fewer strokes would do.

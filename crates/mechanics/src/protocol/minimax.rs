@@ -25,20 +25,20 @@ const BELOW: usize = 8;
 const STEP_BELOW: f64 = 0.01;
 
 /// The kinks for one E, the outermost first.
-pub(super) struct Marched {
+pub(super) struct KinkSequence {
     pub(super) kinks: Vec<Point>,
     /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
     pub(super) excess: Option<f64>,
 }
 
-impl Marched {
+impl KinkSequence {
     fn fits(&self) -> bool {
         self.excess.is_none_or(|excess| excess <= 0.0)
     }
 }
 
 /// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over the largest.
-pub(super) struct Equal {
+pub(super) struct EqualExtrema {
     pub(super) levels: Vec<f64>,
     pub(super) ratio: f64,
     /// The largest of them, over G* m/pi.
@@ -153,8 +153,8 @@ impl Problem<'_> {
         largest
     }
 
-    pub(super) fn march(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Option<Marched> {
-        self.march_with(limit, (0, 1.0), go_on)
+    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
+        self.march_with(limit, (0, 1.0), keep_going)
     }
 
     /// The same with a share of the limit for the extremum of this index, the outermost first.
@@ -162,20 +162,20 @@ impl Problem<'_> {
         &self,
         limit: f64,
         (index, share): (usize, f64),
-        go_on: &dyn Fn() -> bool,
-    ) -> Option<Marched> {
+        keep_going: &dyn Fn() -> bool,
+    ) -> Option<KinkSequence> {
         let mut kinks = Vec::with_capacity(self.reversals);
         while kinks.len() < self.reversals {
-            if !go_on() {
+            if !keep_going() {
                 return None;
             }
             match self.next(&kinks, if kinks.len() == index { share * limit } else { limit }) {
                 Some(kink) => kinks.push(kink),
-                None => return Some(Marched { kinks, excess: None }),
+                None => return Some(KinkSequence { kinks, excess: None }),
             }
         }
         let excess = self.core(&kinks) / limit - 1.0;
-        Some(Marched { kinks, excess: Some(excess) })
+        Some(KinkSequence { kinks, excess: Some(excess) })
     }
 
     /// Closes the bracket of an E that is too small and one that is not.
@@ -184,8 +184,8 @@ impl Problem<'_> {
         mut low: f64,
         mut under: Option<f64>,
         high: &mut f64,
-        best: &mut Marched,
-        go_on: &dyn Fn() -> bool,
+        best: &mut KinkSequence,
+        keep_going: &dyn Fn() -> bool,
     ) -> Option<()> {
         let mut over = best.excess;
         for look in 0..LOOKS {
@@ -198,7 +198,7 @@ impl Problem<'_> {
                 _ => 0.5,
             };
             let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (*high - low);
-            let marched = self.march(trial, go_on)?;
+            let marched = self.march(trial, keep_going)?;
             // The weight of an end that stays is halved (Illinois).
             if marched.fits() {
                 (*high, over) = (trial, marched.excess);
@@ -212,15 +212,15 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The smallest E, and its kinks; `None` if `go_on` said no, or there is no such E.
-    pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Equal> {
+    /// The smallest E, and its kinks; `None` if `keep_going` said no, or there is no such E.
+    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = At::radius(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.shear(&[], &middle) / (self.reversals as f64).sqrt();
         if !(guess > 0.0 && guess.is_finite()) {
             return None;
         }
         let (mut low, mut high) = (guess, guess);
-        let mut best = self.march(high, go_on)?;
+        let mut best = self.march(high, keep_going)?;
         let mut under = best.excess;
         for _ in 0..LOOKS {
             if best.fits() {
@@ -228,13 +228,13 @@ impl Problem<'_> {
             }
             (low, under) = (high, best.excess);
             high *= STRIDE;
-            best = self.march(high, go_on)?;
+            best = self.march(high, keep_going)?;
         }
         for _ in 0..LOOKS {
             if low < high {
                 break;
             }
-            let trial = self.march(low / STRIDE, go_on)?;
+            let trial = self.march(low / STRIDE, keep_going)?;
             low /= STRIDE;
             if trial.fits() {
                 (high, low, best) = (low, low, trial);
@@ -245,23 +245,23 @@ impl Problem<'_> {
         if !best.fits() || low >= high {
             return None;
         }
-        self.close(low, under, &mut high, &mut best, go_on)?;
+        self.close(low, under, &mut high, &mut best, keep_going)?;
         // The core need not fall all the way as E rises: a little lower there may be another one that fits.
         for _ in 0..BELOW {
             let trial = high * (1.0 - STEP_BELOW);
-            let marched = self.march(trial, go_on)?;
+            let marched = self.march(trial, keep_going)?;
             if marched.excess.is_some_and(|excess| excess <= 0.0) {
                 let lower = trial * (1.0 - STEP_BELOW);
-                let under = self.march(lower, go_on)?;
+                let under = self.march(lower, keep_going)?;
                 (high, best) = (trial, marched);
                 if !under.fits() {
-                    self.close(lower, under.excess, &mut high, &mut best, go_on)?;
+                    self.close(lower, under.excess, &mut high, &mut best, keep_going)?;
                 }
             } else {
                 break;
             }
         }
         let ratio = (self.core(&best.kinks) / high).clamp(0.0, 1.0);
-        Some(Equal { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
+        Some(EqualExtrema { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
     }
 }

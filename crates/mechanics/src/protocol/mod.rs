@@ -14,10 +14,10 @@ mod minimax;
 mod robustness;
 
 pub use bound::lower_bound;
-pub use design::{Design, End, Judged, Kind, Start, Way, design};
-pub use robustness::{Errors, trials};
+pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
+pub use robustness::{ExecutionErrors, trials};
 
-use equal_peak_measure::Spread;
+use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
 use super::contact::Contact;
@@ -70,7 +70,7 @@ pub struct EqualPeaks {
 /// from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge. Profiles that
 /// need none have none unless it is given.
 ///
-/// # Errors
+/// # ExecutionErrors
 /// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
     let (edge, indentation) = (contact.contact_radius(), contact.indentation());
@@ -85,7 +85,8 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         None => cutoff_of(singular, edge),
     };
     // At the very radius where s diverges there is no law.
-    let spread = (singular.is_none() || cutoff > least).then(|| Spread::new(&contact.profile, cutoff, edge)).flatten();
+    let spread =
+        (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.profile, cutoff, edge)).flatten();
     let full = contact.gross_slip_displacement();
     let size = |index: usize| {
         let part = index as f64 / reversals.max(1) as f64;
@@ -116,29 +117,35 @@ pub struct Minimax {
 /// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end left free.
 ///
 /// Where the stress is infinite whatever is done (the tip of a cone, the rim of a truncated profile) it is minimised from
-/// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `go_on` is asked before each kink that is sought.
+/// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `keep_going` is asked before each kink that is sought.
 ///
-/// `None` if `go_on` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
+/// `None` if `keep_going` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
 /// vertical edge, where the stress stays infinite.
-pub fn minimax(contact: &Contact, reversals: usize, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
-    minimax_to(contact, reversals, contact.gross_slip_displacement(), End::Free, go_on).pop()
+pub fn minimax(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<Minimax> {
+    minimax_to(contact, reversals, contact.gross_slip_displacement(), PathEnd::Free, keep_going).pop()
 }
 
 /// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then,
 /// and there is a path for each that may be. None without an answer.
-fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: &dyn Fn() -> bool) -> Vec<Minimax> {
-    let edge = *contact.memory.edge();
+fn minimax_to(
+    contact: &Contact,
+    reversals: usize,
+    first: f64,
+    end: PathEnd,
+    keep_going: &dyn Fn() -> bool,
+) -> Vec<Minimax> {
+    let edge = *contact.history.edge();
     let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return Vec::new();
     }
     let cutoff_radius = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
     let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
-    let Some(equal) = problem.solve(go_on) else { return Vec::new() };
-    let levels: Vec<Vec<f64>> = if end == End::Free {
+    let Some(equal) = problem.solve(keep_going) else { return Vec::new() };
+    let levels: Vec<Vec<f64>> = if end == PathEnd::Free {
         vec![equal.levels]
     } else {
-        let found = end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, go_on);
+        let found = end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, keep_going);
         found.iter().map(|kinks| kinks.iter().map(|kink| kink.level.value()).collect()).collect()
     };
     let path = |levels: Vec<f64>| {

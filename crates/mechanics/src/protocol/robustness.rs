@@ -3,11 +3,11 @@
 use super::super::contact::Contact;
 use super::super::error::Error;
 use super::super::state::{Move, Tangential};
-use super::design::Judged;
+use super::design::EvaluationRange;
 
 /// What may be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
+pub struct ExecutionErrors {
     /// Standard deviation of each displacement, relative to itself; normally distributed.
     pub amplitude: f64,
     /// The part that the coefficient of friction may be off either way, the same all along a path; evenly distributed.
@@ -20,19 +20,19 @@ pub struct Errors {
 /// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the same
 /// errors, whatever the path.
 ///
-/// # Errors
-/// What `make` and the moves refuse, and [`Error::Interrupted`] if `go_on` said no.
+/// # ExecutionErrors
+/// What `make` and the moves refuse, and [`Error::Interrupted`] if `keep_going` said no.
 pub fn trials(
     make: &dyn Fn(f64) -> Result<Contact, Error>,
     path: &[f64],
-    errors: &Errors,
+    errors: &ExecutionErrors,
     samples: usize,
-    go_on: &dyn Fn() -> bool,
+    keep_going: &dyn Fn() -> bool,
 ) -> Result<Vec<f64>, Error> {
     let mut random = fastrand::Rng::with_seed(errors.seed);
     let mut found = Vec::with_capacity(samples);
     for _ in 0..samples {
-        if !go_on() {
+        if !keep_going() {
             return Err(Error::Interrupted);
         }
         let mut contact = make(1.0 + errors.friction * (2.0 * random.f64() - 1.0))?;
@@ -40,8 +40,8 @@ pub fn trials(
             let target = target * (1.0 + errors.amplitude * normal(&mut random));
             contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         }
-        let residual = contact.residual_while(go_on).ok_or(Error::Interrupted)?;
-        found.push(Judged::of(&contact).largest(&contact, &residual));
+        let residual = contact.residual_while(keep_going).ok_or(Error::Interrupted)?;
+        found.push(EvaluationRange::of(&contact).largest(&contact, &residual));
     }
     found.sort_by(f64::total_cmp);
     Ok(found)

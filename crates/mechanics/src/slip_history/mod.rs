@@ -6,7 +6,7 @@
 //! slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole pieces beyond the
 //! bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed. Stuck pieces are
 //! stored relative to the indenter, so what rides along is not touched. The rule is Masing's with wiping-out at constant
-//! load, and that of the memory diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
+//! load, and that of the history diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
 //!
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
@@ -14,8 +14,8 @@
 mod packed;
 
 use super::double_double::DoubleDouble;
+use super::friction_work::{self, SlipRing};
 use super::profile::{Moments, Point, Profile, Ring};
-use super::release::{self, Slipping};
 
 /// A stuck core thinner than this, relative to the indentation, is gross slip: the displacement of gross slip is itself rounded.
 /// So is w at the edge.
@@ -72,7 +72,7 @@ pub(super) struct Piece {
 
 /// The state of the tangential problem in scaled units: lengths in m, integrals of X over y in m^2.
 #[derive(Clone, Debug)]
-pub(super) struct Memory {
+pub(super) struct SlipHistory {
     /// From the centre outward; empty without contact.
     pieces: Vec<Piece>,
     /// Level d and radius a of the edge; a level below nought is a gap.
@@ -87,15 +87,15 @@ pub(super) struct Memory {
 
 /// What a move did to the contact beyond its new state.
 #[must_use]
-pub(super) struct Passage {
+pub(super) struct MoveResult {
     /// Friction work over 2 G* m^2, m^3.
     pub(super) work: f64,
 }
 
-impl Memory {
+impl SlipHistory {
     /// A virgin contact at indentation d, m.
-    pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> Memory {
-        let mut memory = Memory {
+    pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> SlipHistory {
+        let mut history = SlipHistory {
             pieces: Vec::new(),
             edge: edge_at(profile, indentation),
             total: Sums::default(),
@@ -103,10 +103,10 @@ impl Memory {
             reference: DoubleDouble::ZERO,
             slip_from: None,
         };
-        if memory.in_contact() {
-            memory.lay_core(profile);
+        if history.in_contact() {
+            history.lay_core(profile);
         }
-        memory
+        history
     }
 
     pub(super) fn pieces(&self) -> &[Piece] {
@@ -140,7 +140,7 @@ impl Memory {
         -self.total.force.value()
     }
 
-    /// The sum of the magnitudes of what adds up to [`Memory::force`], m^2.
+    /// The sum of the magnitudes of what adds up to [`SlipHistory::force`], m^2.
     pub(super) fn force_size(&self) -> f64 {
         self.total.size
     }
@@ -172,21 +172,21 @@ impl Memory {
     }
 
     /// Moves along the straight line to indentation `d1` and scaled displacement `w1`. The work on the way is returned.
-    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> Passage {
+    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
         self.slip_from = None;
         if !self.in_contact() {
             let d0 = self.edge.level;
             if d1.value() <= 0.0 {
                 self.place(profile, d1, w1);
-                return Passage { work: 0.0 };
+                return MoveResult { work: 0.0 };
             }
             let touching = self.position + ((w1 - self.position) * (-d0)).over(d1 - d0);
             self.place(profile, DoubleDouble::ZERO, touching);
         }
         if d1.value() <= 0.0 {
-            let work = release::work(self, profile, d1, w1);
+            let work = friction_work::work(self, profile, d1, w1);
             self.place(profile, d1, w1);
-            return Passage { work };
+            return MoveResult { work };
         }
         let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
         if dd >= dw.abs() { self.grow(profile, d1, w1) } else { self.slip(profile, (d1, w1), (dd, dw)) }
@@ -209,11 +209,11 @@ impl Memory {
 
     /// The load rises at least as fast as the indenter moves: nothing slips, and what is touched on the way keeps the
     /// displacement gained since its touch.
-    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> Passage {
+    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
         let d0 = self.edge.level;
         let rise = d1 - d0;
         if rise.value() <= 0.0 {
-            return Passage { work: 0.0 };
+            return MoveResult { work: 0.0 };
         }
         let slope = -(w1 - self.position).over(rise);
         let inner = self.edge;
@@ -230,7 +230,7 @@ impl Memory {
             let ring = Ring::between(inner, self.edge);
             self.push_through(&profile.moments(&ring), &ring, (slope, self.shift()), self.total);
         }
-        Passage { work: 0.0 }
+        MoveResult { work: 0.0 }
     }
 
     /// An outer ring slips on the way to (d1, w1), which is (dd, dw) from here.
@@ -239,11 +239,11 @@ impl Memory {
         profile: &Profile,
         (d1, w1): (DoubleDouble, DoubleDouble),
         (dd, dw): (DoubleDouble, DoubleDouble),
-    ) -> Passage {
+    ) -> MoveResult {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
-            work += release::work(self, profile, d1, w1);
+            work += friction_work::work(self, profile, d1, w1);
             while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
                 self.pieces.pop();
             }
@@ -253,7 +253,7 @@ impl Memory {
             if trial.abs().value() <= round_off(d1, self.shift(), dd) {
                 // A rise taken back the same way.
                 self.close(profile);
-                return Passage { work };
+                return MoveResult { work };
             }
             sign = trial.value().signum();
             excess = trial.value().abs();
@@ -268,7 +268,7 @@ impl Memory {
             lag = if rate > 0.0 { dd.value() / (2.0 * rate) } else { 0.0 };
         }
         let shift = self.shift();
-        let slipping = Slipping { sign, shift, indentation: d1, lag };
+        let slipping = SlipRing { sign, shift, indentation: d1, lag };
         if dd.value() > 0.0 {
             let touched = Ring::between(self.edge, edge_at(profile, d1));
             let core = if self.pieces.is_empty() { touched.inner.radius * touched.depth * touched.depth } else { 0.0 };
@@ -316,7 +316,7 @@ impl Memory {
             self.slip_from = None;
             self.total = below;
         }
-        Passage { work }
+        MoveResult { work }
     }
 
     /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift` undoes.

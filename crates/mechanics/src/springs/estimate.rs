@@ -1,12 +1,12 @@
 //! What the discretisation costs: fewer springs on the same path, the exact normal contact, and bends between the springs.
 //!
-//! Each alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell dx, is off
+//! Each one_row may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell dx, is off
 //! by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of 1/sqrt(x^2 - r^2): what the
 //! springs show of second differences bounds both. Where more than a bend falls into a cell, springs of another number differ.
 
 use std::f64::consts::PI;
 
-use super::super::accuracy::Estimate;
+use super::super::accuracy::ErrorEstimate;
 use super::Springs;
 
 /// Radii at which stresses are compared.
@@ -19,19 +19,19 @@ impl Springs {
     /// twice the largest contact radius over the number of springs) away from the kinks of the displacement, the centre, the
     /// edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
     #[must_use]
-    pub fn accuracy(&self) -> Estimate {
-        let figures = self.normal.figures();
+    pub fn accuracy(&self) -> ErrorEstimate {
+        let figures = self.normal.summary();
         let edge = self.contact_radius();
         let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
         let pressure = figures.unit_pressure();
         let bends = self.bends();
         let misplaced = 2.0 * self.initial.g_star * self.misplaced;
-        let differences = self.twins.iter().map(|twin| (self.force() - twin.force()).abs());
+        let differences = self.coarser.iter().map(|coarse| (self.force() - coarse.force()).abs());
         let normal = self.friction * (self.normal_force() - figures.normal_force).abs();
         let force = differences.fold(normal.max(self.force_bound(&bends)), f64::max) + misplaced * edge;
         let stress = self.off_kinks(edge).map(|radius| self.stress_doubt(radius, &bends)).fold(0.0, f64::max);
         let stress = stress + misplaced / (PI * (2.0 * NEAREST * edge * self.spacing).sqrt());
-        Estimate {
+        ErrorEstimate {
             path_error: 0.0,
             force_error: relative(force, figures.gross_slip_force) + f64::EPSILON,
             stress_error: relative(stress, self.friction * pressure) + f64::EPSILON,
@@ -91,7 +91,7 @@ impl Springs {
         let open = self.initial.g_star / PI * self.spacing * sum / 8.0;
         let normal = self.friction * (self.pressure(radius) - self.normal.pressure(radius)).abs();
         let shear = self.shear(radius);
-        let differences = self.twins.iter().map(|twin| (shear - twin.shear(radius)).abs());
+        let differences = self.coarser.iter().map(|coarse| (shear - coarse.shear(radius)).abs());
         differences.fold(open.max(normal), f64::max)
     }
 
@@ -100,7 +100,7 @@ impl Springs {
         let moved = displacement - self.displacement;
         let scale = self.scale();
         let mut after = self.clone();
-        after.twins.clear();
+        after.coarser.clear();
         after.advance(self.indentation, displacement);
         let error = after.force_bound(&after.bends());
         let force = after.force();

@@ -16,7 +16,7 @@ use super::Springs;
 
 /// How a shear stress is read from the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernel {
+pub enum ShearEvaluation {
     /// The displacement is straight over x from spring to spring, as in [`Springs::shear`].
     Arcosh,
     /// The displacement is straight over g(x) from spring to spring.
@@ -32,18 +32,18 @@ impl Springs {
     ///
     /// # Errors
     /// As [`Springs::new`].
-    pub fn bare(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    pub fn without_error_estimate(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        Springs::alone(setup, count, reach)
+        Springs::one_row(setup, count, reach)
     }
 
     /// Shear stress, Pa, at each of `radii`, m.
     #[must_use]
-    pub fn shears_by(&self, kernel: Kernel, radii: &[f64]) -> Vec<f64> {
+    pub fn shears_by(&self, kernel: ShearEvaluation, radii: &[f64]) -> Vec<f64> {
         match kernel {
-            Kernel::Arcosh => radii.iter().map(|&radius| self.shear(radius)).collect(),
-            Kernel::Level => self.shears_over_levels(radii),
-            Kernel::Differences => {
+            ShearEvaluation::Arcosh => radii.iter().map(|&radius| self.shear(radius)).collect(),
+            ShearEvaluation::Level => self.shears_over_levels(radii),
+            ShearEvaluation::Differences => {
                 let nodes: Vec<(f64, f64)> = self.in_contact().map(|spring| (spring.radius, spring.carried)).collect();
                 radii.iter().map(|&radius| self.shear_by_differences(&nodes, radius)).collect()
             }

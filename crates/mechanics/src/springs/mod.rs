@@ -7,14 +7,14 @@
 mod estimate;
 mod kernel;
 
-pub use kernel::Kernel;
+pub use kernel::ShearEvaluation;
 
 use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
 use super::error::{Error, UnsupportedMove};
-use super::normal::Figures;
+use super::normal::ContactSummary;
 use super::range;
-use super::traction::{Peak, Residual};
+use super::shear_stress::{Peak, Residual};
 use super::{Contact, Profile};
 
 /// Radii at which the search for peaks looks, at the most.
@@ -27,7 +27,7 @@ pub struct Springs {
     virgin: Contact,
     /// The exact normal contact along the path; it is never moved sideways.
     normal: Contact,
-    initial: Figures,
+    initial: ContactSummary,
     friction: f64,
     spacing: f64,
     springs: Vec<Spring>,
@@ -39,7 +39,7 @@ pub struct Springs {
     /// How far a prescribed force may have misplaced the indenter, m.
     misplaced: f64,
     /// The same on fewer springs, which shows how far the number matters.
-    twins: Vec<Springs>,
+    coarser: Vec<Springs>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ struct Spring {
 ///
 /// # Errors
 /// Those of [`Contact::new`].
-pub fn reach(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
+pub fn largest_contact_radius(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
     let mut contact = Contact::new(setup.clone())?;
     let mut reach = contact.contact_radius();
     for step in moves.into_iter().filter(|step| step.normal.is_some()) {
@@ -74,19 +74,19 @@ impl Springs {
     /// Those of [`Contact::new`], and [`Error::OutOfRange`] by [`range::SPRING_COUNT`].
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        let mut fine = Springs::alone(setup.clone(), count, reach)?;
-        // Kinks fall elsewhere between the springs of each: one twin has a spring at the centre if the other has none.
+        let mut fine = Springs::one_row(setup.clone(), count, reach)?;
+        // Kinks fall elsewhere between the springs of each: one coarse has a spring at the centre if the other has none.
         let half = count.div_ceil(2).max(2);
         let more = (2 * count).div_ceil(3).max(3);
         for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {
-            fine.twins.push(Springs::alone(setup.clone(), fewer, reach)?);
+            fine.coarser.push(Springs::one_row(setup.clone(), fewer, reach)?);
         }
         Ok(fine)
     }
 
-    fn alone(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    fn one_row(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         let contact = Contact::new(setup.clone())?;
-        let initial = contact.initial_figures();
+        let initial = contact.initial_summary();
         let Setup { profile, friction, .. } = setup;
         let spacing = 2.0 * reach / count as f64;
         let first = if count.is_multiple_of(2) { 0.5 } else { 0.0 };
@@ -111,13 +111,13 @@ impl Springs {
             slipped: false,
             stick_radius: initial.contact_radius,
             misplaced: 0.0,
-            twins: Vec::new(),
+            coarser: Vec::new(),
         })
     }
 
-    /// Figures of the definition, from the exact normal contact.
+    /// ContactSummary of the definition, from the exact normal contact.
     #[must_use]
-    pub fn initial_figures(&self) -> Figures {
+    pub fn initial_summary(&self) -> ContactSummary {
         self.initial
     }
 
@@ -158,10 +158,10 @@ impl Springs {
         }
         self.normal = normal;
         let indentation = self.normal.indentation();
-        for twin in &mut self.twins {
-            // Near the limit of friction a twin may hold less than the force.
-            let displacement = twin.target(step).unwrap_or(displacement);
-            twin.advance(indentation, displacement);
+        for coarse in &mut self.coarser {
+            // Near the limit of friction a coarse may hold less than the force.
+            let displacement = coarse.target(step).unwrap_or(displacement);
+            coarse.advance(indentation, displacement);
         }
         self.advance(indentation, displacement);
         Ok(())

@@ -10,7 +10,7 @@ use stickslip_mechanics::Contact;
 
 fn walk(ball: &Ball, path: &[(f64, f64)]) -> Contact {
     let mut contact = ball.contact();
-    path.iter().for_each(|&waypoint| contact.apply(&ball.towards(waypoint)).unwrap());
+    path.iter().for_each(|&partial_move| contact.apply(&ball.towards(partial_move)).unwrap());
     contact
 }
 
@@ -28,7 +28,7 @@ fn over_the_move(f: &dyn Fn(f64) -> f64, tolerance: f64) -> f64 {
 
 /// What the largest load of a path could hold: mu F_N, mu p_max and an energy, by which errors are measured.
 fn units(ball: &Ball, path: &[(f64, f64)]) -> (f64, f64, f64) {
-    let depth = path.iter().fold(1.0, |depth: f64, waypoint| depth.max(waypoint.0));
+    let depth = path.iter().fold(1.0, |depth: f64, partial_move| depth.max(partial_move.0));
     let a = depth.sqrt() * ball.radius;
     (ball.force_limit(a), ball.stress_limit(a), ball.force_limit(a) * ball.full_slip())
 }
@@ -46,7 +46,7 @@ fn shear_stress_never_exceeds_friction() {
             let beyond = contact.shear(r).abs() - PLAIN.friction * contact.pressure(r);
             excess.close(beyond.max(0.0), 0.0, unit);
         }
-        assert!(contact.force().abs() <= contact.figures().gross_slip_force * (1.0 + 1e-14));
+        assert!(contact.force().abs() <= contact.summary().gross_slip_force * (1.0 + 1e-14));
     });
 }
 
@@ -82,12 +82,14 @@ fn friction_work_is_positive_down_to_the_smallest_move() {
         let path = paths::waypoints(&steps);
         let mut contact = PLAIN.contact();
         let mut random = Random(steps.len() as u64);
-        for &waypoint in &path {
+        for &partial_move in &path {
             // On the way, a shiver of any size.
             let shiver = |random: &mut Random| 10_f64.powf(random.within(-17.0, -3.0));
-            for waypoint in [(waypoint.0 + shiver(&mut random), waypoint.1 - shiver(&mut random)), waypoint] {
+            for partial_move in
+                [(partial_move.0 + shiver(&mut random), partial_move.1 - shiver(&mut random)), partial_move]
+            {
                 let before = contact.state();
-                contact.apply(&PLAIN.towards(waypoint)).unwrap();
+                contact.apply(&PLAIN.towards(partial_move)).unwrap();
                 let after = contact.state();
                 assert!(after.dissipated_energy >= before.dissipated_energy);
                 assert!(after.elastic_energy >= 0.0);
@@ -254,12 +256,12 @@ fn contacts_know_nothing_of_each_other() {
         let mut second = first.clone();
         for index in 0..one.len().max(two.len()) {
             // Turn by turn, and from a clone of a clone.
-            if let Some(&waypoint) = two.get(index) {
+            if let Some(&partial_move) = two.get(index) {
                 second = second.clone();
-                second.apply(&PLAIN.towards(waypoint)).unwrap();
+                second.apply(&PLAIN.towards(partial_move)).unwrap();
             }
-            if let Some(&waypoint) = one.get(index) {
-                first.apply(&PLAIN.towards(waypoint)).unwrap();
+            if let Some(&partial_move) = one.get(index) {
+                first.apply(&PLAIN.towards(partial_move)).unwrap();
             }
         }
         assert_eq!((first.state(), second.state()), (alone.0.state(), alone.1.state()));
@@ -295,7 +297,7 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
     forall(500, of_all_kinds, |steps| {
         let path = paths::waypoints(&steps);
         let mut points = Points::new(path[0]);
-        path.iter().skip(1).for_each(|&waypoint| points.go(waypoint));
+        path.iter().skip(1).for_each(|&partial_move| points.go(partial_move));
         let contact = walk(&UNIT, &path);
         let unit = UNIT.stress_limit(1.0);
         let edge = contact.state().contact_radius;
@@ -348,7 +350,7 @@ fn stresses_integrate_to_the_forces() {
         let contact = walk(&PLAIN, &path);
         let (force, stress, _) = units(&PLAIN, &path);
         let mut points = Points::new(path[0]);
-        path.iter().skip(1).for_each(|&waypoint| points.go(waypoint));
+        path.iter().skip(1).for_each(|&partial_move| points.go(partial_move));
         // Over r^2, broken at the reference's kinks and ever closer to them, where every kink leaves a root.
         let levels = points.shape().levels();
         let sum = |stress: &dyn Fn(f64) -> f64, unit: f64| -> f64 {

@@ -1,6 +1,7 @@
 //! The physics: each file states facts that must hold, against something independent of the solver.
 
 mod accuracy;
+mod curved_moves;
 mod equal_peaks;
 mod exactness;
 mod extrema;
@@ -13,7 +14,6 @@ mod profiles;
 mod protocols;
 mod reference;
 mod relative_moves;
-mod routes;
 mod slip_history;
 mod springs;
 mod springs_estimate;

@@ -16,7 +16,7 @@ fn left(profile: &Profile, path: &[f64]) -> Residual {
 #[test]
 fn on_a_sphere_all_extrema_are_equal_and_as_small_as_they_can_be() {
     let profile = Profile::Sphere(Sphere::new(10.0).unwrap());
-    let unit = 0.3 * pressed(profile.clone()).figures().max_pressure.unwrap();
+    let unit = 0.3 * pressed(profile.clone()).summary().max_pressure.unwrap();
     for (reversals, known) in [(1, 0.600_000), (2, 0.471_894), (3, 0.400_606), (20, 0.167_500), (100, 0.075_794)] {
         let found = minimax(&pressed(profile.clone()), reversals, &|| true).unwrap();
         assert_eq!(found.displacements.len(), reversals + 1);

@@ -48,7 +48,7 @@ fn virgin_at(shape: usize, indentation: f64) -> Contact {
 
 /// A move to anywhere: straight or curved, into the contact, out of it, sliding or not.
 fn any_move(virgin: &Contact, random: &mut Random) -> (Move, f64) {
-    let figures = virgin.initial_figures();
+    let figures = virgin.initial_summary();
     let (slide, load) = (figures.gross_slip_displacement, figures.normal_force);
     let depth = DEPTH * random.within(-0.1, 1.5);
     let tangential = match random.within(0.0, 4.0) as usize {
@@ -162,7 +162,7 @@ fn digest() -> u64 {
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     for shape in [0, 4] {
         let virgin = virgin(shape);
-        let figures = virgin.initial_figures();
+        let figures = virgin.initial_summary();
         let (mut contact, mut random) = (virgin.clone(), Random(1 + shape as u64));
         for index in 0..300 {
             let slide = random.within(-1.1, 1.1);

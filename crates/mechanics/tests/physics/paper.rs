@@ -22,7 +22,7 @@ fn displace(contact: &mut Contact, target: f64) {
 /// The contact after the first `moves` positions of eq. 20.
 fn after(reversals: usize, moves: usize) -> Contact {
     let mut contact = sphere();
-    let amplitude = contact.figures().gross_slip_displacement;
+    let amplitude = contact.summary().gross_slip_displacement;
     for target in falling_amplitude(reversals, amplitude).take(moves) {
         displace(&mut contact, target);
     }
@@ -51,7 +51,7 @@ fn force_at_the_end_is_not_nought() {
         [(1, by_hand, 1e-14), (1, -0.2929, 5e-5), (2, -0.04904, 5e-6), (20, -0.002045, 5e-7)]
     {
         let contact = after(reversals, reversals + 1);
-        let limit = contact.figures().gross_slip_force;
+        let limit = contact.summary().gross_slip_force;
         close(contact.state().force / limit, expected, tolerance);
     }
 }
@@ -60,7 +60,7 @@ fn force_at_the_end_is_not_nought() {
 fn largest_shear_stress_falls_with_the_root_of_the_reversals() {
     for reversals in (1..=40).chain([100, 1000]) {
         let contact = after(reversals, reversals + 1);
-        let unit = FRICTION * contact.figures().max_pressure.unwrap();
+        let unit = FRICTION * contact.summary().max_pressure.unwrap();
         let expected = if reversals == 1 { 0.5_f64.sqrt() } else { (2.0 - 1.5_f64.sqrt()) / (reversals as f64).sqrt() };
         let residual = contact.residual();
         close(residual.max.unwrap() / unit, expected, 1e-12);
@@ -78,7 +78,7 @@ fn stick_radii_of_figure_3() {
     // Point A is the sixth reversal of twenty, point B the way back from it to U = 0.
     let mut contact = after(20, 6);
     let state = contact.state();
-    let scale = contact.figures().gross_slip_displacement;
+    let scale = contact.summary().gross_slip_displacement;
     close(state.displacement / scale, -0.75, 1e-15);
     // The last stroke went from 0.8 to -0.75 u_max, and half of it slipped: c^2 = a^2 (1 - 1.55/2).
     close(state.stick_radius / state.contact_radius, 0.225_f64.sqrt(), 1e-13);
@@ -98,7 +98,7 @@ fn friction_work_of_the_reference_contact() {
         preload: Preload::ContactRadius(0.5),
     })
     .unwrap();
-    let full = contact.figures().gross_slip_displacement;
+    let full = contact.summary().gross_slip_displacement;
     let fresh = contact.clone();
     displace(&mut contact, 0.5 * full);
     close(contact.state().dissipated_energy, 0.000_682_427, 5e-10);

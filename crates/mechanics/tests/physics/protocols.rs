@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use crate::support::pressed;
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated};
-use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
+use stickslip_mechanics::protocol::{
+    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
+};
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Sphere, Tangential};
 
@@ -28,12 +30,12 @@ fn sum() -> Profile {
 }
 
 /// The law from gross slip at its full amplitude.
-fn of(contact: &Contact, kind: Kind, reversals: usize, end: End) -> Design {
-    design(contact, Start::Displacement(contact.gross_slip_displacement()), kind, reversals, end, &|| true).unwrap()
+fn of(contact: &Contact, kind: AmplitudeLaw, reversals: usize, end: PathEnd) -> Design {
+    design(contact, PathStart::Displacement(contact.gross_slip_displacement()), kind, reversals, end, &|| true).unwrap()
 }
 
 fn unit(contact: &Contact) -> f64 {
-    0.3 * contact.figures().max_pressure.unwrap()
+    0.3 * contact.summary().max_pressure.unwrap()
 }
 
 fn moved(contact: &Contact, path: &[f64]) -> Contact {
@@ -49,7 +51,7 @@ fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
     let contact = pressed(sphere());
     let largest = 2.0 - 1.5_f64.sqrt();
     for reversals in [2_usize, 20, 200] {
-        let found = of(&contact, Kind::Linear, reversals, End::DisplacementZero);
+        let found = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero);
         let scaled = (reversals as f64).sqrt() / unit(&contact);
         assert!((found.largest * scaled - largest).abs() < 1e-12, "{reversals}");
         if reversals == 200 {
@@ -75,9 +77,10 @@ fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_sq
     assert!((expected - 0.40).abs() < 0.01, "{expected}");
 
     let contact = pressed(sphere());
-    let radius = contact.figures().contact_radius;
+    let radius = contact.summary().contact_radius;
     let reversals = 400;
-    let found = moved(&contact, &of(&contact, Kind::Linear, reversals, End::DisplacementZero).displacements);
+    let found =
+        moved(&contact, &of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero).displacements);
     // Equal shares of the area, which no reversal falls in step with.
     let points = 40_009;
     let radii: Vec<f64> = (0..points).map(|index| radius * ((index as f64 + 0.5) / f64::from(points)).sqrt()).collect();
@@ -91,8 +94,8 @@ fn equal_peaks_beat_the_linear_fall_on_other_powers() {
     for exponent in [1.5, 3.0, 4.0] {
         let contact = pressed(power(exponent));
         for reversals in [10, 15, 30] {
-            let linear = of(&contact, Kind::Linear, reversals, End::DisplacementZero).largest;
-            let equal = of(&contact, Kind::EqualPeaks, reversals, End::DisplacementZero).largest;
+            let linear = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero).largest;
+            let equal = of(&contact, AmplitudeLaw::EqualPeaks, reversals, PathEnd::DisplacementZero).largest;
             assert!(equal < linear, "{exponent} {reversals}: {equal} {linear}");
         }
     }
@@ -102,18 +105,18 @@ fn equal_peaks_beat_the_linear_fall_on_other_powers() {
 fn minimax_is_what_is_known_of_the_sphere() {
     let contact = pressed(sphere());
     for (reversals, end, known) in [
-        (1, End::Free, 0.600_000),
-        (2, End::Free, 0.471_894),
-        (3, End::Free, 0.400_606),
-        (20, End::Free, 0.167_500),
-        (100, End::Free, 0.075_794),
+        (1, PathEnd::Free, 0.600_000),
+        (2, PathEnd::Free, 0.471_894),
+        (3, PathEnd::Free, 0.400_606),
+        (20, PathEnd::Free, 0.167_500),
+        (100, PathEnd::Free, 0.075_794),
         // At displacement nought, where one extremum has to stay below.
-        (1, End::DisplacementZero, 0.5_f64.sqrt()),
-        (2, End::DisplacementZero, 0.530_330),
-        (5, End::DisplacementZero, 0.335_707),
-        (20, End::DisplacementZero, 0.169_632),
+        (1, PathEnd::DisplacementZero, 0.5_f64.sqrt()),
+        (2, PathEnd::DisplacementZero, 0.530_330),
+        (5, PathEnd::DisplacementZero, 0.335_707),
+        (20, PathEnd::DisplacementZero, 0.169_632),
     ] {
-        let found = of(&contact, Kind::Minimax, reversals, end).largest / unit(&contact);
+        let found = of(&contact, AmplitudeLaw::Minimax, reversals, end).largest / unit(&contact);
         assert!((found - known).abs() < 2e-6, "{reversals} {end:?}: {found}");
     }
 }
@@ -135,22 +138,22 @@ fn minimax_ends_where_it_is_told_to_and_is_never_above_the_others() {
     for shape in shapes {
         let contact = pressed(shape.clone());
         for reversals in [1, 2, 7] {
-            let free = of(&contact, Kind::Minimax, reversals, End::Free).largest;
+            let free = of(&contact, AmplitudeLaw::Minimax, reversals, PathEnd::Free).largest;
             let bound = lower_bound(&contact, reversals);
             assert!(bound > 0.3 * free && bound < free, "{shape:?} {reversals}: {bound} {free}");
-            for end in [End::DisplacementZero, End::ForceZero, End::Free] {
-                let best = of(&contact, Kind::Minimax, reversals, end);
+            for end in [PathEnd::DisplacementZero, PathEnd::ForceZero, PathEnd::Free] {
+                let best = of(&contact, AmplitudeLaw::Minimax, reversals, end);
                 assert_eq!(best.displacements.len(), reversals + 1);
                 let state = best.contact.state();
                 match end {
-                    End::DisplacementZero => assert!(state.displacement.abs() <= 0.0, "{shape:?}"),
-                    End::ForceZero => {
-                        assert!(state.force.abs() < 1e-12 * contact.figures().gross_slip_force, "{shape:?}");
+                    PathEnd::DisplacementZero => assert!(state.displacement.abs() <= 0.0, "{shape:?}"),
+                    PathEnd::ForceZero => {
+                        assert!(state.force.abs() < 1e-12 * contact.summary().gross_slip_force, "{shape:?}");
                     }
-                    End::Free => {}
+                    PathEnd::Free => {}
                 }
                 assert!(best.largest >= free * (1.0 - 1e-6), "{shape:?} {reversals} {end:?}: the free end is the best");
-                for kind in [Kind::Linear, Kind::EqualPeaks] {
+                for kind in [AmplitudeLaw::Linear, AmplitudeLaw::EqualPeaks] {
                     let other = of(&contact, kind, reversals, end).largest;
                     assert!(best.largest <= other * (1.0 + 1e-8), "{shape:?} {reversals} {end:?}: {kind:?}");
                 }
@@ -169,7 +172,7 @@ fn left(contact: &Contact, levels: &[f64]) -> f64 {
         path.push(if index % 2 == 0 { here - stroke } else { here + stroke });
     }
     let after = moved(contact, &path);
-    Judged::of(contact).largest(&after, &after.residual())
+    EvaluationRange::of(contact).largest(&after, &after.residual())
 }
 
 proptest! {
@@ -202,7 +205,7 @@ proptest! {
                 step *= 0.5;
             }
         }
-        let known = of(&contact, Kind::Minimax, levels.len(), End::Free);
+        let known = of(&contact, AmplitudeLaw::Minimax, levels.len(), PathEnd::Free);
         prop_assert!(best >= known.largest * (1.0 - 1e-6), "{levels:?}: {best} {}", known.largest);
         prop_assert!(best >= lower_bound(&contact, levels.len()));
     }
@@ -213,7 +216,7 @@ proptest! {
         shape in prop::sample::select(vec![sphere(), power(1.5), table(), sum()]),
         moves in prop::collection::vec((-2.0..2.0_f64, 0.8..1.2_f64, any::<bool>()), 0..12),
         reversals in 1..6_usize,
-        end in prop::sample::select(vec![End::DisplacementZero, End::ForceZero, End::Free]),
+        end in prop::sample::select(vec![PathEnd::DisplacementZero, PathEnd::ForceZero, PathEnd::Free]),
     ) {
         let mut contact = pressed(shape);
         let full = contact.gross_slip_displacement();
@@ -222,20 +225,20 @@ proptest! {
             let step = Move { tangential: Some(Tangential::Displacement(full * turn)), normal, ..Move::default() };
             contact.apply(&step).unwrap();
         }
-        let found = design(&contact, Start::Here, Kind::Minimax, reversals, end, &|| true).unwrap();
+        let found = design(&contact, PathStart::Here, AmplitudeLaw::Minimax, reversals, end, &|| true).unwrap();
         prop_assert!(found.displacements.len() <= reversals + 2);
         let after = moved(&contact, &found.displacements);
         prop_assert_eq!(after.residual(), found.residual);
         let state = after.state();
         match end {
-            End::DisplacementZero => prop_assert!(state.displacement.abs() <= 0.0),
-            End::ForceZero => prop_assert!(state.force.abs() <= 1e-9 * contact.figures().gross_slip_force),
-            End::Free => {}
+            PathEnd::DisplacementZero => prop_assert!(state.displacement.abs() <= 0.0),
+            PathEnd::ForceZero => prop_assert!(state.force.abs() <= 1e-9 * contact.summary().gross_slip_force),
+            PathEnd::Free => {}
         }
         let mut fresh = pressed(contact.profile().clone());
         fresh.apply(&Move { normal: Some(Normal::Indentation(contact.indentation())), ..Move::default() }).unwrap();
-        let usual = of(&fresh, Kind::Minimax, reversals, end);
-        prop_assert!(found.largest <= usual.largest * (1.0 + 1e-7), "{} {} {:?}", found.largest, usual.largest, found.way);
+        let usual = of(&fresh, AmplitudeLaw::Minimax, reversals, end);
+        prop_assert!(found.largest <= usual.largest * (1.0 + 1e-7), "{} {} {:?}", found.largest, usual.largest, found.first_move);
     }
 }
 
@@ -243,9 +246,10 @@ proptest! {
 fn a_small_past_is_relaxed_without_stirring_what_lies_inside() {
     // A tenth of gross slip has slipped a thin ring alone: what any stroke to gross slip leaves is far more.
     let contact = moved(&pressed(sphere()), &[0.1 * pressed(sphere()).gross_slip_displacement()]);
-    let found = design(&contact, Start::Here, Kind::Minimax, 3, End::DisplacementZero, &|| true).unwrap();
-    assert_eq!(found.way, Way::Partial);
-    let gross = of(&pressed(sphere()), Kind::Minimax, 3, End::DisplacementZero);
+    let found =
+        design(&contact, PathStart::Here, AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero, &|| true).unwrap();
+    assert_eq!(found.first_move, FirstMove::Partial);
+    let gross = of(&pressed(sphere()), AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero);
     assert!(found.largest < 0.5 * gross.largest, "{} {}", found.largest, gross.largest);
     assert!(found.contact.state().stick_radius > 0.0);
 }
@@ -254,12 +258,13 @@ fn a_small_past_is_relaxed_without_stirring_what_lies_inside() {
 fn a_smaller_start_leaves_less() {
     let contact = pressed(sphere());
     let full = contact.gross_slip_displacement();
-    for kind in [Kind::Linear, Kind::EqualPeaks, Kind::Minimax] {
+    for kind in [AmplitudeLaw::Linear, AmplitudeLaw::EqualPeaks, AmplitudeLaw::Minimax] {
         let from = |start: f64| {
-            let found = design(&contact, Start::Displacement(start * full), kind, 5, End::DisplacementZero, &|| true);
+            let found =
+                design(&contact, PathStart::Displacement(start * full), kind, 5, PathEnd::DisplacementZero, &|| true);
             let found = found.unwrap();
             assert!((found.displacements[0] - start * full).abs() <= 0.0);
-            assert_eq!(found.way, Way::Given);
+            assert_eq!(found.first_move, FirstMove::Given);
             found.largest
         };
         assert!(from(0.3) < 0.8 * from(1.0), "{kind:?}");
@@ -273,14 +278,14 @@ fn at_a_vertical_edge_the_path_ends_with_no_load_there() {
     let crowned = Profile::Sum(Sum::new(vec![sphere(), punch.clone()]).unwrap());
     for shape in [punch, crowned] {
         let contact = pressed(shape);
-        assert!(Judged::of(&contact).vertical);
-        let mean = 0.3 * contact.figures().normal_force / (std::f64::consts::PI * 0.09);
+        assert!(EvaluationRange::of(&contact).vertical);
+        let mean = 0.3 * contact.summary().normal_force / (std::f64::consts::PI * 0.09);
         for reversals in [2, 5] {
-            let found = of(&contact, Kind::Minimax, reversals, End::Free);
+            let found = of(&contact, AmplitudeLaw::Minimax, reversals, PathEnd::Free);
             // Just inside the edge there would be a hundred times more with any load on it.
             let near = found.contact.shear(0.3 * (1.0 - 1e-8)).abs();
             assert!(near < 1.0 * mean, "{near} {mean}");
-            let linear = of(&contact, Kind::Linear, reversals, End::Free);
+            let linear = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::Free);
             assert!(found.largest <= linear.largest * (1.0 + 1e-9));
         }
     }
@@ -289,13 +294,13 @@ fn at_a_vertical_edge_the_path_ends_with_no_load_there() {
 #[test]
 fn what_cannot_be_moved_against_is_refused_and_the_search_ends_when_told_to() {
     let contact = pressed(sphere());
-    let start = Start::Displacement(contact.gross_slip_displacement());
-    let stopped = design(&contact, start, Kind::Minimax, 20, End::Free, &|| false);
+    let start = PathStart::Displacement(contact.gross_slip_displacement());
+    let stopped = design(&contact, start, AmplitudeLaw::Minimax, 20, PathEnd::Free, &|| false);
     assert_eq!(stopped.unwrap_err(), Error::Interrupted);
     let mut apart = contact.clone();
     apart.apply(&Move { normal: Some(Normal::Indentation(-1.0)), ..Move::default() }).unwrap();
     assert!(matches!(
-        design(&apart, Start::Here, Kind::Linear, 3, End::Free, &|| true),
+        design(&apart, PathStart::Here, AmplitudeLaw::Linear, 3, PathEnd::Free, &|| true),
         Err(Error::OutOfRange { quantity: Quantity::Indentation, .. })
     ));
 }

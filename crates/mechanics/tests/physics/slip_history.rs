@@ -35,7 +35,7 @@ impl Alike {
     }
 
     fn check(&self, found: &Contact, expected: &Contact) {
-        let a = expected.figures().contact_radius;
+        let a = expected.summary().contact_radius;
         self.forces.close(found.force(), expected.force(), UNIT.force_limit(a));
         let energies = (found.state().elastic_energy, expected.state().elastic_energy);
         self.energies.close(energies.0, energies.1, UNIT.energy_unit() * a.powi(5));
@@ -88,14 +88,14 @@ fn lift_off_forgets_a_million_oblique_moves() {
     let mut since_lift_off: Vec<(f64, f64)> = Vec::new();
     let (mut longest, mut deepest) = (0, 0);
     for _ in 0..MILLION {
-        let waypoint = (random.within(0.1, 1.5), random.within(-1.0, 1.0));
-        contact.apply(&UNIT.towards(waypoint)).unwrap();
-        since_lift_off.push(waypoint);
+        let partial_move = (random.within(0.1, 1.5), random.within(-1.0, 1.0));
+        contact.apply(&UNIT.towards(partial_move)).unwrap();
+        since_lift_off.push(partial_move);
         deepest = deepest.max(contact.memory_depth());
         if random.bits().is_multiple_of(4000) {
             let mut fresh = UNIT.contact();
             fresh.apply(&UNIT.towards((-0.2, 0.4))).unwrap();
-            since_lift_off.iter().for_each(|&waypoint| fresh.apply(&UNIT.towards(waypoint)).unwrap());
+            since_lift_off.iter().for_each(|&partial_move| fresh.apply(&UNIT.towards(partial_move)).unwrap());
             alike.check(&contact, &fresh);
             assert_eq!(contact.memory_depth(), fresh.memory_depth());
             longest = longest.max(since_lift_off.len());

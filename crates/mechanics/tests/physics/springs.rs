@@ -2,7 +2,7 @@
 
 use crate::support::{PLAIN, Worst, displace, forall, paths, push};
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::springs::reach;
+use stickslip_mechanics::springs::largest_contact_radius;
 use stickslip_mechanics::{Contact, Error, Move, Springs};
 
 /// Falling amplitude with twenty reversals, as in the paper.
@@ -25,7 +25,7 @@ fn slanted() -> Vec<Move> {
         (1.2, 0.1),
         (1.0, 0.35),
     ];
-    path.iter().map(|&waypoint| PLAIN.towards(waypoint)).collect()
+    path.iter().map(|&partial_move| PLAIN.towards(partial_move)).collect()
 }
 
 /// The largest errors over a path, each over its unit: forces (tangential and normal), shear stress at the end, friction work.
@@ -39,7 +39,8 @@ struct Errors {
 fn errors(moves: &[Move], count: usize) -> Errors {
     let setup = PLAIN.setup();
     let mut exact = Contact::new(setup.clone()).unwrap();
-    let mut springs = Springs::new(setup.clone(), count, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
+    let mut springs =
+        Springs::new(setup.clone(), count, largest_contact_radius(&setup, moves.iter().copied()).unwrap()).unwrap();
     let (limit, unit) = (PLAIN.force_limit(PLAIN.radius), PLAIN.stress_limit(PLAIN.radius));
     let mut errors = Errors { force: 0.0, stress: 0.0, work: 0.0 };
     for step in moves {
@@ -105,10 +106,12 @@ fn random_oblique_paths_agree_with_springs() {
     let forces = Worst::new("force of 2000 springs / mu F_N", 1e-5);
     let works = Worst::new("friction work of 2000 springs / (mu F_N u_max)", 1e-5);
     forall(100, paths::oblique_steps(25), |steps| {
-        let moves: Vec<Move> = paths::waypoints(&steps).iter().map(|&waypoint| PLAIN.towards(waypoint)).collect();
+        let moves: Vec<Move> =
+            paths::waypoints(&steps).iter().map(|&partial_move| PLAIN.towards(partial_move)).collect();
         let setup = PLAIN.setup();
         let mut exact = Contact::new(setup.clone()).unwrap();
-        let mut springs = Springs::new(setup.clone(), 2000, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
+        let mut springs =
+            Springs::new(setup.clone(), 2000, largest_contact_radius(&setup, moves.iter().copied()).unwrap()).unwrap();
         for step in &moves {
             exact.apply(step).unwrap();
             springs.apply(step).unwrap();

@@ -22,8 +22,8 @@ impl Points {
         Points { path: vec![start] }
     }
 
-    pub fn go(&mut self, waypoint: (f64, f64)) {
-        self.path.push(waypoint);
+    pub fn go(&mut self, partial_move: (f64, f64)) {
+        self.path.push(partial_move);
     }
 
     fn depth(&self) -> f64 {

@@ -14,11 +14,11 @@ impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least nought, inside the contact or outside.
     #[must_use]
     pub fn surface_displacement(&self, radius: f64) -> f64 {
-        let shift = self.memory.shift().value();
+        let shift = self.history.shift().value();
         let carried = self.spread(radius);
         self.scale()
             * if radius > 0.0 {
-                carried + shift * FRAC_2_PI * arc_to(self.memory.edge(), &At::radius(radius))
+                carried + shift * FRAC_2_PI * arc_to(self.history.edge(), &At::radius(radius))
             } else {
                 carried + shift
             }
@@ -28,21 +28,21 @@ impl Contact {
     /// includes what the indenter moved before it touched.
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<f64> {
-        let edge = self.memory.edge();
+        let edge = self.history.edge();
         let touched = edge.level.value() > 0.0 && radius <= edge.radius;
         touched.then(|| {
             if self.friction <= 0.0 {
-                // The surface stays behind altogether, and the memory is not told of the displacement.
+                // The surface stays behind altogether, and the slip history does not follow the displacement.
                 return self.displacement().value() + 0.0;
             }
-            let started = (self.memory.position() - self.memory.shift()).value();
+            let started = (self.history.position() - self.history.shift()).value();
             self.scale() * (started - self.spread(radius)) + 0.0
         })
     }
 
     /// (2/pi) int_0^min(r, a) (w - W)/sqrt(r^2 - x^2) dx, as the pieces have it: w less its shift, m.
     fn spread(&self, radius: f64) -> f64 {
-        let Some(core) = self.memory.pieces().first() else { return 0.0 };
+        let Some(core) = self.history.pieces().first() else { return 0.0 };
         let at_core = core.line.at(DoubleDouble::ZERO).value();
         if radius <= 0.0 {
             return at_core;
@@ -53,7 +53,7 @@ impl Contact {
             // A flat core belongs to no ring.
             sum += at_core * arc_to(&core.inner, &at);
         }
-        for (ring, line) in self.memory.rings() {
+        for (ring, line) in self.history.rings() {
             if (at.square - ring.inner.square).value() > 0.0 {
                 let outer = line.at(ring.outer.level).value();
                 sum += outer * self.profile.arc(&at, &ring) - line.slope.value() * self.profile.lift(&at, &ring);

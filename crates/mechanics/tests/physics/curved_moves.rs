@@ -63,11 +63,11 @@ fn a_move_broken_off_has_changed_nothing() {
     let before = contact.state();
     let curve = Move { normal: Some(Normal::NormalForce(2.0 * LOAD)), ..slide(0.9 * full) };
     let chords = std::cell::Cell::new(0);
-    let go_on = || {
+    let keep_going = || {
         chords.set(chords.get() + 1);
         chords.get() < 20
     };
-    assert_eq!(contact.apply_while(&curve, 1e-10, &go_on), Err(Error::Interrupted));
+    assert_eq!(contact.apply_while(&curve, 1e-10, &keep_going), Err(Error::Interrupted));
     assert_eq!((contact.state(), chords.get()), (before, 20));
     contact.apply(&curve).unwrap();
     assert!(contact.normal_force() > 1.99 * LOAD);

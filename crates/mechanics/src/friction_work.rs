@@ -7,10 +7,10 @@
 
 use super::double_double::DoubleDouble;
 use super::profile::{Moments, Point, Profile, Ring};
-use super::slip_history::{Line, MET_AGAIN, Memory, Piece, SAME};
+use super::slip_history::{Line, MET_AGAIN, Piece, SAME, SlipHistory};
 
 /// The slip that a move ends in: towards `sign`, with w = sign (indentation - y).
-pub(super) struct Slipping {
+pub(super) struct SlipRing {
     pub(super) sign: f64,
     /// Turns a stored w - W into w at the end of the move.
     pub(super) shift: DoubleDouble,
@@ -20,7 +20,7 @@ pub(super) struct Slipping {
     pub(super) lag: f64,
 }
 
-impl Slipping {
+impl SlipRing {
     /// How far the stuck value at `level` would exceed the bound; it never falls towards the edge.
     pub(super) fn excess(&self, line: &Line, level: DoubleDouble) -> DoubleDouble {
         (line.at(level) + self.shift).signed(self.sign) + (level - self.indentation)
@@ -75,13 +75,13 @@ impl Slipping {
 
 /// Work on what leaves the contact when the indentation falls to `d1` while the indenter moves to `w1`: each point slips
 /// back to rest by the time it lifts off, to whichever side it was carried.
-pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
-    let d0 = memory.edge().level;
-    let (fall, advance) = (d0 - d1, w1 - memory.position());
+pub(super) fn work(history: &SlipHistory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+    let d0 = history.edge().level;
+    let (fall, advance) = (d0 - d1, w1 - history.position());
     let lowest = if d1.value() > 0.0 { d1 } else { DoubleDouble::ZERO };
     // What a point at y would carry at its lift-off: w - W, and where the indenter is by then.
     let drift = advance.over(fall);
-    let shift = memory.shift();
+    let shift = history.shift();
     let carried = |line: &Line, level: DoubleDouble| line.at(level) + shift + drift * (d0 - level);
     let (drift, fall) = (drift.value(), fall.value());
     // The bound falls by `fall` while the slip gains `rate`: slip^2 fall/(2 rate) a point.
@@ -91,7 +91,7 @@ pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: Dou
     };
     debug_assert!(fall > 0.0);
     let mut work = 0.0;
-    for (ring, line) in memory.rings() {
+    for (ring, line) in history.rings() {
         if ring.outer.level <= lowest {
             break;
         }
@@ -118,7 +118,7 @@ pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: Dou
         }
     }
     if d1.value() <= 0.0
-        && let Some(core) = memory.pieces().first()
+        && let Some(core) = history.pieces().first()
     {
         let held = carried(&core.line, DoubleDouble::ZERO).value();
         work += core.inner.radius * share(held.signum()) * held * held;

@@ -31,24 +31,24 @@ impl Contact {
         let room = (DoubleDouble::from(normal_force) * self.friction - DoubleDouble::from(target.abs())).value()
             / self.force_unit();
         let edge = self.profile.point(indentation);
-        let memory = &self.memory;
-        let position = memory.position();
-        if !memory.in_contact() || indentation > memory.edge().level {
-            let from = if memory.in_contact() { *memory.edge() } else { self.profile.point(DoubleDouble::ZERO) };
+        let history = &self.history;
+        let position = history.position();
+        if !history.in_contact() || indentation > history.edge().level {
+            let from = if history.in_contact() { *history.edge() } else { self.profile.point(DoubleDouble::ZERO) };
             let touched = Ring::between(from, edge);
             let stiffness = from.radius + self.profile.moments(&touched).first / touched.depth;
-            let change = (wanted - memory.force()) / stiffness;
+            let change = (wanted - history.force()) / stiffness;
             if change.abs() <= touched.depth {
                 return position + DoubleDouble::from(change);
             }
             let sign = change.signum();
             let missing = (change.abs() - touched.depth) * stiffness;
-            self.slip_to(&Corner { edge, sign, held: memory.pieces().len(), missing, room }, wanted)
+            self.slip_to(&Corner { edge, sign, held: history.pieces().len(), missing, room }, wanted)
         } else {
-            let held = memory.pieces().partition_point(|piece| piece.inner.level < indentation);
+            let held = history.pieces().partition_point(|piece| piece.inner.level < indentation);
             let neutral = held.checked_sub(1).map_or(DoubleDouble::ZERO, |top| {
-                let line = &memory.pieces()[top].line;
-                memory.force_below(top) - line.slope * load(&self.profile, &self.cut(top, held, &edge))
+                let line = &history.pieces()[top].line;
+                history.force_below(top) - line.slope * load(&self.profile, &self.cut(top, held, &edge))
             });
             let change = (DoubleDouble::from(wanted) - neutral).value();
             let corner = Corner { edge, sign: change.signum(), held, missing: change.abs(), room };
@@ -63,17 +63,17 @@ impl Contact {
 
     /// The ring of piece `index` of the first `held`, of which the outermost may end at a new edge.
     fn cut(&self, index: usize, held: usize, edge: &Point) -> Ring {
-        let ring = self.memory.ring(index);
+        let ring = self.history.ring(index);
         if index + 1 == held && edge.level < ring.outer.level { Ring::between(ring.inner, *edge) } else { ring }
     }
 
     fn slip_to(&self, corner: &Corner, wanted: f64) -> DoubleDouble {
-        let memory = &self.memory;
+        let history = &self.history;
         let &Corner { edge, sign, held, mut missing, room } = corner;
-        let reference = memory.position() - memory.shift();
+        let reference = history.position() - history.shift();
         for index in (0..held).rev() {
             let ring = self.cut(index, held, &edge);
-            let line = &memory.pieces()[index].line;
+            let line = &history.pieces()[index].line;
             let closing = 1.0 + sign * line.slope.value();
             let gain = closing * load(&self.profile, &ring);
             if gain < missing && index > 0 {
@@ -92,13 +92,13 @@ impl Contact {
             return reference + (edge.level - level) * sign - line.at(level);
         }
         // Nothing was held before: all that has been touched slips.
-        reference + memory.shift() + edge.level * sign
+        reference + history.shift() + edge.level * sign
     }
 
     /// By how much int w dx would pass `wanted` if slip reached the inner end of piece `index`, m^2.
     fn spare_below(&self, index: usize, edge: &Point, sign: f64, wanted: f64) -> f64 {
-        let beyond = Ring::between(self.memory.pieces()[index].inner, *edge);
-        let full = self.memory.force_below(index) * sign + DoubleDouble::from(load(&self.profile, &beyond));
+        let beyond = Ring::between(self.history.pieces()[index].inner, *edge);
+        let full = self.history.force_below(index) * sign + DoubleDouble::from(load(&self.profile, &beyond));
         (full - DoubleDouble::from(sign * wanted)).value()
     }
 }

@@ -54,7 +54,7 @@ impl Contact {
     /// [`Contact::shear`] at each of `radii`, m: quicker than one by one.
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        let mut rings: Vec<_> = self.memory.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
+        let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
         rings.reverse();
         let unit = self.shear_unit();
         self.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
@@ -67,7 +67,7 @@ impl Contact {
 
     pub(super) fn shear_at(&self, at: &At) -> f64 {
         let mut sum = 0.0;
-        for (ring, line) in self.memory.rings() {
+        for (ring, line) in self.history.rings() {
             if ring.outer.radius < at.radius {
                 break;
             }
@@ -85,13 +85,13 @@ impl Contact {
         self.residual_while(|| true).unwrap_or_else(|| Residual::of(self.shear(0.0), Vec::new(), false))
     }
 
-    /// As [`Contact::residual`], for as long as `go_on` says so, which is asked at every kink of the memory and knot
-    /// of the profile: a deep memory costs its square.
+    /// As [`Contact::residual`], for as long as `keep_going` says so, which is asked at every kink of the slip history and knot
+    /// of the profile: the cost grows with the square of its depth.
     /// `None` if it said no.
-    pub fn residual_while(&self, go_on: impl Fn() -> bool) -> Option<Residual> {
-        let edge = self.memory.edge().radius;
+    pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
+        let edge = self.history.edge().radius;
         let spikes = self.profile.singular_radii().into_iter().chain([edge]);
         let bounded = spikes.filter(|&radius| radius <= edge).all(|radius| self.shear(radius).is_finite());
-        Some(Residual::of(self.shear(0.0), self.peaks(go_on)?, bounded))
+        Some(Residual::of(self.shear(0.0), self.peaks(keep_going)?, bounded))
     }
 }

@@ -15,38 +15,38 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The most chords that one move is given: a bound on its time and on the pieces that it leaves.
 pub const MAX_CHORDS: usize = 1 << 16;
 /// Up to this many chords the tolerance stands: a load that rises from nought to any height takes half of them at the default.
-const GENEROUS: usize = MAX_CHORDS / 2;
+const FULL_TOLERANCE_CHORDS: usize = MAX_CHORDS / 2;
 /// Then, and again after this many more, it is let go by a factor of four, which halves what the rest of the way needs: a
 /// move ends within [`MAX_CHORDS`], and its true error is reported.
-const PATIENCE: usize = MAX_CHORDS / 16;
+const RELAXATION_INTERVAL: usize = MAX_CHORDS / 16;
 
 /// The share of the tolerance that a chord may spend on which slip sets in or ends.
-const TURN_SHARE: f64 = 1.0 / 16.0;
+const SLIP_CHANGE_SHARE: f64 = 1.0 / 16.0;
 
 /// How the tangential target is reached: straight from one value to the other.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Tangent {
+pub(super) enum TangentialPath {
     Displacement { from: DoubleDouble, to: DoubleDouble },
     Force { from: f64, to: f64 },
 }
 
 /// How the normal target is reached.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Approach {
+pub(super) enum NormalPath {
     Indentation { from: DoubleDouble, to: DoubleDouble },
     Force { from: f64, to: f64 },
 }
 
 /// A path straight in two quantities, over a parameter from 0 to 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Route {
-    pub(super) tangent: Tangent,
-    pub(super) approach: Approach,
+pub(super) struct CurvedMove {
+    pub(super) tangential: TangentialPath,
+    pub(super) normal: NormalPath,
 }
 
 /// A point of the curve.
 #[derive(Clone, Copy)]
-pub(super) struct Stop {
+pub(super) struct PathPoint {
     /// d, m.
     pub(super) indentation: DoubleDouble,
     /// F_N, N, that belongs to it.
@@ -60,50 +60,56 @@ struct Deviation {
     /// int |error of w| dx, m^2.
     integral: f64,
     /// Whether slip sets in or ends between its ends.
-    turns: bool,
+    slip_changes: bool,
     /// Error of the slope of w over y, weighted with the kernel of what is touched at its inner end.
     kernel: f64,
 }
 
 /// How many times the tolerance asked for a chord may use after so many others.
-fn loosened(chords: usize) -> f64 {
-    let late = (chords + PATIENCE).saturating_sub(GENEROUS) / PATIENCE;
-    (0..late).fold(1.0, |factor, _| 4.0 * factor)
+fn relaxation(chords: usize) -> f64 {
+    let intervals = (chords + RELAXATION_INTERVAL).saturating_sub(FULL_TOLERANCE_CHORDS) / RELAXATION_INTERVAL;
+    (0..intervals).fold(1.0, |factor, _| 4.0 * factor)
 }
 
 fn between(from: f64, to: f64, part: f64) -> f64 {
     if part < 1.0 { from + (to - from) * part } else { to }
 }
 
-fn doubles_between(from: DoubleDouble, to: DoubleDouble, part: f64) -> DoubleDouble {
+fn between_doubles(from: DoubleDouble, to: DoubleDouble, part: f64) -> DoubleDouble {
     if part < 1.0 { from + (to - from) * part } else { to }
 }
 
 impl Contact {
-    /// Follows a route while `go_on` says so; `tolerance` is relative to mu F_N.
-    pub(super) fn follow(&mut self, route: &Route, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
-        self.check_limit(route)?;
-        if matches!(route.approach, Approach::Force { .. }) && self.memory.edge().level < DoubleDouble::ZERO {
+    /// Follows a path while `keep_going` says so; `tolerance` is relative to mu F_N.
+    pub(super) fn follow(
+        &mut self,
+        path: &CurvedMove,
+        tolerance: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
+        self.check_limit(path)?;
+        if matches!(path.normal, NormalPath::Force { .. }) && self.history.edge().level < DoubleDouble::ZERO {
             // A gap closes before any force can rise.
-            let touch = Stop { indentation: DoubleDouble::ZERO, normal_force: 0.0, displacement: self.displacement() };
+            let touch =
+                PathPoint { indentation: DoubleDouble::ZERO, normal_force: 0.0, displacement: self.displacement() };
             self.advance(&touch);
         }
         let unit = self.force_unit();
-        let largest = self.friction * self.load_on(route, 0.0).max(self.load_on(route, 1.0));
+        let largest = self.friction * self.normal_force_on(path, 0.0).max(self.normal_force_on(path, 1.0));
         let (mut done, mut step, mut chords) = (0.0, 1.0_f64, 0);
         while done < 1.0 {
-            if !go_on() {
+            if !keep_going() {
                 return Err(Error::Interrupted);
             }
             let next = if chords < MAX_CHORDS && done + step < 1.0 { done + step } else { 1.0 };
-            let end = self.stop_on(route, next);
-            let deviation = self.deviation(route, done, next, &end);
+            let end = self.point_on(path, next);
+            let deviation = self.deviation(path, done, next, &end);
             let error = if largest > 0.0 { unit * deviation.integral / largest } else { 0.0 };
-            let share = if deviation.turns { TURN_SHARE } else { next - done };
-            let tolerance = tolerance * loosened(chords);
+            let share = if deviation.slip_changes { SLIP_CHANGE_SHARE } else { next - done };
+            let tolerance = tolerance * relaxation(chords);
             if error > tolerance * share && step > f64::EPSILON && chords < MAX_CHORDS {
                 // The error of a smooth chord falls with the cube of its length, its share with the length.
-                let shorter = if deviation.turns { 0.25 } else { 0.9 * (tolerance * share / error).sqrt() };
+                let shorter = if deviation.slip_changes { 0.25 } else { 0.9 * (tolerance * share / error).sqrt() };
                 step = (next - done) * shorter.clamp(0.02, 0.5);
                 continue;
             }
@@ -118,18 +124,18 @@ impl Contact {
     }
 
     /// Refuses a path on which the tangential force does not stay below mu F_N, and names where that happens first.
-    fn check_limit(&self, route: &Route) -> Result<(), Error> {
-        let Tangent::Force { from, to } = route.tangent else { return Ok(()) };
-        let room = |part: f64| self.friction * self.load_on(route, part) - between(from, to, part).abs();
+    fn check_limit(&self, path: &CurvedMove) -> Result<(), Error> {
+        let TangentialPath::Force { from, to } = path.tangential else { return Ok(()) };
+        let room = |part: f64| self.friction * self.normal_force_on(path, part) - between(from, to, part).abs();
         let fails = |part: f64| {
-            let limit = self.friction * self.load_on(route, part);
+            let limit = self.friction * self.normal_force_on(path, part);
             // A contact in gross slip is at its limit to round-off, and may turn back from there.
             room(part) < -16.0 * f64::EPSILON * limit || (part >= 1.0 && to.abs() >= limit)
         };
         // F_N is straight or, over the indentation, convex; |F_x| is two straight lines. So on either side of F_x = 0 the
         // room is convex, and lowest at an end unless the indentation changes.
         let middle = if from * to < 0.0 { from / (from - to) } else { 1.0 };
-        let curved = matches!(route.approach, Approach::Indentation { from, to } if from != to);
+        let curved = matches!(path.normal, NormalPath::Indentation { from, to } if from != to);
         for (low, high) in [(0.0, middle), (middle, 1.0)] {
             let lowest = if curved { lowest_of(&room, low, high) } else { high };
             let Some(bad) = [lowest, high].into_iter().find(|&part| fails(part)) else { continue };
@@ -138,50 +144,50 @@ impl Contact {
                 let half = 0.5 * (good + bad);
                 if fails(half) { bad = half } else { good = half }
             }
-            let limit = self.friction * self.load_on(route, bad);
+            let limit = self.friction * self.normal_force_on(path, bad);
             return Err(Error::ForceExceedsFriction { target: to, limit, part: bad });
         }
         Ok(())
     }
 
     /// Normal force, N, at a point of the path.
-    fn load_on(&self, route: &Route, part: f64) -> f64 {
-        match route.approach {
-            Approach::Force { from, to } => between(from, to, part),
-            Approach::Indentation { from, to } if from == to => self.normal_force(),
-            Approach::Indentation { from, to } => self.normal_force_at(doubles_between(from, to, part)),
+    fn normal_force_on(&self, path: &CurvedMove, part: f64) -> f64 {
+        match path.normal {
+            NormalPath::Force { from, to } => between(from, to, part),
+            NormalPath::Indentation { from, to } if from == to => self.normal_force(),
+            NormalPath::Indentation { from, to } => self.normal_force_at(between_doubles(from, to, part)),
         }
     }
 
-    fn stop_on(&self, route: &Route, part: f64) -> Stop {
-        let normal_force = self.load_on(route, part);
-        let indentation = match route.approach {
-            Approach::Indentation { from, to } => doubles_between(from, to, part),
-            Approach::Force { .. } => self.indentation_for(normal_force),
+    fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
+        let normal_force = self.normal_force_on(path, part);
+        let indentation = match path.normal {
+            NormalPath::Indentation { from, to } => between_doubles(from, to, part),
+            NormalPath::Force { .. } => self.indentation_for(normal_force),
         };
-        let displacement = match route.tangent {
-            Tangent::Displacement { from, to } => doubles_between(from, to, part),
-            Tangent::Force { from, to } => {
+        let displacement = match path.tangential {
+            TangentialPath::Displacement { from, to } => between_doubles(from, to, part),
+            TangentialPath::Force { from, to } => {
                 self.unscaled(self.position_for(indentation, normal_force, between(from, to, part)))
             }
         };
-        Stop { indentation, normal_force, displacement }
+        PathPoint { indentation, normal_force, displacement }
     }
 
     /// How far the chord from here to `end` is off the curve, judged at the middle of its stretch.
-    fn deviation(&self, route: &Route, done: f64, next: f64, end: &Stop) -> Deviation {
-        let start = self.memory.edge().level;
+    fn deviation(&self, path: &CurvedMove, done: f64, next: f64, end: &PathPoint) -> Deviation {
+        let start = self.history.edge().level;
         let rise = end.indentation - start;
         if rise.abs() <= DoubleDouble::ZERO {
-            return Deviation { integral: 0.0, turns: false, kernel: 0.0 };
+            return Deviation { integral: 0.0, slip_changes: false, kernel: 0.0 };
         }
-        let middle = self.stop_on(route, 0.5 * (done + next));
+        let middle = self.point_on(path, 0.5 * (done + next));
         let half_rise = middle.indentation - start;
         let (half, whole) = (self.advance_to(&middle), self.advance_to(end));
         let off = (half - (whole * half_rise).over(rise)).value().abs();
         // Slip towards s goes on while s dW - dd > 0.
         let slips = |advance: DoubleDouble, rise: DoubleDouble, sign: f64| (advance * sign - rise).value() > 0.0;
-        let turns = [1.0, -1.0]
+        let slip_changes = [1.0, -1.0]
             .into_iter()
             .any(|sign| slips(half, half_rise, sign) != slips(whole - half, rise - half_rise, sign));
         let lower = if rise.value() > 0.0 { start } else { end.indentation };
@@ -189,15 +195,15 @@ impl Contact {
         let upper = if rise.value() > 0.0 { end.indentation } else { start };
         let edge = self.profile.point(upper);
         let touched = Ring::between(self.profile.point(lower), edge);
-        let width = if turns { edge.radius } else { self.profile.moments(&touched).width };
+        let width = if slip_changes { edge.radius } else { self.profile.moments(&touched).width };
         // A parabola's slope is four times its height over its base off its chord's.
         let kernel = 4.0 * off / rise.abs().value() * self.profile.kernel(&At::point(&touched.inner), &touched);
-        Deviation { integral: off * width, turns, kernel }
+        Deviation { integral: off * width, slip_changes, kernel }
     }
 
     /// Scaled displacement from here to a point of the path, m.
-    fn advance_to(&self, stop: &Stop) -> DoubleDouble {
-        self.scaled(stop.displacement) - self.memory.position()
+    fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
+        self.scaled(point.displacement) - self.history.position()
     }
 }
 
