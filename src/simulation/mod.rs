@@ -13,6 +13,8 @@ mod run;
 mod shape;
 mod solver;
 mod sweep;
+#[cfg(test)]
+mod tests;
 mod warnings;
 
 pub use compare::compare;

@@ -55,7 +55,8 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
     }
 }
 
-fn run<S: Solver>(
+/// The reply of one solver. It is asked for what the simulation names and for nothing else.
+pub(super) fn run<S: Solver>(
     mut solver: S,
     simulation: &Simulation,
     timer: Timer,

@@ -55,6 +55,8 @@ mod slip_history;
 pub mod springs;
 mod state;
 mod surface_displacement;
+#[cfg(test)]
+mod tests;
 
 pub use accuracy::ErrorEstimate;
 pub use contact::Contact;
