@@ -23,6 +23,14 @@ impl Contact {
     /// bounded by mu p. A table's g is off by what the points leave open: at a given w over y the force changes by
     /// 2 G* m int |error of g| dx at most, and so by as much again where the load is given. A stress has cusps: the estimate
     /// holds for a radius moved by some units in its last place, or by as much as a table's g is off.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// let estimate = contact.accuracy();
+    /// assert!(estimate.force_error < 1e-13 && estimate.stress_error < 1e-13);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn accuracy(&self) -> ErrorEstimate {
         let carried = self.friction * self.normal_force();

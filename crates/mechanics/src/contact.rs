@@ -53,6 +53,14 @@ impl Contact {
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
     /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!((contact.contact_radius() - 0.1).abs() < 1e-15);
+    /// assert!((contact.normal_force() - 4000.0).abs() < 1e-9);
+    /// assert_eq!(contact.force(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn new(setup: Setup) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup;
         range::check_friction(friction)?;
@@ -92,6 +100,13 @@ impl Contact {
     }
 
     /// The same contact at its preload, before its first move.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.01))?;
+    /// assert_eq!(contact.virgin().state().displacement, 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn virgin(&self) -> Contact {
         Contact {
@@ -113,6 +128,14 @@ impl Contact {
     ///
     /// # Errors
     /// As [`Contact::apply_within`].
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.00375))?;
+    /// // Half-way to gross slip (Cattaneo 1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
+    /// assert!((contact.force() - 2000.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-9);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
         self.apply_within(step, DEFAULT_TOLERANCE)
     }
@@ -124,6 +147,18 @@ impl Contact {
     /// # Errors
     /// [`Error::OutOfRange`] for a target outside [`range`]; [`Error::ForceExceedsFriction`] for a tangential force that
     /// friction cannot hold all the way.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let force = Some(Tangential::Force(1000.0));
+    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
+    /// contact.apply_within(&oblique, 1e-6)?;
+    /// assert!((contact.force() - 1000.0).abs() < 1e-9 && contact.path_error() <= 1e-6);
+    /// // Friction holds no more than mu F_N = 4 kN.
+    /// let much = Move { tangential: Some(Tangential::Force(4001.0)), ..Move::default() };
+    /// assert!(matches!(contact.apply(&much), Err(Error::ForceExceedsFriction { .. })));
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn apply_within(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
         self.apply_while(step, tolerance, &|| true)
     }
@@ -132,6 +167,15 @@ impl Contact {
     ///
     /// # Errors
     /// As [`Contact::apply_within`], and [`Error::Interrupted`].
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let force = Some(Tangential::Force(1000.0));
+    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
+    /// assert_eq!(contact.apply_while(&oblique, 1e-6, &|| false), Err(Error::Interrupted));
+    /// assert_eq!(contact.force(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn apply_while(&mut self, step: &Move, tolerance: f64, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
         let normal = self.normal_path(step)?;
         let tangential = self.tangential_path(step)?;
@@ -254,6 +298,14 @@ impl Contact {
     }
 
     /// Tangential force, N.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(-1.0))?;
+    /// // Gross slip backwards: -mu F_N.
+    /// assert!((contact.force() + 2000.0).abs() < 1e-9);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn force(&self) -> f64 {
         2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
@@ -265,84 +317,178 @@ impl Contact {
     }
 
     /// Normal force, N: the one asked for, to the bit, where one was.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// // Hertz: F_N = 4/3 E* a d.
+    /// assert!((contact.normal_force() / (4.0 / 3.0 * 3e6 * 0.1 * 0.01) - 1.0).abs() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn normal_force(&self) -> f64 {
         self.normal_force
     }
 
     /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// // Hertz: p(0) = 2 E* a/(pi R).
+    /// assert!((contact.pressure(0.0) / (0.6e6 / std::f64::consts::PI) - 1.0).abs() < 1e-14);
+    /// assert_eq!(contact.pressure(0.11), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
         normal::pressure(&self.profile, &self.elasticity, self.history.edge(), &At::radius(radius))
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.pressures(&[0.0, 0.05])[1], contact.pressure(0.05));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
         normal::pressures(&self.profile, &self.elasticity, self.history.edge(), radii)
     }
 
     /// The shape of the indenter.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.profile().level(0.1), 0.1 * 0.1);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn profile(&self) -> &Profile {
         &self.profile
     }
 
     /// Coulomb's coefficient of friction mu.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.friction(), 0.5);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn friction(&self) -> f64 {
         self.friction
     }
 
     /// The elastic constants.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.elasticity().e_star(), 3e6);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn elasticity(&self) -> Elasticity {
         self.elasticity
     }
 
     /// The error that curved moves have left in the tangential force, relative to mu F_N: an estimate from above.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// // A straight move has no such error.
+    /// assert_eq!(contact.path_error(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn path_error(&self) -> f64 {
         self.path_error
     }
 
     /// Contact radius a, m.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// // Hertz: a^2 = R d.
+    /// assert!((contact.contact_radius().powi(2) - 0.01).abs() < 1e-15);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
         self.history.edge().radius
     }
 
     /// Indentation d, m; below nought a gap.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&Move { normal: Some(Normal::Indentation(-0.001)), ..Move::default() })?;
+    /// assert_eq!((contact.indentation(), contact.contact_radius()), (-0.001, 0.0));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn indentation(&self) -> f64 {
         self.history.edge().level.value()
     }
 
     /// Displacement of gross slip on first loading, m, at the present load.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!((contact.gross_slip_displacement() - 0.0075).abs() < 1e-15);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn gross_slip_displacement(&self) -> f64 {
         self.scale() * self.indentation().max(0.0)
     }
 
     /// How many straight pieces the history has left.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// // A stuck core and a ring that has slipped.
+    /// assert_eq!(contact.memory_depth(), 2);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn memory_depth(&self) -> usize {
         self.history.pieces().len()
     }
 
     /// Bytes that the contact takes, its history included.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(contact.memory_bytes() > size_of::<Contact>());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         size_of::<Contact>() + self.history.heap_bytes()
     }
 
     /// The figures of the present normal load.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!((contact.summary().gross_slip_force - 2000.0).abs() < 1e-9);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn summary(&self) -> ContactSummary {
         summary_of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
     /// The figures of the definition's preload.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&Move { normal: Some(Normal::Indentation(0.02)), ..Move::default() })?;
+    /// assert_eq!((contact.initial_summary().indentation, contact.summary().indentation), (0.01, 0.02));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
         self.initial

@@ -7,6 +7,13 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// `hi + lo`, with `lo` at most half a unit in the last place of `hi`.
+///
+/// ```
+/// use stickslip_mechanics::DoubleDouble;
+///
+/// let third = DoubleDouble::from(1.0).over(DoubleDouble::from(3.0));
+/// assert!((third * 3.0 - DoubleDouble::from(1.0)).value().abs() < 1e-31);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     hi: f64,

@@ -45,6 +45,13 @@ pub struct ContactSummary {
 
 impl ContactSummary {
     /// The pressure that stresses are compared with, Pa: the largest, or where that is infinite the mean.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let summary = contact.summary();
+    /// assert_eq!(Some(summary.unit_pressure()), summary.max_pressure);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn unit_pressure(&self) -> f64 {
         self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))

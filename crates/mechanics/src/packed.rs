@@ -86,6 +86,12 @@ impl Reader<'_> {
 
 impl Contact {
     /// How many bytes [`Contact::pack`] makes.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.packed_length(), contact.pack().len());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn packed_length(&self) -> usize {
         2 * size_of::<u16>() + 11 * size_of::<f64>() + self.history.packed_length()
@@ -93,6 +99,14 @@ impl Contact {
 
     /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another version
     /// of the engine or of the layout refuses them.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// let back = Contact::new(setup)?.unpack(&contact.pack()).unwrap();
+    /// assert_eq!(back.force().to_bits(), contact.force().to_bits());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn pack(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.packed_length());
@@ -112,6 +126,12 @@ impl Contact {
     }
 
     /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are sound.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(Contact::is_current_packing(&contact.pack()) && !Contact::is_current_packing(&[0; 4]));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn is_current_packing(bytes: &[u8]) -> bool {
         Reader(bytes).is_current()
@@ -120,6 +140,13 @@ impl Contact {
     /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a contact of
     /// the same definition, such as the virgin one. `None` for bytes that are cut short, of another version, of a contact
     /// with another preload, or no state of a contact at all; damage that leaves sound numbers goes unnoticed.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let other = Contact::new(Setup { preload: Preload::Indentation(0.02), ..setup })?;
+    /// assert!(other.unpack(&contact.pack()).is_none());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
         let mut reader = Reader(bytes);

@@ -7,6 +7,13 @@ impl Contact {
     /// The move, with targets that are absolute, that goes from here as far as `part` of the way of `step`; `part` is between
     /// 0 and 1. What is straight in `step` is so in the shorter move: following one such move after the other leads along the
     /// same line.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let half = contact.partial_move(&slide(0.002), 0.5);
+    /// assert_eq!(half.tangential, Some(Tangential::Displacement(0.001)));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn partial_move(&self, step: &Move, part: f64) -> Move {
         let towards = |from: f64, target: f64| from + part * if step.relative { target } else { target - from };

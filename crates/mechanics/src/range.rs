@@ -71,6 +71,12 @@ pub const SPRING_COUNT: Range = Range { quantity: Quantity::SpringCount, unit: "
 
 impl Range {
     /// Whether `value` lies inside, bounds included; never for a NaN.
+    ///
+    /// ```
+    /// use stickslip_mechanics::range::FRICTION;
+    ///
+    /// assert!(FRICTION.contains(0.0) && !FRICTION.contains(f64::NAN));
+    /// ```
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
@@ -80,6 +86,16 @@ impl Range {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] if it lies outside or is not a number.
+    ///
+    /// ```
+    /// use stickslip_mechanics::range;
+    ///
+    /// assert_eq!(range::POISSON_RATIO.check(0.3), Ok(0.3));
+    /// assert_eq!(
+    ///     range::POISSON_RATIO.check(0.6).unwrap_err().to_string(),
+    ///     "poisson_ratio = 0.6 is out of range: allowed is -0.99 to 0.5",
+    /// );
+    /// ```
     pub fn check(&self, value: f64) -> Result<f64, Error> {
         if self.contains(value) {
             Ok(value)
@@ -93,6 +109,12 @@ impl Range {
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
+///
+/// ```
+/// use stickslip_mechanics::range::check_friction;
+///
+/// assert!(check_friction(0.0).is_ok() && check_friction(0.3).is_ok() && check_friction(1e-12).is_err());
+/// ```
 pub fn check_friction(friction: f64) -> Result<f64, Error> {
     if friction > 0.0 && friction < MIN_POSITIVE_FRICTION {
         let allowed = format!("0, or {} to {}", short(MIN_POSITIVE_FRICTION), short(FRICTION.max));
@@ -105,6 +127,12 @@ pub fn check_friction(friction: f64) -> Result<f64, Error> {
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
+///
+/// ```
+/// use stickslip_mechanics::range::check_normal_force;
+///
+/// assert!(check_normal_force(0.0).is_ok() && check_normal_force(-1.0).is_err());
+/// ```
 pub fn check_normal_force(force: f64) -> Result<f64, Error> {
     if force > 0.0 && force < MIN_POSITIVE_NORMAL_FORCE {
         let allowed =

@@ -46,12 +46,27 @@ impl Residual {
 
 impl Contact {
     /// Shear stress, Pa, at a radius (m) of at least nought; nought outside the contact.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(1.0))?;
+    /// // Gross slip forwards: mu times the pressure, positive.
+    /// assert!((contact.shear(0.03) / (0.5 * contact.pressure(0.03)) - 1.0).abs() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
         self.shear_at(&At::radius(radius))
     }
 
     /// [`Contact::shear`] at each of `radii`, m: quicker than one by one.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// assert_eq!(contact.shears(&[0.05, 0.2]), [contact.shear(0.05), 0.0]);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
         let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
@@ -80,6 +95,16 @@ impl Contact {
     }
 
     /// All extrema of the shear stress with their exact radii, and what they amount to.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(1.0))?;
+    /// contact.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
+    /// // Without a force the core is still loaded forwards, and a ring outside it backwards.
+    /// let residual = contact.residual();
+    /// assert!(residual.centre.unwrap() > 0.0 && residual.peaks[0].shear < 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn residual(&self) -> Residual {
         self.residual_while(|| true).unwrap_or_else(|| Residual::of(self.shear(0.0), Vec::new(), false))
@@ -88,6 +113,12 @@ impl Contact {
     /// As [`Contact::residual`], for as long as `keep_going` says so, which is asked at every kink of the slip history and knot
     /// of the profile: the cost grows with the square of its depth.
     /// `None` if it said no.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(contact.residual_while(|| false).is_none());
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
         let edge = self.history.edge().radius;
         let spikes = self.profile.singular_radii().into_iter().chain([edge]);

@@ -87,6 +87,16 @@ pub struct State {
 
 impl Contact {
     /// The state after the last move.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.00375))?;
+    /// let state = contact.state();
+    /// // The stuck core ends where W = d - g(c): c^2 = R d/2.
+    /// assert!((state.stick_radius - 0.005_f64.sqrt()).abs() < 1e-15);
+    /// assert!(state.force > 0.0 && state.dissipated_energy > 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn state(&self) -> State {
         #[cfg(test)]

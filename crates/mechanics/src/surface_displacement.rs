@@ -12,6 +12,15 @@ use super::profile::{At, Point};
 
 impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least nought, inside the contact or outside.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// // The stuck core moves with the indenter; far away the surface stays.
+    /// assert!((contact.surface_displacement(0.0) - 0.001).abs() < 1e-17);
+    /// assert!(contact.surface_displacement(10.0) < 1e-4);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn surface_displacement(&self, radius: f64) -> f64 {
         let shift = self.history.shift().value();
@@ -26,6 +35,14 @@ impl Contact {
 
     /// Slip U - u(r), m, since the virgin contact; `None` outside the contact. Where the contact grew later, a ring's value
     /// includes what the indenter moved before it touched.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// assert_eq!(contact.slip(0.0), Some(0.0));
+    /// assert!(contact.slip(0.099).unwrap() > 0.0 && contact.slip(0.2).is_none());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<f64> {
         let edge = self.history.edge();

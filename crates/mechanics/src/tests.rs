@@ -73,8 +73,16 @@ fn each_field_costs_its_own_calls_and_no_others() {
         let all = RADII * pieces;
         let pressure = || drop(contact.pressures(&radii));
         let shear = || drop(contact.shears(&radii));
-        let slip = || radii.iter().for_each(|&radius| drop(contact.slip(radius)));
-        let displacement = || radii.iter().for_each(|&radius| drop(contact.surface_displacement(radius)));
+        let slip = || {
+            radii.iter().for_each(|&radius| {
+                let _ = contact.slip(radius);
+            })
+        };
+        let displacement = || {
+            radii.iter().for_each(|&radius| {
+                let _ = contact.surface_displacement(radius);
+            })
+        };
         // One call a radius for the pressure, one a radius and piece for each of the others, at the most.
         let fields: [(&str, &dyn Fn(), usize, usize); 4] = [
             ("pressure", &pressure, RADII, 0),

@@ -27,6 +27,18 @@ const HALVINGS: usize = 40;
 
 /// The shear stress, Pa, that some point of the judged part of the contact carries at the least after gross slip and so many
 /// reversals, whatever their displacements; nought where nothing is known, as at a vertical edge.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::{lower_bound, minimax};
+///
+/// let bound = lower_bound(&contact, 3);
+/// for target in minimax(&contact, 3, &|| true).unwrap().displacements {
+///     contact.apply(&slide(target))?;
+/// }
+/// assert!(bound > 0.0 && bound <= contact.residual().max.unwrap());
+/// # Ok::<(), Error>(())
+/// ```
 #[must_use]
 pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
     let (profile, edge) = (&*contact.profile, contact.contact_radius());

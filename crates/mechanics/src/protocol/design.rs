@@ -91,6 +91,16 @@ pub struct EvaluationRange {
 
 impl EvaluationRange {
     /// Where the stress of a contact is judged at its present load.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::protocol::EvaluationRange;
+    ///
+    /// // On a sphere it is the whole contact.
+    /// let range = EvaluationRange::of(&contact);
+    /// assert_eq!((range.from, range.to), (0.0, contact.contact_radius()));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn of(contact: &Contact) -> EvaluationRange {
         let edge = contact.contact_radius();
@@ -100,6 +110,16 @@ impl EvaluationRange {
     }
 
     /// The largest magnitude of the shear stress there, Pa; infinite if a vertical edge carries some.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::protocol::EvaluationRange;
+    ///
+    /// contact.apply(&slide(1.0))?;
+    /// let largest = EvaluationRange::of(&contact).largest(&contact, &contact.residual());
+    /// assert!((largest / (0.5 * contact.pressure(0.0)) - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn largest(&self, contact: &Contact, residual: &Residual) -> f64 {
         if self.vertical && edge_load(contact) > ROUNDED {
@@ -135,6 +155,16 @@ struct DesignTask<'a> {
 /// # ExecutionErrors
 /// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::Interrupted`] if
 /// `keep_going` said no.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd, PathStart, design};
+///
+/// let law = |law| design(&contact, PathStart::Here, law, 5, PathEnd::ForceZero, &|| true);
+/// let (linear, best) = (law(AmplitudeLaw::Linear)?, law(AmplitudeLaw::Minimax)?);
+/// assert!(best.largest <= linear.largest);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn design(
     contact: &Contact,
     start: PathStart,

@@ -33,6 +33,12 @@ pub const DEFAULT_CUTOFF: f64 = 0.1;
 /// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is nought.
 ///
 /// `reversals` is N, `amplitude` is A, m.
+///
+/// ```
+/// use stickslip_mechanics::protocol::falling_amplitude;
+///
+/// assert_eq!(falling_amplitude(4, 2.0).collect::<Vec<f64>>(), [2.0, -1.5, 1.0, -0.5, 0.0]);
+/// ```
 pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item = f64> {
     (0..=reversals).map(move |index| {
         let left = (reversals - index) as f64;
@@ -72,6 +78,16 @@ pub struct EqualPeaks {
 ///
 /// # ExecutionErrors
 /// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::equal_peaks;
+///
+/// // On a parabola the law is the linear fall.
+/// let path = equal_peaks(&contact, 2, None)?.displacements;
+/// assert!((path[1] / path[0] + 0.5).abs() < 1e-12 && path[2] == 0.0);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
     let (edge, indentation) = (contact.contact_radius(), contact.indentation());
     let singular = outermost_singular(&contact.profile, edge);
@@ -121,6 +137,15 @@ pub struct Minimax {
 ///
 /// `None` if `keep_going` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
 /// vertical edge, where the stress stays infinite.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::minimax;
+///
+/// let path = minimax(&contact, 3, &|| true).unwrap();
+/// assert!(path.displacements.len() == 4 && path.gap < 1e-9);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn minimax(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<Minimax> {
     minimax_to(contact, reversals, contact.gross_slip_displacement(), PathEnd::Free, keep_going).pop()
 }

@@ -22,6 +22,17 @@ pub struct ExecutionErrors {
 ///
 /// # ExecutionErrors
 /// What `make` and the moves refuse, and [`Error::Interrupted`] if `keep_going` said no.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::{ExecutionErrors, trials};
+///
+/// let exact = ExecutionErrors { amplitude: 0.0, friction: 0.0, seed: 1 };
+/// let make = |factor: f64| Contact::new(Setup { friction: factor * setup.friction, ..setup.clone() });
+/// let found = trials(&make, &[1.0, -0.005], &exact, 3, &|| true)?;
+/// assert_eq!(found[0], found[2]);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn trials(
     make: &dyn Fn(f64) -> Result<Contact, Error>,
     path: &[f64],

@@ -18,6 +18,16 @@ impl Springs {
     /// What the discretisation has cost: the largest of several estimates. The one of the stress is for radii some cells (of
     /// twice the largest contact radius over the number of springs) away from the kinks of the displacement, the centre, the
     /// edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
+    /// springs.apply(&slide(0.002))?;
+    /// contact.apply(&slide(0.002))?;
+    /// let off = (springs.force() - contact.force()).abs() / 2000.0;
+    /// assert!(off <= springs.accuracy().force_error);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn accuracy(&self) -> ErrorEstimate {
         let figures = self.normal.summary();

@@ -5,9 +5,9 @@
 //! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
 mod estimate;
-mod kernel;
+mod shear_evaluation;
 
-pub use kernel::ShearEvaluation;
+pub use shear_evaluation::ShearEvaluation;
 
 use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
@@ -55,6 +55,14 @@ struct Spring {
 ///
 /// # Errors
 /// Those of [`Contact::new`].
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// let deeper = Move { normal: Some(Normal::Indentation(0.04)), ..Move::default() };
+/// let radius = stickslip_mechanics::springs::largest_contact_radius(&setup, [deeper])?;
+/// assert!((radius - 0.2).abs() < 1e-15);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn largest_contact_radius(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
     let mut contact = Contact::new(setup.clone())?;
     let mut reach = contact.contact_radius();
@@ -72,6 +80,13 @@ impl Springs {
     ///
     /// # Errors
     /// Those of [`Contact::new`], and [`Error::OutOfRange`] by [`range::SPRING_COUNT`].
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let springs = Springs::new(setup, 1000, 0.1)?;
+    /// assert!((springs.normal_force() / contact.normal_force() - 1.0).abs() < 1e-5);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
         let mut fine = Springs::one_row(setup.clone(), count, reach)?;
@@ -136,6 +151,15 @@ impl Springs {
     ///
     /// # Errors
     /// As [`Contact::apply`].
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
+    /// springs.apply(&slide(0.00375))?;
+    /// contact.apply(&slide(0.00375))?;
+    /// assert!((springs.force() / contact.force() - 1.0).abs() < 1e-5);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
         if let (Some(normal), Some(tangential)) = (step.normal, step.tangential) {
             match (normal, tangential) {
@@ -308,6 +332,15 @@ impl Springs {
     }
 
     /// Shear stress, Pa, at a radius, m.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
+    /// springs.apply(&slide(1.0))?;
+    /// contact.apply(&slide(1.0))?;
+    /// assert!((springs.shear(0.03) / contact.shear(0.03) - 1.0).abs() < 1e-3);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
         let room = self.scale() * self.rim_depth();
@@ -365,6 +398,13 @@ impl Springs {
     }
 
     /// Slip under the indenter, m, at a radius, m; none outside the contact.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let springs = Springs::new(setup, 1000, 0.1)?;
+    /// assert_eq!((springs.slip(0.05), springs.slip(0.2)), (Some(0.0), None));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<f64> {
         let touched = self.indentation > 0.0 && radius <= self.contact_radius();

@@ -1,7 +1,7 @@
 //! The honesty of `accuracy()`: over a thousand random scenes the estimate is never below a third of the true error.
 
-use crate::reference::{found, scenes};
 use crate::support::Random;
+use crate::support::reference::{found, scenes};
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated, TruncatedSphere,
 };

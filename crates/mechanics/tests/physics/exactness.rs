@@ -26,8 +26,8 @@ fn many_radii_at_once_are_each_as_exact_as_one() {
     forall(300, (paths::oblique_steps(30), radii), |(steps, mut radii)| {
         for ball in [UNIT, PLAIN] {
             let mut contact = ball.contact();
-            for partial_move in paths::waypoints(&steps) {
-                contact.apply(&ball.towards(partial_move)).unwrap();
+            for waypoint in paths::waypoints(&steps) {
+                contact.apply(&ball.towards(waypoint)).unwrap();
             }
             let edge = contact.state().contact_radius;
             radii.iter_mut().for_each(|r| *r *= edge);
@@ -55,9 +55,9 @@ fn paths_at_constant_load_follow_masing_and_madelung() {
     forall(600, (paths::slides(60), radii), |(steps, radii)| {
         let mut contact = PLAIN.contact();
         let mut masing = Masing::new(1.0);
-        for partial_move in paths::waypoints(&steps).into_iter().skip(1) {
-            masing.go(partial_move.1);
-            contact.apply(&displace(partial_move.1 * PLAIN.full_slip())).unwrap();
+        for waypoint in paths::waypoints(&steps).into_iter().skip(1) {
+            masing.go(waypoint.1);
+            contact.apply(&displace(waypoint.1 * PLAIN.full_slip())).unwrap();
             forces.close(
                 contact.force(),
                 masing.force() * PLAIN.force_limit(PLAIN.radius),
@@ -116,23 +116,23 @@ fn oblique_paths_equal_points_followed_one_by_one() {
         let mut contact = ball.contact();
         let path = paths::waypoints(&steps);
         let mut points = Points::new(path[0]);
-        for (index, &partial_move) in path.iter().enumerate().skip(1) {
-            contact.apply(&ball.towards(partial_move)).unwrap();
-            points.go(partial_move);
+        for (index, &waypoint) in path.iter().enumerate().skip(1) {
+            contact.apply(&ball.towards(waypoint)).unwrap();
+            points.go(waypoint);
             met.borrow_mut().push(contact.state().regime);
             if index % 4 > 0 && index + 1 < path.len() {
                 continue;
             }
             // Targets are rounded as parts of the first indentation, so a contact nearly lifted is measured by a fifth.
-            let a = partial_move.0.max(0.04).sqrt();
+            let a = waypoint.0.max(0.04).sqrt();
             let shape = points.shape();
             let limit = ball.force_limit(a * ball.radius);
             forces.close(contact.force(), shape.force() * ball.force_limit(ball.radius) * 1.5, limit);
-            let hertz = partial_move.0.max(0.0).powf(1.5) * ball.force_limit(ball.radius);
+            let hertz = waypoint.0.max(0.0).powf(1.5) * ball.force_limit(ball.radius);
             loads.close(contact.normal_force() * ball.friction, hertz, limit);
             let energy_limit = ball.energy_unit() * a.powi(5);
             energies.close(contact.state().elastic_energy, shape.energy() * ball.energy_unit(), energy_limit);
-            let edge = partial_move.0.max(0.0).sqrt();
+            let edge = waypoint.0.max(0.0).sqrt();
             for r in &radii {
                 let shear = contact.shear(r * edge * ball.radius);
                 let expected = shape.stress(r * edge) * ball.stress_limit(ball.radius);
@@ -150,7 +150,7 @@ fn nanometres_and_kilometres_give_the_same_figures() {
     let same = Worst::new("normalised results over all sizes", 1e-13);
     let normalised = |ball: &Ball, path: &[(f64, f64)]| {
         let mut contact = ball.contact();
-        path.iter().for_each(|&partial_move| contact.apply(&ball.towards(partial_move)).unwrap());
+        path.iter().for_each(|&waypoint| contact.apply(&ball.towards(waypoint)).unwrap());
         let (state, a) = (contact.state(), ball.radius);
         let mut figures = vec![
             state.force / ball.force_limit(a),
@@ -312,7 +312,7 @@ fn the_three_preloads_are_one_contact() {
 }
 
 #[test]
-fn loading_along_a_line_from_nought_carries_its_share_of_friction() {
+fn loading_along_a_line_from_zero_carries_its_share_of_friction() {
     // Touched on the way, a point keeps what came after: w = ratio (d - y), so that tau = ratio mu p everywhere, or mu p
     // where the ratio exceeds one and all of it slips (Mindlin & Deresiewicz 1953).
     let shares = Worst::new("force and stress of oblique loading, relative", 1e-13);

@@ -10,7 +10,7 @@ use stickslip_mechanics::Contact;
 
 fn walk(ball: &Ball, path: &[(f64, f64)]) -> Contact {
     let mut contact = ball.contact();
-    path.iter().for_each(|&partial_move| contact.apply(&ball.towards(partial_move)).unwrap());
+    path.iter().for_each(|&waypoint| contact.apply(&ball.towards(waypoint)).unwrap());
     contact
 }
 
@@ -28,7 +28,7 @@ fn over_the_move(f: &dyn Fn(f64) -> f64, tolerance: f64) -> f64 {
 
 /// What the largest load of a path could hold: mu F_N, mu p_max and an energy, by which errors are measured.
 fn units(ball: &Ball, path: &[(f64, f64)]) -> (f64, f64, f64) {
-    let depth = path.iter().fold(1.0, |depth: f64, partial_move| depth.max(partial_move.0));
+    let depth = path.iter().fold(1.0, |depth: f64, waypoint| depth.max(waypoint.0));
     let a = depth.sqrt() * ball.radius;
     (ball.force_limit(a), ball.stress_limit(a), ball.force_limit(a) * ball.full_slip())
 }
@@ -82,14 +82,12 @@ fn friction_work_is_positive_down_to_the_smallest_move() {
         let path = paths::waypoints(&steps);
         let mut contact = PLAIN.contact();
         let mut random = Random(steps.len() as u64);
-        for &partial_move in &path {
+        for &waypoint in &path {
             // On the way, a shiver of any size.
             let shiver = |random: &mut Random| 10_f64.powf(random.within(-17.0, -3.0));
-            for partial_move in
-                [(partial_move.0 + shiver(&mut random), partial_move.1 - shiver(&mut random)), partial_move]
-            {
+            for waypoint in [(waypoint.0 + shiver(&mut random), waypoint.1 - shiver(&mut random)), waypoint] {
                 let before = contact.state();
-                contact.apply(&PLAIN.towards(partial_move)).unwrap();
+                contact.apply(&PLAIN.towards(waypoint)).unwrap();
                 let after = contact.state();
                 assert!(after.dissipated_energy >= before.dissipated_energy);
                 assert!(after.elastic_energy >= 0.0);
@@ -256,12 +254,12 @@ fn contacts_know_nothing_of_each_other() {
         let mut second = first.clone();
         for index in 0..one.len().max(two.len()) {
             // Turn by turn, and from a clone of a clone.
-            if let Some(&partial_move) = two.get(index) {
+            if let Some(&waypoint) = two.get(index) {
                 second = second.clone();
-                second.apply(&PLAIN.towards(partial_move)).unwrap();
+                second.apply(&PLAIN.towards(waypoint)).unwrap();
             }
-            if let Some(&partial_move) = one.get(index) {
-                first.apply(&PLAIN.towards(partial_move)).unwrap();
+            if let Some(&waypoint) = one.get(index) {
+                first.apply(&PLAIN.towards(waypoint)).unwrap();
             }
         }
         assert_eq!((first.state(), second.state()), (alone.0.state(), alone.1.state()));
@@ -287,7 +285,7 @@ fn dense(special: &[f64], edge: f64) -> Vec<f64> {
 
 #[test]
 fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
-    let (found, told) = (Cell::new(0), Cell::new(0));
+    let (found, reported) = (Cell::new(0), Cell::new(0));
     // Between the kinks of arbitrary slopes that rises leave, there may be two extrema.
     let of_all_kinds = prop_oneof![
         2 => paths::slides(30).boxed(),
@@ -297,7 +295,7 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
     forall(500, of_all_kinds, |steps| {
         let path = paths::waypoints(&steps);
         let mut points = Points::new(path[0]);
-        path.iter().skip(1).for_each(|&partial_move| points.go(partial_move));
+        path.iter().skip(1).for_each(|&waypoint| points.go(waypoint));
         let contact = walk(&UNIT, &path);
         let unit = UNIT.stress_limit(1.0);
         let edge = contact.state().contact_radius;
@@ -322,7 +320,7 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
             // Kinks closer than radii can tell share one.
             assert!(before <= peak.radius && peak.radius <= after, "peaks are in order");
             assert!(Some(peak.shear.abs()) <= residual.max);
-            told.set(told.get() + 1);
+            reported.set(reported.get() + 1);
             if (peak.radius - before).min(after - peak.radius) < 1e-9 * edge {
                 // Too thin a ring to look into.
                 continue;
@@ -338,7 +336,7 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
         assert!(largest <= max + 1e-14 * unit, "{largest:e} exceeds {max:e}");
         assert!(largest >= max - 1e-6 * unit, "{max:e} is nowhere: {largest:e}");
     });
-    assert!(found.get() > 200 && told.get() > 200, "{} found, {} told", found.get(), told.get());
+    assert!(found.get() > 200 && reported.get() > 200, "{} found, {} reported", found.get(), reported.get());
 }
 
 #[test]
@@ -350,7 +348,7 @@ fn stresses_integrate_to_the_forces() {
         let contact = walk(&PLAIN, &path);
         let (force, stress, _) = units(&PLAIN, &path);
         let mut points = Points::new(path[0]);
-        path.iter().skip(1).for_each(|&partial_move| points.go(partial_move));
+        path.iter().skip(1).for_each(|&waypoint| points.go(waypoint));
         // Over r^2, broken at the reference's kinks and ever closer to them, where every kink leaves a root.
         let levels = points.shape().levels();
         let sum = |stress: &dyn Fn(f64) -> f64, unit: f64| -> f64 {

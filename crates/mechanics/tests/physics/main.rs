@@ -1,4 +1,4 @@
-//! The physics: each file states facts that must hold, against something independent of the solver.
+//! The physics tests, one program: each module holds the solver against closed forms, laws or an independent reference.
 
 mod accuracy;
 mod curved_moves;
@@ -12,7 +12,6 @@ mod packed;
 mod paper;
 mod profiles;
 mod protocols;
-mod reference;
 mod relative_moves;
 mod slip_history;
 mod springs;

@@ -74,7 +74,7 @@ fn wander(contact: &mut Contact, virgin: &Contact, count: usize, random: &mut Ra
 }
 
 /// All that there is to know, digit by digit: every field, and what is computed from them.
-fn told(contact: &Contact) -> String {
+fn digest_of(contact: &Contact) -> String {
     let radius = contact.contact_radius();
     let shear: Vec<u64> = (0..20).map(|part| contact.shear(radius * f64::from(part) / 19.0).to_bits()).collect();
     format!("{contact:?} {:?} {:?} {shear:?}", contact.state(), contact.accuracy())
@@ -89,12 +89,12 @@ fn what_is_read_back_is_the_same_to_the_last_bit_and_stays_so() {
         let bytes = contact.pack();
         assert_eq!(bytes.len(), contact.packed_length());
         let mut read = virgin.unpack(&bytes).expect("it was packed a moment ago");
-        assert_eq!(told(&read), told(&contact));
+        assert_eq!(digest_of(&read), digest_of(&contact));
         // And from there on, whichever of the two is moved.
         let mut twin = Random(random.0);
         wander(&mut contact, &virgin, 20, &mut random);
         wander(&mut read, &virgin, 20, &mut twin);
-        assert_eq!(told(&read), told(&contact));
+        assert_eq!(digest_of(&read), digest_of(&contact));
     });
 }
 

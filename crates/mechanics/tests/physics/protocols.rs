@@ -2,22 +2,14 @@
 
 use std::f64::consts::PI;
 
-use crate::support::pressed;
+use crate::support::{config, follow, power, pressed, sphere};
 use proptest::prelude::*;
-use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated};
+use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, RoundedCone, RoundedPunch, Sum, Tabulated};
 use stickslip_mechanics::protocol::{
     AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
 };
 use stickslip_mechanics::range::Quantity;
-use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Sphere, Tangential};
-
-fn sphere() -> Profile {
-    Profile::Sphere(Sphere::new(10.0).unwrap())
-}
-
-fn power(exponent: f64) -> Profile {
-    Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
-}
+use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Tangential};
 
 fn table() -> Profile {
     let radii: Vec<f64> = (0..=20).map(|index| 0.9 * f64::from(index) / 20.0).collect();
@@ -26,7 +18,7 @@ fn table() -> Profile {
 }
 
 fn sum() -> Profile {
-    Profile::Sum(Sum::new(vec![sphere(), power(4.0)]).unwrap())
+    Profile::Sum(Sum::new(vec![sphere(10.0), power(4.0)]).unwrap())
 }
 
 /// The law from gross slip at its full amplitude.
@@ -40,15 +32,13 @@ fn unit(contact: &Contact) -> f64 {
 
 fn moved(contact: &Contact, path: &[f64]) -> Contact {
     let mut contact = contact.clone();
-    for &target in path {
-        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
-    }
+    follow(&mut contact, path);
     contact
 }
 
 #[test]
 fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     let largest = 2.0 - 1.5_f64.sqrt();
     for reversals in [2_usize, 20, 200] {
         let found = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero);
@@ -76,7 +66,7 @@ fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_sq
     let expected = phases.map(|phase| wave(phase).abs()).sum::<f64>() / SAMPLES as f64;
     assert!((expected - 0.40).abs() < 0.01, "{expected}");
 
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     let radius = contact.summary().contact_radius;
     let reversals = 400;
     let found =
@@ -103,14 +93,14 @@ fn equal_peaks_beat_the_linear_fall_on_other_powers() {
 
 #[test]
 fn minimax_is_what_is_known_of_the_sphere() {
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     for (reversals, end, known) in [
         (1, PathEnd::Free, 0.600_000),
         (2, PathEnd::Free, 0.471_894),
         (3, PathEnd::Free, 0.400_606),
         (20, PathEnd::Free, 0.167_500),
         (100, PathEnd::Free, 0.075_794),
-        // At displacement nought, where one extremum has to stay below.
+        // At displacement zero, where one extremum has to stay below.
         (1, PathEnd::DisplacementZero, 0.5_f64.sqrt()),
         (2, PathEnd::DisplacementZero, 0.530_330),
         (5, PathEnd::DisplacementZero, 0.335_707),
@@ -122,9 +112,9 @@ fn minimax_is_what_is_known_of_the_sphere() {
 }
 
 #[test]
-fn minimax_ends_where_it_is_told_to_and_is_never_above_the_others() {
+fn minimax_ends_where_it_is_to_end_and_is_never_above_the_others() {
     let shapes = [
-        sphere(),
+        sphere(10.0),
         power(1.5),
         power(3.0),
         power(4.0),
@@ -176,12 +166,12 @@ fn left(contact: &Contact, levels: &[f64]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(12))]
 
     /// The study with restarts: a search from anywhere, by steps along each level, finds nothing better.
     #[test]
     fn no_search_from_anywhere_finds_less(
-        shape in prop::sample::select(vec![sphere(), power(1.5), power(3.0), table(), sum()]),
+        shape in prop::sample::select(vec![sphere(10.0), power(1.5), power(3.0), table(), sum()]),
         mut levels in prop::collection::vec(0.0..1.0_f64, 1..=4),
     ) {
         let contact = pressed(shape);
@@ -213,7 +203,7 @@ proptest! {
     /// From any history the path leaves what it says, ends where it is to, and leaves no more than from gross slip.
     #[test]
     fn any_history_is_relaxed(
-        shape in prop::sample::select(vec![sphere(), power(1.5), table(), sum()]),
+        shape in prop::sample::select(vec![sphere(10.0), power(1.5), table(), sum()]),
         moves in prop::collection::vec((-2.0..2.0_f64, 0.8..1.2_f64, any::<bool>()), 0..12),
         reversals in 1..6_usize,
         end in prop::sample::select(vec![PathEnd::DisplacementZero, PathEnd::ForceZero, PathEnd::Free]),
@@ -245,18 +235,18 @@ proptest! {
 #[test]
 fn a_small_past_is_relaxed_without_stirring_what_lies_inside() {
     // A tenth of gross slip has slipped a thin ring alone: what any stroke to gross slip leaves is far more.
-    let contact = moved(&pressed(sphere()), &[0.1 * pressed(sphere()).gross_slip_displacement()]);
+    let contact = moved(&pressed(sphere(10.0)), &[0.1 * pressed(sphere(10.0)).gross_slip_displacement()]);
     let found =
         design(&contact, PathStart::Here, AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero, &|| true).unwrap();
     assert_eq!(found.first_move, FirstMove::Partial);
-    let gross = of(&pressed(sphere()), AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero);
+    let gross = of(&pressed(sphere(10.0)), AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero);
     assert!(found.largest < 0.5 * gross.largest, "{} {}", found.largest, gross.largest);
     assert!(found.contact.state().stick_radius > 0.0);
 }
 
 #[test]
 fn a_smaller_start_leaves_less() {
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     let full = contact.gross_slip_displacement();
     for kind in [AmplitudeLaw::Linear, AmplitudeLaw::EqualPeaks, AmplitudeLaw::Minimax] {
         let from = |start: f64| {
@@ -275,7 +265,7 @@ fn a_smaller_start_leaves_less() {
 #[test]
 fn at_a_vertical_edge_the_path_ends_with_no_load_there() {
     let punch = Profile::FlatPunch(FlatPunch::new(0.3).unwrap());
-    let crowned = Profile::Sum(Sum::new(vec![sphere(), punch.clone()]).unwrap());
+    let crowned = Profile::Sum(Sum::new(vec![sphere(10.0), punch.clone()]).unwrap());
     for shape in [punch, crowned] {
         let contact = pressed(shape);
         assert!(EvaluationRange::of(&contact).vertical);
@@ -292,8 +282,8 @@ fn at_a_vertical_edge_the_path_ends_with_no_load_there() {
 }
 
 #[test]
-fn what_cannot_be_moved_against_is_refused_and_the_search_ends_when_told_to() {
-    let contact = pressed(sphere());
+fn what_cannot_be_moved_against_is_refused_and_the_search_ends_when_it_is_stopped() {
+    let contact = pressed(sphere(10.0));
     let start = PathStart::Displacement(contact.gross_slip_displacement());
     let stopped = design(&contact, start, AmplitudeLaw::Minimax, 20, PathEnd::Free, &|| false);
     assert_eq!(stopped.unwrap_err(), Error::Interrupted);

@@ -1,4 +1,4 @@
-//! The memory: what a million moves leave behind is what their surviving turning points would leave, and no more.
+//! The slip history: what a million moves leave behind is what their surviving turning points would leave, and no more.
 
 use crate::support::masing::{Masing, first_force};
 use crate::support::{PLAIN, Random, UNIT, Worst, displace, forall, paths};
@@ -55,7 +55,7 @@ fn a_million_moves_leave_what_their_surviving_turning_points_leave() {
     let mut masing = Masing::new(1.0);
     let mut deepest = 0;
     for count in 1..=MILLION {
-        // Mostly within the last stroke, so that memory has a reason to pile up; sometimes far beyond it.
+        // Mostly within the last stroke, so that the slip history grows deep; sometimes far beyond it.
         let target = match random.bits() % 64 {
             0 => random.within(-2.5, 2.5),
             1..8 => random.within(-1.0, 1.0),
@@ -75,7 +75,7 @@ fn a_million_moves_leave_what_their_surviving_turning_points_leave() {
             alike.check(&contact, &along_survivors(&masing, 1.0));
         }
     }
-    assert!(deepest >= 10, "memory was never deep: {deepest}");
+    assert!(deepest >= 10, "the slip history was never deep: {deepest}");
     let fresh = UNIT.contact().memory_bytes();
     assert!(contact.memory_bytes() <= fresh + 1024 * (deepest + 2), "{} bytes", contact.memory_bytes());
 }
@@ -88,14 +88,14 @@ fn lift_off_forgets_a_million_oblique_moves() {
     let mut since_lift_off: Vec<(f64, f64)> = Vec::new();
     let (mut longest, mut deepest) = (0, 0);
     for _ in 0..MILLION {
-        let partial_move = (random.within(0.1, 1.5), random.within(-1.0, 1.0));
-        contact.apply(&UNIT.towards(partial_move)).unwrap();
-        since_lift_off.push(partial_move);
+        let waypoint = (random.within(0.1, 1.5), random.within(-1.0, 1.0));
+        contact.apply(&UNIT.towards(waypoint)).unwrap();
+        since_lift_off.push(waypoint);
         deepest = deepest.max(contact.memory_depth());
         if random.bits().is_multiple_of(4000) {
             let mut fresh = UNIT.contact();
             fresh.apply(&UNIT.towards((-0.2, 0.4))).unwrap();
-            since_lift_off.iter().for_each(|&partial_move| fresh.apply(&UNIT.towards(partial_move)).unwrap());
+            since_lift_off.iter().for_each(|&waypoint| fresh.apply(&UNIT.towards(waypoint)).unwrap());
             alike.check(&contact, &fresh);
             assert_eq!(contact.memory_depth(), fresh.memory_depth());
             longest = longest.max(since_lift_off.len());

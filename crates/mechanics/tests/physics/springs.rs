@@ -25,7 +25,7 @@ fn slanted() -> Vec<Move> {
         (1.2, 0.1),
         (1.0, 0.35),
     ];
-    path.iter().map(|&partial_move| PLAIN.towards(partial_move)).collect()
+    path.iter().map(|&waypoint| PLAIN.towards(waypoint)).collect()
 }
 
 /// The largest errors over a path, each over its unit: forces (tangential and normal), shear stress at the end, friction work.
@@ -106,8 +106,7 @@ fn random_oblique_paths_agree_with_springs() {
     let forces = Worst::new("force of 2000 springs / mu F_N", 1e-5);
     let works = Worst::new("friction work of 2000 springs / (mu F_N u_max)", 1e-5);
     forall(100, paths::oblique_steps(25), |steps| {
-        let moves: Vec<Move> =
-            paths::waypoints(&steps).iter().map(|&partial_move| PLAIN.towards(partial_move)).collect();
+        let moves: Vec<Move> = paths::waypoints(&steps).iter().map(|&waypoint| PLAIN.towards(waypoint)).collect();
         let setup = PLAIN.setup();
         let mut exact = Contact::new(setup.clone()).unwrap();
         let mut springs =

@@ -1,6 +1,6 @@
 //! What springs say of their own error, held against the exact solver over random scenes of every kind of profile.
 
-use crate::support::Random;
+use crate::support::{Random, cases, displace};
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
@@ -135,7 +135,7 @@ fn no_estimate_is_below_a_third_of_the_truth() {
     let (mut compared, mut liars) = (0, Vec::new());
     let mut worst = [0.0_f64; 2];
     let mut generous = [Vec::new(), Vec::new()];
-    for scene in 0..scenes() {
+    for scene in 0..u64::from(cases(500)) {
         let kind = scene % 11;
         let Some(Outcome { force, stress, force_error, stress_error }) = play(&mut random, kind) else { continue };
         compared += 1;
@@ -158,13 +158,8 @@ fn no_estimate_is_below_a_third_of_the_truth() {
         all[all.len() / 2]
     });
     println!("{compared} scenes: worst error over estimate {worst:.2?}, median estimate over error {median:.1?}");
-    assert!(compared > 9 * scenes() / 10, "only {compared} scenes");
+    assert!(compared > 9 * u64::from(cases(500)) / 10, "only {compared} scenes");
     assert!(liars.is_empty(), "{} of {compared}:\n{}", liars.len(), liars.join("\n"));
-}
-
-/// `SCENES` asks for more.
-fn scenes() -> u64 {
-    std::env::var("SCENES").map_or(500, |scenes| scenes.parse().unwrap())
 }
 
 /// Force and stress of springs at the end of a path, over their units, with the true errors.
@@ -218,7 +213,7 @@ fn a_contact_that_starts_without_load_has_an_estimate_too() {
 #[test]
 fn estimates_fall_with_the_number_of_springs() {
     let turns = [0.9, -0.5, 0.3].map(|part| 0.3 * 1000.0 / 800.0 * 0.02 * part);
-    let moves = turns.map(|target| Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() });
+    let moves = turns.map(displace);
     let at = |count| scene(Profile::Sphere(Sphere::new(0.5).unwrap()), Preload::Indentation(0.02), &moves, count);
     for count in [100, 1000] {
         let (few, many) = (at(count), at(10 * count));

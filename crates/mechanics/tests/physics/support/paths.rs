@@ -17,7 +17,7 @@ pub enum Step {
     Nudge(f64, f64),
     /// Part of the way back to the last turning point: repeated, this makes the slip history deep.
     Inward(f64),
-    /// Back to the partial_move so many moves ago.
+    /// Back to the point so many moves ago.
     Back(usize),
     /// To the mirror image of the displacement so many moves ago.
     Mirror(usize),

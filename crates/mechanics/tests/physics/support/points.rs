@@ -22,8 +22,8 @@ impl Points {
         Points { path: vec![start] }
     }
 
-    pub fn go(&mut self, partial_move: (f64, f64)) {
-        self.path.push(partial_move);
+    pub fn go(&mut self, waypoint: (f64, f64)) {
+        self.path.push(waypoint);
     }
 
     fn depth(&self) -> f64 {
@@ -65,7 +65,7 @@ impl Points {
         ends.sort_by(f64::total_cmp);
         let mut nodes = vec![(0.0, self.carried(0.0))];
         if depth > 0.0 {
-            // The edge itself is out of contact by the letter; its bound is nought.
+            // The edge itself is out of contact by the letter; its bound is zero.
             let carried = ends.into_iter().map(|end| (end, self.carried(end))).chain([(depth, 0.0)]);
             for outer in carried {
                 let inner = nodes[nodes.len() - 1];

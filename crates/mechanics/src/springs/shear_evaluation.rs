@@ -38,6 +38,15 @@ impl Springs {
     }
 
     /// Shear stress, Pa, at each of `radii`, m.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::springs::ShearEvaluation;
+    ///
+    /// let springs = Springs::new(setup, 1000, 0.1)?;
+    /// assert_eq!(springs.shears_by(ShearEvaluation::Level, &[0.05]), [0.0]);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn shears_by(&self, kernel: ShearEvaluation, radii: &[f64]) -> Vec<f64> {
         match kernel {

@@ -1,6 +1,4 @@
 //! The reference data of `tests/data`: scenes, solved in 60 digits by scripts that share nothing with the crate.
-// Each test binary uses a part of it.
-#![allow(dead_code)]
 
 use std::fmt;
 
