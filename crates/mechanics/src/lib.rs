@@ -39,7 +39,7 @@
 //! | `normal` | how do indentation, contact radius, normal force and pressure follow from each other? |
 //! | `slip_history` | what is left of the path, and what does a move change? |
 //! | `friction_work` | how much work does a move dissipate? |
-//! | `contact`, `state` | what is a contact made of, which moves does it take, what state is it in? |
+//! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |
 //! | `force_control` | which displacement gives a tangential force? |
 //! | `curved_move` | how is a move followed that is straight in a force? |
 //! | `partial_move` | where does a part of a move lead? |
@@ -61,6 +61,7 @@ mod error;
 mod extrema;
 mod force_control;
 mod friction_work;
+mod moves;
 mod normal;
 mod packed;
 mod partial_move;
