@@ -1,4 +1,4 @@
-//! What the solver costs: `cargo bench -p stickslip-mechanics --bench solver`. Read the figures as ratios to each other.
+//! The cost of moves, stresses and searches: `cargo bench -p stickslip-mechanics`. Compare the figures with each other.
 
 use std::hint::black_box;
 
@@ -105,7 +105,7 @@ fn scenes(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A memory of so many pieces, asked at so many radii: beside it as many plain square roots.
+/// The stress of a history of so many pieces at so many radii, and as many plain square roots to compare with.
 fn stresses(criterion: &mut Criterion) {
     const MANY: usize = 1_000;
     let mut group = criterion.benchmark_group("shear stress at 1000 radii under 1000 pieces");

@@ -1,4 +1,4 @@
-//! A contact with its history: what it is made of, how it moves, what state it is in.
+//! A contact with its slip history: construction, and the quantities that need no search.
 
 use std::sync::Arc;
 
@@ -30,24 +30,25 @@ use super::state::Setup;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// Shared by all copies: a table's is large.
+    /// Shared by all copies of the contact, because a table is large.
     pub(super) profile: Arc<Profile>,
     pub(super) elasticity: Elasticity,
     pub(super) friction: f64,
     pub(super) history: SlipHistory,
     pub(super) displacement: DoubleDouble,
-    /// As asked for or, under a prescribed indentation, as it follows: rounding it twice would move the friction limit.
+    /// As prescribed, or as it follows from a prescribed indentation: rounding it twice would move the friction limit.
     pub(super) normal_force: f64,
     pub(super) dissipated: DoubleDouble,
     pub(super) initial: ContactSummary,
     pub(super) path_error: f64,
     pub(super) path_kernel: f64,
-    /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
+    /// 1/m; zero without friction, when the surface carries nothing and the slip history does not follow the
+    /// displacement.
     pub(super) inverse_scale: DoubleDouble,
 }
 
 impl Contact {
-    /// The virgin contact of a definition: displacement and tangential force are nought.
+    /// The virgin contact of a definition: displacement and tangential force are zero.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
@@ -137,7 +138,7 @@ impl Contact {
         self.displacement
     }
 
-    /// Notes what a chord has cost: errors of the force add up, those of the stress are local.
+    /// Adds the errors of a chord: errors of the force accumulate, those of the stress are local.
     pub(super) fn add_path_error(&mut self, force: f64, kernel: f64) {
         self.path_error += force;
         self.path_kernel = self.path_kernel.max(kernel);
@@ -175,7 +176,7 @@ impl Contact {
         DoubleDouble::from(normal::indentation(&self.profile, &self.elasticity, normal_force))
     }
 
-    /// Normal force, N: the one asked for, to the bit, where one was.
+    /// Normal force, N; to the bit the prescribed one, where one was prescribed.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -188,7 +189,7 @@ impl Contact {
         self.normal_force
     }
 
-    /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
+    /// Pressure, Pa, at a radius (m) of at least zero; zero outside the contact, infinite at a sharp edge.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -202,7 +203,7 @@ impl Contact {
         normal::pressure(&self.profile, &self.elasticity, self.history.edge(), &At::radius(radius))
     }
 
-    /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
+    /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -259,7 +260,7 @@ impl Contact {
         self.history.edge().radius
     }
 
-    /// Indentation d, m; below nought a gap.
+    /// Indentation d, m; below zero a gap.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -284,7 +285,7 @@ impl Contact {
         self.scale() * self.indentation().max(0.0)
     }
 
-    /// How many straight pieces the history has left.
+    /// Number of straight pieces that the slip history consists of.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -298,7 +299,7 @@ impl Contact {
         self.history.pieces().len()
     }
 
-    /// Bytes that the contact takes, its history included.
+    /// Bytes of RAM that the contact takes, its slip history included.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -310,7 +311,7 @@ impl Contact {
         size_of::<Contact>() + self.history.heap_bytes()
     }
 
-    /// The figures of the present normal load.
+    /// The summary at the present normal load.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -322,7 +323,7 @@ impl Contact {
         summary_of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
-    /// The figures of the definition's preload.
+    /// The summary at the preload of the definition.
     ///
     /// ```
     #[doc = include_str!("example.txt")]

@@ -1,26 +1,28 @@
-//! Paths that are straight in a force: subdivided until the stated tolerance is met.
+//! Moves that are straight in a force, followed by exact straight moves within a tolerance.
 //!
-//! A path straight in (F_x, F_N), (U, F_N) or (F_x, d) is a curve in (d, W). It is followed by chords between points of the
-//! curve, each an exact move. A chord differs from the curve only for what is touched on the way (each level keeps the
-//! displacement gained since its touch) and where slip sets in between its ends; both are judged by how far the curve's
-//! middle lies off the chord. While nothing slips, dU/dd = (E*/G*) dF_x/dF_N: such stretches are straight and cost one chord.
+//! A path straight in (F_x, F_N), (U, F_N) or (F_x, d) is a curve in (d, W). It is followed by chords between points of
+//! the curve, each an exact move. A chord differs from the curve only for levels that come into contact on the way
+//! (each keeps the displacement gained since its touch) and where slip begins between its ends; both errors are
+//! estimated from the distance between the middle of the curve and the chord. While nothing slips, dU/dd = (E*/G*)
+//! dF_x/dF_N: such stretches are straight and cost one chord.
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::profile::{At, Ring};
 
-/// Error of the tangential force, relative to mu F_N, that a path may cost unless the caller says otherwise.
+/// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
-/// The most chords that one move is given: a bound on its time and on the pieces that it leaves.
+/// The largest number of chords of one move: a bound on its time and on the pieces that it leaves.
 pub const MAX_CHORDS: usize = 1 << 16;
-/// Up to this many chords the tolerance stands: a load that rises from nought to any height takes half of them at the default.
+/// Up to this many chords the tolerance holds: a load that rises from zero to any value takes half of them at the
+/// default.
 const FULL_TOLERANCE_CHORDS: usize = MAX_CHORDS / 2;
-/// Then, and again after this many more, it is let go by a factor of four, which halves what the rest of the way needs: a
-/// move ends within [`MAX_CHORDS`], and its true error is reported.
+/// After every further interval of this many chords the tolerance is relaxed by a factor of four, which halves the
+/// number that the rest of the move needs: a move ends within [`MAX_CHORDS`], and its actual error is reported.
 const RELAXATION_INTERVAL: usize = MAX_CHORDS / 16;
 
-/// The share of the tolerance that a chord may spend on which slip sets in or ends.
+/// The share of the tolerance that a chord may use on which slip begins or ends.
 const SLIP_CHANGE_SHARE: f64 = 1.0 / 16.0;
 
 /// How the tangential target is reached: straight from one value to the other.
@@ -59,13 +61,13 @@ pub(super) struct PathPoint {
 struct Deviation {
     /// int |error of w| dx, m^2.
     integral: f64,
-    /// Whether slip sets in or ends between its ends.
+    /// Whether slip begins or ends between its ends.
     slip_changes: bool,
-    /// Error of the slope of w over y, weighted with the kernel of what is touched at its inner end.
+    /// Error of the slope of w over y, times the kernel of the newly touched ring at its inner radius.
     kernel: f64,
 }
 
-/// How many times the tolerance asked for a chord may use after so many others.
+/// The factor by which the tolerance is relaxed after so many chords.
 fn relaxation(chords: usize) -> f64 {
     let intervals = (chords + RELAXATION_INTERVAL).saturating_sub(FULL_TOLERANCE_CHORDS) / RELAXATION_INTERVAL;
     (0..intervals).fold(1.0, |factor, _| 4.0 * factor)
@@ -80,7 +82,7 @@ fn between_doubles(from: DoubleDouble, to: DoubleDouble, part: f64) -> DoubleDou
 }
 
 impl Contact {
-    /// Follows a path while `keep_going` says so; `tolerance` is relative to mu F_N.
+    /// Follows a path while `keep_going` returns true; `tolerance` is relative to mu F_N.
     pub(super) fn follow(
         &mut self,
         path: &CurvedMove,
@@ -113,7 +115,7 @@ impl Contact {
                 step = (next - done) * shorter.clamp(0.02, 0.5);
                 continue;
             }
-            // First, as gross slip wipes out the error of the way into it too.
+            // Before the move, because gross slip wipes out the error of the chord that leads into it too.
             self.add_path_error(error, deviation.kernel);
             self.advance(&end);
             done = next;
@@ -123,7 +125,7 @@ impl Contact {
         Ok(())
     }
 
-    /// Refuses a path on which the tangential force does not stay below mu F_N, and names where that happens first.
+    /// Refuses a path on which the tangential force does not stay below mu F_N, and reports where it first does not.
     fn check_limit(&self, path: &CurvedMove) -> Result<(), Error> {
         let TangentialPath::Force { from, to } = path.tangential else { return Ok(()) };
         let room = |part: f64| self.friction * self.normal_force_on(path, part) - between(from, to, part).abs();
@@ -132,8 +134,8 @@ impl Contact {
             // A contact in gross slip is at its limit to round-off, and may turn back from there.
             room(part) < -16.0 * f64::EPSILON * limit || (part >= 1.0 && to.abs() >= limit)
         };
-        // F_N is straight or, over the indentation, convex; |F_x| is two straight lines. So on either side of F_x = 0 the
-        // room is convex, and lowest at an end unless the indentation changes.
+        // F_N is straight or, over the indentation, convex; |F_x| is two straight lines. So on either side of F_x = 0
+        // the room is convex, and lowest at an end unless the indentation changes.
         let middle = if from * to < 0.0 { from / (from - to) } else { 1.0 };
         let curved = matches!(path.normal, NormalPath::Indentation { from, to } if from != to);
         for (low, high) in [(0.0, middle), (middle, 1.0)] {
@@ -207,7 +209,7 @@ impl Contact {
     }
 }
 
-/// Where a convex function is lowest on an interval: thirds, until they are as close as doubles need.
+/// The minimum of a convex function on an interval, by ternary search down to round-off.
 fn lowest_of(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..80 {
         let third = (high - low) / 3.0;

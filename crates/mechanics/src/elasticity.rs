@@ -126,7 +126,7 @@ impl Elasticity {
     }
 
     /// Dundurs' second parameter of the pair; `None` where only the reduced moduli are known. Normal and tangential
-    /// contact decouple exactly only where it is nought.
+    /// contact decouple exactly only where it is zero.
     #[must_use]
     pub fn dundurs_beta(&self) -> Option<f64> {
         self.dundurs_beta

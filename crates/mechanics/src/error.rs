@@ -1,4 +1,4 @@
-//! What the mechanics refuses, and why. It knows no status codes.
+//! The errors of the mechanics, and the reasons that they name.
 
 use thiserror::Error as ThisError;
 

@@ -1,9 +1,10 @@
 //! Force control: the displacement that gives a tangential force at a given indentation.
 //!
-//! While nothing slips the force is linear in the displacement. From there it grows as the slip ring eats its way through
-//! the pieces, outermost first: a piece of slope beta that slips towards s gains (1 + s beta) int X dy. So the piece in which
-//! the wanted force is met is found by adding, and the radius within it by the inverse of int X dy: measured from the nearer
-//! end, so that neither a tiny change of force nor the last 1e-15 before the limit mu F_N loses its digits.
+//! While nothing slips the force is linear in the displacement. From there it grows as the slip ring eats its way
+//! through the pieces, outermost first: a piece of slope beta that slips towards s gains (1 + s beta) int X dy. So the
+//! piece in which the wanted force is met is found by adding, and the radius within it by the inverse of int X dy:
+//! measured from the nearer end, so that neither a tiny change of force nor the last 1e-15 before the limit mu F_N
+//! loses its digits.
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
@@ -24,7 +25,8 @@ struct Corner {
 
 impl Contact {
     /// The scaled displacement W, m, at which the contact carries the tangential force `target`, N, once it has moved
-    /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the target.
+    /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the
+    /// target.
     pub(super) fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
         let wanted = target / self.force_unit();
         // The product has digits that decide how little sticks just below the limit.

@@ -1,13 +1,15 @@
 //! The frictional contact of two elastic bodies, solved exactly, in plain numbers.
 //!
-//! A [`Contact`] is made from a [`Setup`], moved by [`Contact::apply`] and asked for its [`State`], its stresses and its
+//! A [`Contact`] is made from a [`Setup`], moved by [`Contact::apply`] and asked for its [`State`], its stresses and
+//! its
 //! [`Residual`]. `README.md` has a complete example.
 //!
 //! # The theory in a page
 //!
-//! Two elastic bodies, rotationally symmetric about the z axis, are pressed together over a circle of radius a and moved
-//! sideways by U. Coulomb friction bounds the shear stress by mu times the pressure. By the method of dimensionality
-//! reduction (Popov & Hess 2015) the contact is that of a row of independent springs along x with a plane profile g(x):
+//! Two elastic bodies, rotationally symmetric about the z axis, are pressed together over a circle of radius a and
+//! moved sideways by U. Coulomb friction bounds the shear stress by mu times the pressure. By the method of
+//! dimensionality reduction (Popov & Hess 2015) the contact is that of a row of independent springs along x with a
+//! plane profile g(x):
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
@@ -19,8 +21,9 @@
 //! | u_x, w = u_x/m | tangential displacement of a spring, and scaled | m |
 //! | y = g(x), X(y) | level of a spring, and its radius | m |
 //!
-//! A spring at level y is pressed in by d - y, and slips where |w| = d - y. The slip history is w over y, held as a stack of
-//! straight pieces, which is exact for every path that is straight in (d, U) from move to move. From the pieces follow
+//! A spring at level y is pressed in by d - y, and slips where |w| = d - y. The slip history is w over y, held as a
+//! stack of straight pieces, which is exact for every path that is straight in (d, U) from move to move. From the
+//! pieces follow
 //!
 //! - the tangential force F_x = 2 G* m int_0^a w dx,
 //! - the shear stress tau(r) = -(G*/pi) int_r^a u_x'(x)/sqrt(x^2 - r^2) dx,
@@ -28,7 +31,8 @@
 //!
 //! all as sums over pieces of a few integrals that each [`Profile`] knows in closed form.
 //!
-//! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem alone.
+//! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem
+//! alone.
 //!
 //! # The map
 //!

@@ -24,13 +24,13 @@ impl Contact {
         self.apply_within(step, DEFAULT_TOLERANCE)
     }
 
-    /// Moves along a line that is straight in the quantities named. What is straight in displacement and indentation is
-    /// exact; what is straight in a force while the other quantity changes is followed to `tolerance`, relative to mu F_N.
-    /// Nothing has changed when an error is returned.
+    /// Moves along a line that is straight in the quantities named. A line in displacement and indentation is exact;
+    /// one in a force, while the other quantity changes, is followed to `tolerance`, relative to mu F_N. An error
+    /// leaves the contact as it was.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a target outside [`range`]; [`Error::ForceExceedsFriction`] for a tangential force that
-    /// friction cannot hold all the way.
+    /// [`Error::OutOfRange`] for a target outside [`range`](mod@range); [`Error::ForceExceedsFriction`] for a
+    /// tangential force that friction cannot hold all the way.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -47,7 +47,7 @@ impl Contact {
         self.apply_while(step, tolerance, &|| true)
     }
 
-    /// As [`Contact::apply_within`], for as long as `keep_going` says so: a curved move can take seconds.
+    /// As [`Contact::apply_within`], while `keep_going` returns true: a curved move can take seconds.
     ///
     /// # Errors
     /// As [`Contact::apply_within`], and [`Error::Interrupted`].
@@ -63,7 +63,8 @@ impl Contact {
     pub fn apply_while(&mut self, step: &Move, tolerance: f64, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
         let normal = self.normal_path(step)?;
         let tangential = self.tangential_path(step)?;
-        // Without a tangential target the displacement stays, and any way to the new indentation is the same.
+        // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
+        // state.
         let straight = match (step.tangential, step.normal) {
             (None, _) => true,
             (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
@@ -78,7 +79,7 @@ impl Contact {
             self.advance(&PathPoint { indentation, normal_force, displacement });
             return Ok(());
         }
-        // Only a way of many chords can be broken off half-way; a copy is nothing beside it.
+        // A path of many chords can be interrupted half-way; the cost of a copy is negligible against it.
         let before = self.clone();
         let followed = self.follow(&CurvedMove { tangential, normal }, tolerance, keep_going);
         if followed.is_err() {
@@ -142,7 +143,7 @@ impl Contact {
         let work = 2.0 * self.elasticity.g_star() * scale * scale * result.work;
         self.dissipated = self.dissipated + DoubleDouble::from(work);
         if self.history.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
-            // What gross slip wipes out takes its errors with it.
+            // Gross slip wipes out the history, and its errors with it.
             self.path_error = 0.0;
             self.path_kernel = 0.0;
         }

@@ -1,7 +1,7 @@
-//! A contact as bytes, and back to the last bit: what a replay can begin at.
+//! A contact as bytes and back, equal to the last bit.
 //!
-//! Everything that moves is written as it is, sums included; what follows from the definition is not, since whoever reads
-//! the bytes has made the contact from it. Little-endian `f64` throughout:
+//! Everything that a move changes is written as it is, sums included. What follows from the definition is not, because
+//! the reader has already made a contact from it. Little-endian `f64` throughout:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -15,9 +15,10 @@ use super::double_double::DoubleDouble;
 use super::profile::Point;
 use super::slip_history::SlipHistory;
 
-/// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for whatever
-/// contact: bytes of another version are not read, so that states packed by an older engine are computed anew from their
-/// moves and agree with those that never were packed. `tests/packed.rs` holds a digest of results to this number.
+/// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for
+/// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
+/// from their moves and agree with those that never were packed. `tests/physics/packed.rs` compares a digest of results
+/// for it.
 pub const ENGINE: u16 = 2;
 
 /// The version of the arrangement of the bytes.
@@ -54,7 +55,7 @@ impl Reader<'_> {
         Some(u16::from_le_bytes(*head))
     }
 
-    /// Takes the versions at the beginning; whether they are those of this program.
+    /// Reads the versions at the beginning, and compares them with those of this program.
     fn is_current(&mut self) -> bool {
         self.version() == Some(LAYOUT) && self.version() == Some(ENGINE)
     }
@@ -97,8 +98,8 @@ impl Contact {
         2 * size_of::<u16>() + 11 * size_of::<f64>() + self.history.packed_length()
     }
 
-    /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another version
-    /// of the engine or of the layout refuses them.
+    /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another
+    /// version of the engine or of the layout refuses them.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -137,9 +138,10 @@ impl Contact {
         Reader(bytes).is_current()
     }
 
-    /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a contact of
-    /// the same definition, such as the virgin one. `None` for bytes that are cut short, of another version, of a contact
-    /// with another preload, or no state of a contact at all; damage that leaves sound numbers goes unnoticed.
+    /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a
+    /// contact of the same definition, such as the virgin one. `None` for bytes that are cut short, of another version,
+    /// of a contact with another preload, or no state of a contact at all; damage that leaves sound numbers goes
+    /// unnoticed.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -177,7 +179,7 @@ impl Contact {
         })
     }
 
-    /// What tells contacts of different definitions apart well enough, and machines that compute a preload differently.
+    /// Numbers that distinguish contacts of different definitions, and machines that compute a preload differently.
     fn definition_marks(&self) -> [f64; 4] {
         let (hi, lo) = self.inverse_scale.parts();
         [self.initial.indentation, self.initial.normal_force, hi, lo]

@@ -1,12 +1,11 @@
-//! Where a move is on its way, so that the way can be drawn.
+//! The first part of a move, so that its path can be drawn point by point.
 
 use super::contact::Contact;
 use super::state::{Move, Normal, Tangential};
 
 impl Contact {
-    /// The move, with targets that are absolute, that goes from here as far as `part` of the way of `step`; `part` is between
-    /// 0 and 1. What is straight in `step` is so in the shorter move: following one such move after the other leads along the
-    /// same line.
+    /// The move, with absolute targets, to the fraction `part` (0 to 1) of `step`. It is straight in the same
+    /// quantities: a sequence of such moves with rising fractions follows the same line.
     ///
     /// ```
     #[doc = include_str!("example.txt")]

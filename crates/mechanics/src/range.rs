@@ -1,4 +1,4 @@
-//! What numbers the mechanics accepts: one constant a quantity, used by every check and every document that names it.
+//! The ranges of the numbers that the mechanics accepts, one constant each, for checks and documents alike.
 
 use std::fmt;
 
@@ -30,7 +30,7 @@ pub const TIP_RADIUS: Range = Range { quantity: Quantity::TipRadius, unit: "m", 
 pub const SLOPE: Range = Range { quantity: Quantity::Slope, unit: "", min: 1e-9, max: 1e9 };
 /// Exponent of a power law.
 pub const EXPONENT: Range = Range { quantity: Quantity::Exponent, unit: "", min: 0.1, max: 1000.0 };
-/// Coefficient of a power law; its unit, m^(1 - n), hangs on the exponent.
+/// Coefficient of a power law; its unit, m^(1 - n), depends on the exponent.
 pub const COEFFICIENT: Range = Range { quantity: Quantity::Coefficient, unit: "m^(1-n)", min: 1e-280, max: 1e280 };
 /// How many points a tabulated profile may have.
 pub const TABLE_POINTS: Range = Range { quantity: Quantity::TablePoints, unit: "", min: 3.0, max: 10_000.0 };
@@ -48,19 +48,19 @@ pub const POISSON_RATIO: Range = Range { quantity: Quantity::PoissonRatio, unit:
 pub const E_STAR: Range = Range { quantity: Quantity::EStar, unit: "Pa", min: 1e-3, max: 1e18 };
 /// The reduced shear modulus G*.
 pub const G_STAR: Range = Range { quantity: Quantity::GStar, unit: "Pa", min: 1e-3, max: 1e18 };
-/// Coulomb's coefficient of friction; nought means no tangential force at all.
+/// Coulomb's coefficient of friction; zero means no tangential force at all.
 pub const FRICTION: Range = Range { quantity: Quantity::Friction, unit: "", min: 0.0, max: 100.0 };
-/// The smallest coefficient of friction beside nought: below it, displacements over that of gross slip outgrow all numbers.
+/// The smallest coefficient of friction above zero: below it, displacements relative to that of gross slip overflow.
 pub const MIN_POSITIVE_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
 pub const NORMAL_FORCE: Range = Range { quantity: Quantity::NormalForce, unit: "N", min: 0.0, max: 1e18 };
-/// The smallest normal force beside nought, N: below it, what follows from a force has no digits left.
+/// The smallest normal force above zero, N: below it, quantities that follow from the force underflow.
 pub const MIN_POSITIVE_NORMAL_FORCE: f64 = 1e-250;
-/// The contact radius, as a preload asks for it or as it comes of a load; nought is a contact just touching.
+/// The contact radius, prescribed or as it follows from a load; zero is a contact just touching.
 pub const CONTACT_RADIUS: Range = Range { quantity: Quantity::ContactRadius, unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a preload may ask for.
 pub const PRELOAD_INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: 0.0, max: 1e9 };
-/// The indentation that a move may ask for; below nought the bodies are apart.
+/// The indentation that a move may ask for; below zero the bodies are apart.
 pub const INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: -1e9, max: 1e9 };
 /// The tangential displacement of the indenter.
 pub const DISPLACEMENT: Range = Range { quantity: Quantity::Displacement, unit: "m", min: -1e9, max: 1e9 };
@@ -105,7 +105,7 @@ impl Range {
     }
 }
 
-/// Gives a coefficient of friction back: nought, or from [`MIN_POSITIVE_FRICTION`] on.
+/// Gives a coefficient of friction back: zero, or from [`MIN_POSITIVE_FRICTION`] on.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
@@ -123,7 +123,7 @@ pub fn check_friction(friction: f64) -> Result<f64, Error> {
     FRICTION.check(friction)
 }
 
-/// Gives a normal force back: nought, or from [`MIN_POSITIVE_NORMAL_FORCE`] on.
+/// Gives a normal force back: zero, or from [`MIN_POSITIVE_NORMAL_FORCE`] on.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
@@ -152,7 +152,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// The number as a person would write it: with an exponent only where it saves a row of noughts.
+/// The number in decimal notation, with an exponent only for very large and very small magnitudes.
 pub(super) fn short(value: f64) -> String {
     let magnitude = value.abs();
     let plain = magnitude.to_bits() == 0 || (1e-2..1e5).contains(&magnitude);

@@ -15,7 +15,7 @@ pub struct Peak {
     pub shear: f64,
 }
 
-/// The shear stress that a history has left, in brief.
+/// The extrema of the shear stress in the present state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
     /// Shear stress at r = 0, Pa; `None` where it is infinite.
@@ -31,7 +31,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Sums up the shear stress at the centre and the local extrema; `bounded` if it is finite everywhere else.
+    /// From the shear stress at the centre and the local extrema; `bounded` if it is finite everywhere else.
     pub(super) fn of(centre: f64, peaks: Vec<Peak>, bounded: bool) -> Residual {
         let sizes = || peaks.iter().map(|peak| peak.shear.abs());
         let max = (bounded && centre.is_finite()).then(|| sizes().fold(centre.abs(), f64::max));
@@ -45,7 +45,7 @@ impl Residual {
 }
 
 impl Contact {
-    /// Shear stress, Pa, at a radius (m) of at least nought; nought outside the contact.
+    /// Shear stress, Pa, at a radius (m) of at least zero; zero outside the contact.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -59,7 +59,7 @@ impl Contact {
         self.shear_at(&At::radius(radius))
     }
 
-    /// [`Contact::shear`] at each of `radii`, m: quicker than one by one.
+    /// [`Contact::shear`] at each of `radii`, m: faster than one by one.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -94,7 +94,7 @@ impl Contact {
         self.shear_unit() * sum
     }
 
-    /// All extrema of the shear stress with their exact radii, and what they amount to.
+    /// All extrema of the shear stress with their exact radii, and their largest, smallest and mean magnitude.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -110,9 +110,8 @@ impl Contact {
         self.residual_while(|| true).unwrap_or_else(|| Residual::of(self.shear(0.0), Vec::new(), false))
     }
 
-    /// As [`Contact::residual`], for as long as `keep_going` says so, which is asked at every kink of the slip history and knot
-    /// of the profile: the cost grows with the square of its depth.
-    /// `None` if it said no.
+    /// As [`Contact::residual`], while `keep_going` returns true, which is asked at every kink of the slip history and
+    /// knot of the profile: the cost grows with the square of its depth. `None` if it returned false.
     ///
     /// ```
     #[doc = include_str!("example.txt")]

@@ -1,4 +1,4 @@
-//! What a contact is made of, what it is told, and what it answers.
+//! The definition of a contact, its moves and its state.
 
 use super::contact::Contact;
 use super::elasticity::Elasticity;
@@ -18,7 +18,7 @@ pub struct Setup {
     pub preload: Preload,
 }
 
-/// Where a move leads, along a straight line in the quantities that it names.
+/// The end of a move, which is straight in the quantities named.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Move {
     /// The tangential target; without one the displacement stays.
@@ -41,13 +41,13 @@ pub enum Tangential {
 /// A normal target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normal {
-    /// Indentation d, m; below nought the bodies part.
+    /// Indentation d, m; below zero the bodies part.
     Indentation(f64),
     /// Normal force F_N, N.
     NormalForce(f64),
 }
 
-/// What the last move did to the contact.
+/// Which parts of the contact slipped in the last move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
     /// Nothing slipped.
@@ -75,7 +75,7 @@ pub struct State {
     pub contact_radius: f64,
     /// Radius of the part that did not slip in the last move, m.
     pub stick_radius: f64,
-    /// What the last move did.
+    /// Which parts the last move made slip.
     pub regime: Regime,
     /// Friction work since the start, J.
     pub dissipated_energy: f64,

@@ -1,8 +1,9 @@
 //! Tangential displacement of the surface, and how far it has slipped under the indenter.
 //!
-//! u(r) = (2/pi) int_0^min(r, a) u_x(x)/sqrt(r^2 - x^2) dx (Popov & Hess 2015). Over a piece w is straight in g, so that two
-//! integrals a ring give it: int dx/sqrt(r^2 - x^2) and int (y_outer - g)/sqrt(r^2 - x^2) dx. Under the indenter the slip
-//! U - u(r) is summed from w - W, as stored, so that it is nought to the last bit where nothing has ever slipped.
+//! u(r) = (2/pi) int_0^min(r, a) u_x(x)/sqrt(r^2 - x^2) dx (Popov & Hess 2015). Over a piece w is straight in g, so
+//! that two integrals a ring give it: int dx/sqrt(r^2 - x^2) and int (y_outer - g)/sqrt(r^2 - x^2) dx. Under the
+//! indenter the slip U - u(r) is summed from w - W, as stored, so that it is zero to the last bit where nothing has
+//! ever slipped.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -11,7 +12,7 @@ use super::double_double::DoubleDouble;
 use super::profile::{At, Point};
 
 impl Contact {
-    /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least nought, inside the contact or outside.
+    /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least zero, inside the contact or outside.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -24,7 +25,7 @@ impl Contact {
     #[must_use]
     pub fn surface_displacement(&self, radius: f64) -> f64 {
         let shift = self.history.shift().value();
-        let carried = self.spread(radius);
+        let carried = self.relative_displacement(radius);
         self.scale()
             * if radius > 0.0 {
                 carried + shift * FRAC_2_PI * arc_to(self.history.edge(), &At::radius(radius))
@@ -33,8 +34,8 @@ impl Contact {
             }
     }
 
-    /// Slip U - u(r), m, since the virgin contact; `None` outside the contact. Where the contact grew later, a ring's value
-    /// includes what the indenter moved before it touched.
+    /// Slip U - u(r), m, since the virgin contact; `None` outside the contact. Where the contact grew later, a ring's
+    /// value includes what the indenter moved before it touched.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -49,16 +50,16 @@ impl Contact {
         let touched = edge.level.value() > 0.0 && radius <= edge.radius;
         touched.then(|| {
             if self.friction <= 0.0 {
-                // The surface stays behind altogether, and the slip history does not follow the displacement.
+                // The surface does not move at all, and the slip history does not follow the displacement.
                 return self.displacement().value() + 0.0;
             }
             let started = (self.history.position() - self.history.shift()).value();
-            self.scale() * (started - self.spread(radius)) + 0.0
+            self.scale() * (started - self.relative_displacement(radius)) + 0.0
         })
     }
 
-    /// (2/pi) int_0^min(r, a) (w - W)/sqrt(r^2 - x^2) dx, as the pieces have it: w less its shift, m.
-    fn spread(&self, radius: f64) -> f64 {
+    /// (2/pi) int_0^min(r, a) (w - W)/sqrt(r^2 - x^2) dx, m, of the stored w - W, without the shift.
+    fn relative_displacement(&self, radius: f64) -> f64 {
         let Some(core) = self.history.pieces().first() else { return 0.0 };
         let at_core = core.line.at(DoubleDouble::ZERO).value();
         if radius <= 0.0 {

@@ -1,4 +1,5 @@
-//! A contact computes nothing that its caller does not ask for: the calls of the profile's costly functions are counted.
+//! A contact computes nothing that its caller does not ask for: the calls of the profile's costly functions are
+//! counted.
 
 use super::profile::RoundedPunch;
 use super::profile::count::{Calls, during};

@@ -1,4 +1,4 @@
-//! Paths that leave little stress, from a start, in a number of reversals, to an end; and what they leave.
+//! The design of a path that leaves little stress, with a given start, end and number of reversals.
 
 use super::super::contact::Contact;
 use super::super::double_double::DoubleDouble;
@@ -12,17 +12,18 @@ use super::{
     falling_amplitude, outermost_singular,
 };
 
-/// What rounding may leave of a displacement, relative to that of gross slip.
+/// A displacement below this share of that of gross slip is zero but for rounding.
 const ROUNDED: f64 = 1e-9;
-/// A history deeper than this is not judged before it is moved: its extrema cost its square.
-const DEEPEST: usize = 256;
+/// The present state of a deeper slip history is no candidate: the cost of its extrema grows with the square of the
+/// depth.
+const MAX_DEPTH: usize = 256;
 
 /// A law for the amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AmplitudeLaw {
     /// They fall linearly (eq. 20).
     Linear,
-    /// They leave equal peaks on the profile at hand.
+    /// They leave equal peaks on the given profile.
     EqualPeaks,
     /// They leave the smallest largest stress that is found, by equal alternating extrema.
     Minimax,
@@ -31,7 +32,7 @@ pub enum AmplitudeLaw {
 /// Where the path is to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
-    /// At displacement nought.
+    /// At displacement zero.
     DisplacementZero,
     /// Without a tangential force.
     ForceZero,
@@ -57,11 +58,11 @@ pub enum FirstMove {
     GrossSlip,
     /// With a stroke that wipes out the outer part of the history alone.
     Partial,
-    /// Not at all: less stress is there already than any other path would leave.
+    /// With none: the present state has less stress than any path found would leave.
     Stay,
 }
 
-/// A path and what it comes to.
+/// A path, and the contact at its end.
 #[derive(Clone, Debug)]
 pub struct Design {
     /// The displacements, m.
@@ -74,23 +75,23 @@ pub struct Design {
     pub contact: Contact,
     /// Its extrema.
     pub residual: Residual,
-    /// The largest shear stress, Pa, where it is judged; infinite at a vertical edge that carries some.
+    /// The largest shear stress, Pa, within the evaluation range; infinite at a vertical edge that carries some.
     pub largest: f64,
 }
 
-/// The radii, m, between which the stress is judged: all of them but where it is infinite whatever is done.
+/// The radii, m, between which the stress is evaluated: all but where it is infinite under every path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvaluationRange {
     /// From this radius on.
     pub from: f64,
     /// Up to this one.
     pub to: f64,
-    /// Whether the contact ends at a vertical edge, which only the end of a path can free of stress.
+    /// Whether the contact ends at a vertical edge, which only the last move of a path can unload.
     pub vertical: bool,
 }
 
 impl EvaluationRange {
-    /// Where the stress of a contact is judged at its present load.
+    /// The range of a contact at its present load.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -132,7 +133,7 @@ impl EvaluationRange {
     }
 }
 
-/// What a vertical edge carries, over the most that it can.
+/// The load of a vertical edge, over the largest that it can carry.
 fn edge_load(contact: &Contact) -> f64 {
     let (profile, history) = (&*contact.profile, &contact.history);
     let level = profile.rim_radius().map_or(0.0, |rim| profile.level(rim));
@@ -141,20 +142,20 @@ fn edge_load(contact: &Contact) -> f64 {
     carried.abs() / (history.edge().level.value() - level)
 }
 
-/// What is asked of every path of a family.
+/// What every candidate path has in common.
 struct DesignTask<'a> {
     contact: &'a Contact,
     reversals: usize,
     end: PathEnd,
-    judged: EvaluationRange,
+    range: EvaluationRange,
     keep_going: &'a dyn Fn() -> bool,
 }
 
-/// The path of a kind. From [`PathStart::Here`] a path of minimax may have fewer reversals than allowed.
+/// The path by an amplitude law. From [`PathStart::Here`] a path of minimax may have fewer reversals than allowed.
 ///
 /// # ExecutionErrors
-/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::Interrupted`] if
-/// `keep_going` said no.
+/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::Interrupted`]
+/// if `keep_going` returned false.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]
@@ -180,7 +181,7 @@ pub fn design(
     if contact.indentation() <= 0.0 {
         return Err(above(Quantity::Indentation, contact.indentation(), "bodies that do not touch carry no stress"));
     }
-    let task = DesignTask { contact, reversals, end, judged: EvaluationRange::of(contact), keep_going };
+    let task = DesignTask { contact, reversals, end, range: EvaluationRange::of(contact), keep_going };
     let (first, first_move) = match start {
         PathStart::Displacement(first) => (first, FirstMove::Given),
         PathStart::Here => (task.gross(), FirstMove::GrossSlip),
@@ -197,7 +198,7 @@ impl DesignTask<'_> {
         let history = &self.contact.history;
         let carried = history.pieces().first().map_or(0.0, |core| (core.line.offset + history.shift()).value());
         let apart = carried - history.position().value();
-        // At the centre w - W is `apart`: +d is gross slip forwards if that is not below nought, else -d is backwards.
+        // At the centre w - W is `apart`: +d is gross slip forwards if that is not below zero, else -d is backwards.
         let full = self.contact.gross_slip_displacement();
         if apart < 0.0 { -full } else { full }
     }
@@ -229,7 +230,7 @@ impl DesignTask<'_> {
         path.push(target);
         contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         let residual = contact.residual_while(self.keep_going).ok_or(Error::Interrupted)?;
-        let largest = self.judged.largest(&contact, &residual);
+        let largest = self.range.largest(&contact, &residual);
         Ok(Design { displacements: path, first_move, gap, contact, residual, largest })
     }
 
@@ -253,7 +254,7 @@ impl DesignTask<'_> {
         }
         let (profile, indentation) = (&*self.contact.profile, self.contact.indentation());
         let inner = profile.radius(indentation * (1.0 - first.abs() / full));
-        let from = inner.max(self.judged.from);
+        let from = inner.max(self.range.from);
         let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());
         let size = |index: usize| {
             let part = index as f64 / self.reversals.max(1) as f64;
@@ -267,7 +268,7 @@ impl DesignTask<'_> {
         Ok((0..=self.reversals).map(|index| sign * alternating(index, size(index))).collect())
     }
 
-    /// The best of what there is: equal alternating extrema, and the laws, which win where those cannot be had.
+    /// The best of all candidates: equal alternating extrema, and the two laws, for where those do not exist.
     fn best(&self, first: f64, first_move: FirstMove) -> Result<Design, Error> {
         let mut best: Option<Design> = None;
         let mut offer = |design: Result<Design, Error>| match design {
@@ -278,10 +279,10 @@ impl DesignTask<'_> {
                 Ok(())
             }
             Err(Error::Interrupted) => Err(Error::Interrupted),
-            // What a law or a construction cannot have is no candidate.
+            // A law or construction that does not exist here is no candidate.
             Err(_) => Ok(()),
         };
-        if first_move == FirstMove::GrossSlip && self.contact.memory_depth() <= DEEPEST && self.at_an_end() {
+        if first_move == FirstMove::GrossSlip && self.contact.memory_depth() <= MAX_DEPTH && self.at_an_end() {
             let stay = self.judge(vec![self.contact.state().displacement], FirstMove::Stay, None)?;
             if stay.largest <= 0.0 {
                 return Ok(stay);
@@ -320,7 +321,7 @@ impl DesignTask<'_> {
         for kind in [AmplitudeLaw::EqualPeaks, AmplitudeLaw::Linear] {
             offer(self.by_law(kind, first, first_move))?;
         }
-        if self.judged.vertical && self.end != PathEnd::DisplacementZero {
+        if self.range.vertical && self.end != PathEnd::DisplacementZero {
             // Without a force a punch carries nothing at all.
             let path = falling_amplitude(self.reversals, first).collect();
             offer(DesignTask { end: PathEnd::ForceZero, ..*self }.judge(path, first_move, None))?;
@@ -328,7 +329,7 @@ impl DesignTask<'_> {
         if (self.keep_going)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
 
-    /// The path with its last displacement nought if it is to be and nearly is.
+    /// The path with its last displacement zero if it is to be and nearly is.
     fn ended(&self, mut path: Vec<f64>) -> Vec<f64> {
         if let (PathEnd::DisplacementZero, Some(last)) = (self.end, path.last_mut())
             && last.abs() <= ROUNDED * self.contact.gross_slip_displacement()

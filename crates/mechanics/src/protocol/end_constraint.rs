@@ -1,18 +1,18 @@
 //! EqualExtrema alternating extrema with a prescribed end.
 //!
-//! The kinks of the smallest E lead somewhere. To lead elsewhere one extremum must stay below the others. If it is one of
-//! the kinks, its share and E are the two unknowns of two equations, the end and the stress of the core, solved by Broyden's
-//! method from the free optimum. If it is the core, E alone is sought. Among few kinks each is tried, else the outermost: of
-//! many extrema it matters little which one stays below.
+//! The kinks of the smallest E lead somewhere. To lead elsewhere one extremum must stay below the others. If it is one
+//! of the kinks, its share and E are the two unknowns of two equations, the end and the stress of the core, solved by
+//! Broyden's method from the free optimum. If it is the core, E alone is sought. Among few kinks each is tried, else
+//! the outermost: of many extrema it matters little which one stays below.
 
 use super::super::profile::{Point, Ring};
 use super::minimax::{KinkSequence, Problem};
 use super::{DoubleDouble, PathEnd};
 
-/// So many kinks are tried one by one.
+/// Up to this many kinks each is tried.
 pub(super) const FEW: usize = 8;
-/// Looks at the kinks, at the most.
-const LOOKS: usize = 40;
+/// The largest number of evaluations of the kinks.
+const MAX_EVALUATIONS: usize = 40;
 /// What the two equations may miss, relative to the indentation and to E.
 const TOLERANCE: f64 = 1e-11;
 /// The first steps, relative, and, over the number of kinks, those by which E is raised.
@@ -22,8 +22,8 @@ const PACE: f64 = 0.1;
 const LEAST: f64 = 1e-3;
 const RETRIES: usize = 8;
 
-/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence for
-/// each extremum that may stay below the others.
+/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence
+/// for each extremum that may stay below the others.
 pub(super) fn kinks(
     problem: &Problem<'_>,
     limit: f64,
@@ -46,8 +46,9 @@ struct Equations<'a> {
 }
 
 impl Equations<'_> {
-    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with what they miss.
-    fn look(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
+    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with what they
+    /// miss.
+    fn evaluate(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
         let marched = self.problem.march_with(self.limit * stress, (index, share), self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
@@ -55,13 +56,13 @@ impl Equations<'_> {
     /// The kinks if the extremum of this index stays below the others.
     fn by_share(&self, index: usize) -> Option<Vec<Point>> {
         let mut at = [1.0, 1.0];
-        let (mut missed, mut marched) = self.look(index, at)?;
+        let (mut missed, mut marched) = self.evaluate(index, at)?;
         // The Jacobian by differences once, then kept up.
-        let (by_stress, _) = self.look(index, [1.0 + PROBE, 1.0])?;
-        let (by_share, _) = self.look(index, [1.0, 1.0 - PROBE])?;
+        let (by_stress, _) = self.evaluate(index, [1.0 + PROBE, 1.0])?;
+        let (by_share, _) = self.evaluate(index, [1.0, 1.0 - PROBE])?;
         let row = |row: usize| [(by_stress[row] - missed[row]) / PROBE, (missed[row] - by_share[row]) / PROBE];
         let mut jacobian = [row(0), row(1)];
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if missed.iter().all(|miss| miss.abs() <= TOLERANCE) {
                 return (at[1] <= 1.0 + TOLERANCE).then_some(marched.kinks);
             }
@@ -80,7 +81,7 @@ impl Equations<'_> {
             step[1] = step[1].max(LEAST - at[1]);
             let mut found = None;
             for _ in 0..RETRIES {
-                found = self.look(index, [at[0] + step[0], at[1] + step[1]]);
+                found = self.evaluate(index, [at[0] + step[0], at[1] + step[1]]);
                 if found.is_some() {
                     break;
                 }
@@ -105,13 +106,14 @@ impl Equations<'_> {
 
     /// The kinks of the smallest E above the free optimum that leads to the end by itself.
     fn by_core(&self) -> Option<Vec<Point>> {
-        let look = |stress: f64| self.look(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
+        let evaluate =
+            |stress: f64| self.evaluate(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
         // At about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
         let mut step = PACE / self.problem.reversals as f64;
-        let (mut low, mut at_low) = (1.0, look(1.0)?.0);
+        let (mut low, mut at_low) = (1.0, evaluate(1.0)?.0);
         let (mut high, mut at_high) = (low, at_low);
-        for _ in 0..LOOKS {
-            match look(low + step) {
+        for _ in 0..MAX_EVALUATIONS {
+            match evaluate(low + step) {
                 Some((value, _)) => {
                     (high, at_high) = (low + step, value);
                     if at_high * at_low <= 0.0 {
@@ -126,9 +128,9 @@ impl Equations<'_> {
             return None;
         }
         // False position with the weight of an end halved that stays (Illinois).
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             let middle = (low * at_high - high * at_low) / (at_high - at_low);
-            let (value, kinks) = look(middle)?;
+            let (value, kinks) = evaluate(middle)?;
             if value.abs() <= TOLERANCE || high - low <= TOLERANCE {
                 return Some(kinks);
             }

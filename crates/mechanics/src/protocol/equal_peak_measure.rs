@@ -1,8 +1,8 @@
 //! s(x) = int g'(t)^2/t dt from a cut-off radius to the edge of the contact, and its inverse.
 //!
-//! Between two kinks k of the profile, g' is analytic in t = sqrt(x^2 - k^2), so that bisected panels of eight Gauss points
-//! reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n with n near one,
-//! s comes from all of them.
+//! Between two kinks k of the profile, g' is analytic in t = sqrt(x^2 - k^2), so that bisected panels of eight Gauss
+//! points reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n
+//! with n near one, s comes from all of them.
 
 use super::super::profile::{Profile, gauss::Panel};
 
@@ -10,7 +10,7 @@ use super::super::profile::{Profile, gauss::Panel};
 const TOLERANCE: f64 = 1e-12;
 /// How often a panel may be halved.
 const HALVINGS: u32 = 60;
-/// Where the way down to the tip ends, m: g is a power of x there.
+/// Below this radius, m, g is a power of x.
 const TIP: f64 = 1e-290;
 
 /// s between two radii.
@@ -53,7 +53,7 @@ impl Along {
 }
 
 impl<'a> EqualPeakMeasure<'a> {
-    /// `None` if s is not finite, or nought: a flat has no peaks.
+    /// `None` if s is not finite, or zero: a flat has no peaks.
     pub(super) fn new(profile: &'a Profile, inner: f64, outer: f64) -> Option<EqualPeakMeasure<'a>> {
         let mut spread = EqualPeakMeasure { profile, leaves: Vec::new(), sum: 0.0, rest: 0.0 };
         let mut top = outer;
@@ -132,7 +132,7 @@ impl<'a> EqualPeakMeasure<'a> {
         }
     }
 
-    /// The radius, m, at a fraction of s from the inner end; nought in what is left at the tip, where the level is too.
+    /// The radius, m, at a fraction of s from the inner end; zero in what is left at the tip, where the level is too.
     pub(super) fn radius(&self, fraction: f64) -> f64 {
         let wanted = (1.0 - fraction) * (self.sum + self.rest);
         if wanted >= self.sum && self.rest > 0.0 {

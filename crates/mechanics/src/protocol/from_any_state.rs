@@ -1,12 +1,12 @@
-//! The best strokes from any state: alternating extrema outside, and inside what the history has left.
+//! The best strokes from any state: alternating extrema outside a cut, the stress of the slip history inside it.
 //!
-//! The first stroke slips down to a cut, and the strokes after it to kinks ever nearer to the edge. For a largest stress E the
-//! kinks follow from the edge inwards as in `minimax`; they do not depend on what lies inside the cut. The cut is then
-//! where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is lowered until the
-//! inside would be above it.
+//! The first stroke slips down to a cut, and the strokes after it to kinks ever nearer to the edge. For a largest
+//! stress E the kinks follow from the edge inwards as in `minimax`; they do not depend on what lies inside the cut. The
+//! cut is then where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is
+//! lowered until the inside would be above it.
 //!
-//! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and a last
-//! stroke, during which nothing slips but the edge itself, takes the load off it.
+//! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
+//! a last stroke, during which nothing slips but the edge itself, takes the load off it.
 
 use super::super::contact::Contact;
 use super::super::profile::{At, Point, Ring};
@@ -14,17 +14,17 @@ use super::super::slip_history::Line;
 use super::minimax::Problem;
 use super::{DoubleDouble, PathEnd, cutoff_of, outermost_singular};
 
-/// More pieces than this inside are not looked at one by one for every E.
-const DEEPEST: usize = 256;
-/// Radii that are looked at beside the kinks of the history, and cuts that are tried.
+/// A slip history of more pieces is refused, because each piece is evaluated for every E.
+const MAX_DEPTH: usize = 256;
+/// Number of sampled radii besides the kinks of the history, and of cuts that are tried.
 const GRID: usize = 64;
 const CUTS: usize = 16;
 /// Among the cuts tried none is this much above the best there is.
 const COARSE: f64 = 1.1;
 /// Halvings of a bracket.
 const HALVINGS: usize = 60;
-/// Looks at E, and how it is changed until it is bracketed.
-const LOOKS: usize = 48;
+/// The largest number of evaluations of E, and the factors that bracket it.
+const MAX_EVALUATIONS: usize = 48;
 const STRIDE: f64 = 1.6;
 const PACE: f64 = 1.06;
 /// What E may be off, relative to itself.
@@ -35,13 +35,13 @@ const LEAST: f64 = 1e-4;
 /// Strokes from the state of a contact.
 pub(super) struct FromAnyState<'a> {
     problem: Problem<'a>,
-    /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else nought.
+    /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else zero.
     edge: DoubleDouble,
     rim: f64,
     /// The history from the centre outward, and what turns a line into w - W.
     history: Vec<(Ring, Line)>,
-    /// Where the inside is looked at, from the centre outward.
-    looks: Vec<SampleRadius>,
+    /// The sampled radii, from the centre outward.
+    samples: Vec<SampleRadius>,
     reference: DoubleDouble,
     /// The direction of the last stroke that slips inside, and of the first.
     last: f64,
@@ -57,12 +57,12 @@ struct Strokes {
 }
 
 impl<'a> FromAnyState<'a> {
-    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or where
-    /// the history is too deep.
+    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or
+    /// where the history is too deep.
     pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: PathEnd) -> Option<FromAnyState<'a>> {
         let (profile, history) = (&*contact.profile, &contact.history);
         let edge = *history.edge();
-        if history.pieces().len() > DEEPEST {
+        if history.pieces().len() > MAX_DEPTH {
             return None;
         }
         let mut rings: Vec<_> = history.rings().map(|(ring, line)| (ring, *line)).collect();
@@ -79,13 +79,13 @@ impl<'a> FromAnyState<'a> {
         let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
         let height = rim.map_or(0.0, |level| (edge.level - DoubleDouble::from(level)).value());
         let reference = history.position() - history.shift();
-        let looks = looks(&problem, &rings, last);
+        let samples = samples(&problem, &rings, last);
         Some(FromAnyState {
             problem,
             edge: edge.level,
             rim: height,
             history: rings,
-            looks,
+            samples,
             reference,
             last,
             first,
@@ -133,7 +133,8 @@ impl<'a> FromAnyState<'a> {
         })
     }
 
-    /// What the end misses with a cut at a level, in the direction of the first stroke: it falls as the cut goes outwards.
+    /// What the end misses with a cut at a level, in the direction of the first stroke: it falls as the cut goes
+    /// outwards.
     fn miss(&self, kinks: &[Point], level: DoubleDouble) -> f64 {
         let value = match self.end {
             PathEnd::Free => 0.0,
@@ -143,7 +144,8 @@ impl<'a> FromAnyState<'a> {
         self.first * value
     }
 
-    /// The largest stress inside the last kink, for a cut; `outside` is that of the rings beyond the kink, look by look.
+    /// The largest stress inside the last kink, for a cut; `outside` is that of the rings beyond the kink, sample by
+    /// sample.
     fn worst(&self, outside: &[f64], kinks: &[Point], cut: &Point) -> f64 {
         let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
         let ring = Ring::between(*cut, *kinks.last().unwrap_or(&self.problem.edge));
@@ -152,11 +154,11 @@ impl<'a> FromAnyState<'a> {
         let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
         let kept = kept.map(|(ring, line)| (Ring::between(ring.inner, *cut), -self.last * line.slope.value()));
         let mut worst = 0.0_f64;
-        for (look, outside) in self.looks.iter().zip(outside) {
-            let mut stress = outside + sign * profile.kernel(&look.at, &ring);
-            if look.at.radius <= cut.radius {
-                let part = kept.map_or(0.0, |(ring, slope)| slope * profile.kernel(&look.at, &ring));
-                stress += look.below[whole] + part;
+        for (sample, outside) in self.samples.iter().zip(outside) {
+            let mut stress = outside + sign * profile.kernel(&sample.at, &ring);
+            if sample.at.radius <= cut.radius {
+                let part = kept.map_or(0.0, |(ring, slope)| slope * profile.kernel(&sample.at, &ring));
+                stress += sample.below[whole] + part;
             }
             worst = worst.max(stress.abs());
         }
@@ -167,16 +169,16 @@ impl<'a> FromAnyState<'a> {
         worst
     }
 
-    /// The stress, at each look inside the last kink, of the rings beyond it.
+    /// The stress, at each sample inside the last kink, of the rings beyond it.
     fn outside(&self, kinks: &[Point]) -> Vec<f64> {
         let Some((last, beyond)) = kinks.split_last() else {
-            return vec![0.0; self.looks.len()];
+            return vec![0.0; self.samples.len()];
         };
-        let inside = self.looks.iter().take_while(|look| look.at.radius < last.radius);
-        inside.map(|look| self.problem.shear_down_to(*last, beyond, &look.at)).collect()
+        let inside = self.samples.iter().take_while(|sample| sample.at.radius < last.radius);
+        inside.map(|sample| self.problem.shear_down_to(*last, beyond, &sample.at)).collect()
     }
 
-    /// The strokes of a largest stress E, if there are any; `Err` if `keep_going` said no.
+    /// The strokes of a largest stress E, if there are any; `Err` if `keep_going` returned false.
     fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Result<StrokeOutcome, ()> {
         let marched = self.problem.march(limit, keep_going).ok_or(())?;
         if marched.kinks.len() < self.problem.reversals {
@@ -230,7 +232,8 @@ impl<'a> FromAnyState<'a> {
         Ok(if fits(&cut) { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight })
     }
 
-    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `keep_going` said no.
+    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `keep_going`
+    /// returned false.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<Vec<f64>> {
         let problem = &self.problem;
         let middle = At::radius(0.5 * (problem.cutoff + problem.edge.radius));
@@ -253,7 +256,7 @@ impl<'a> FromAnyState<'a> {
         };
         if step(guess)? {
             (low, high) = (guess / STRIDE, guess);
-            for _ in 0..LOOKS {
+            for _ in 0..MAX_EVALUATIONS {
                 if !step(low)? {
                     break;
                 }
@@ -263,9 +266,10 @@ impl<'a> FromAnyState<'a> {
                 }
             }
         } else {
-            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in small steps.
-            let found = (1..=LOOKS).flat_map(|look| [look as i32, -(look as i32)]).find_map(|look| {
-                let limit = guess * PACE.powi(look);
+            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in
+            // small steps.
+            let found = (1..=MAX_EVALUATIONS).flat_map(|power| [power as i32, -(power as i32)]).find_map(|power| {
+                let limit = guess * PACE.powi(power);
                 match step(limit) {
                     Some(false) => None,
                     Some(true) => Some(Some(limit)),
@@ -274,14 +278,14 @@ impl<'a> FromAnyState<'a> {
             });
             high = found??;
             low = high / PACE;
-            for _ in 0..LOOKS {
+            for _ in 0..MAX_EVALUATIONS {
                 if !step(low)? {
                     break;
                 }
                 (high, low) = (low, low / PACE);
             }
         }
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if high - low <= TOLERANCE * high {
                 break;
             }
@@ -306,7 +310,7 @@ impl<'a> FromAnyState<'a> {
     }
 }
 
-/// A radius where the inside is looked at.
+/// A sampled radius inside the last kink.
 struct SampleRadius {
     at: At,
     /// The stress there of so many rings of the history, from the centre outward, over G* m/pi.
@@ -314,13 +318,13 @@ struct SampleRadius {
 }
 
 /// Even radii, and the kinks of the history.
-fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<SampleRadius> {
+fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<SampleRadius> {
     let (least, most) = (problem.cutoff, problem.edge.radius);
     let even = (0..GRID).map(|index| At::radius(least + (most - least) * index as f64 / GRID as f64));
     let bends = history.iter().map(|(ring, _)| ring.inner).filter(|bend| bend.radius > least && bend.radius < most);
     let mut all: Vec<At> = even.chain(bends.map(|bend| At::point(&bend))).collect();
     all.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-    let look = |at: At| {
+    let sample = |at: At| {
         let mut below = Vec::with_capacity(history.len() + 1);
         let mut sum = 0.0;
         for (ring, line) in history {
@@ -333,7 +337,7 @@ fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Samp
         below.push(sum);
         SampleRadius { at, below }
     };
-    all.into_iter().map(look).collect()
+    all.into_iter().map(sample).collect()
 }
 
 /// What an E comes to.

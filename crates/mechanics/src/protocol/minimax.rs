@@ -1,17 +1,18 @@
 //! The sequence of amplitudes whose largest remaining shear stress is smallest, by equal alternating extrema.
 //!
-//! After gross slip and N reversals the shear stress is an alternating sum of kernels between the radii where slip began. At
-//! such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the other from the edge
-//! inwards: each where the stress first meets E with the other sign. E is then lowered until the centre meets it too.
+//! After gross slip and N reversals the shear stress is an alternating sum of kernels between the radii where slip
+//! began. At such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the
+//! other from the edge inwards: each where the stress first meets E with the other sign. E is then lowered until the
+//! centre meets it too.
 
 use super::super::profile::{At, Point, Profile, Ring};
 use super::DoubleDouble;
 
-/// Looks at the level E at the most, after it has been bracketed.
-const LOOKS: usize = 80;
+/// The largest number of evaluations of E, after it has been bracketed.
+const MAX_EVALUATIONS: usize = 80;
 /// Steps of one search for a kink, and of its refinement, at the most.
 const STEPS: usize = 400;
-/// Radii at which the core is looked at where its stress need not fall outwards.
+/// Radii at which the core is sampled where its stress need not fall outwards.
 const CORE: usize = 32;
 /// Sections of the stretch about the largest of these, and their ratio.
 const SECTIONS: usize = 22;
@@ -37,7 +38,8 @@ impl KinkSequence {
     }
 }
 
-/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over the largest.
+/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over
+/// the largest.
 pub(super) struct EqualExtrema {
     pub(super) levels: Vec<f64>,
     pub(super) ratio: f64,
@@ -188,13 +190,13 @@ impl Problem<'_> {
         keep_going: &dyn Fn() -> bool,
     ) -> Option<()> {
         let mut over = best.excess;
-        for look in 0..LOOKS {
+        for evaluation in 0..MAX_EVALUATIONS {
             if *high - low <= TOLERANCE * *high || best.excess.is_some_and(|excess| excess.abs() <= TOLERANCE) {
                 break;
             }
-            // Every fifth look halves, so that the bracket closes whatever the curve.
+            // Every fifth evaluation halves, so that the bracket closes whatever the curve.
             let share = match (under, over) {
-                (Some(above), Some(below)) if look % 5 != 4 && above > below => above / (above - below),
+                (Some(above), Some(below)) if evaluation % 5 != 4 && above > below => above / (above - below),
                 _ => 0.5,
             };
             let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (*high - low);
@@ -212,7 +214,7 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The smallest E, and its kinks; `None` if `keep_going` said no, or there is no such E.
+    /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = At::radius(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.shear(&[], &middle) / (self.reversals as f64).sqrt();
@@ -222,7 +224,7 @@ impl Problem<'_> {
         let (mut low, mut high) = (guess, guess);
         let mut best = self.march(high, keep_going)?;
         let mut under = best.excess;
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if best.fits() {
                 break;
             }
@@ -230,7 +232,7 @@ impl Problem<'_> {
             high *= STRIDE;
             best = self.march(high, keep_going)?;
         }
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if low < high {
                 break;
             }

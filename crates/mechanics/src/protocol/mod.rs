@@ -1,9 +1,10 @@
 //! Paths that lower the residual shear stress.
 //!
-//! Each reversal leaves a kink of the shear stress at the radius where its slip began. Kraft & Pohrt (2016) let the amplitude
-//! fall linearly, which gives equal peaks on a sphere alone. For any profile the peaks are equal where the steps of the
-//! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
-//! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
+//! Each reversal leaves a kink of the shear stress at the radius where its slip began. Kraft & Pohrt (2016) let the
+//! amplitude fall linearly, which gives equal peaks on a sphere alone. For any profile the peaks are equal where the
+//! steps of the amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are
+//! spread evenly in s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear
+//! fall.
 
 mod bound;
 mod design;
@@ -30,7 +31,7 @@ use super::range::{Quantity, short};
 pub const DEFAULT_CUTOFF: f64 = 0.1;
 
 /// The linearly falling amplitude of Kraft & Pohrt (2016), eq. 20: the displacements
-/// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is nought.
+/// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is zero.
 ///
 /// `reversals` is N, `amplitude` is A, m.
 ///
@@ -46,12 +47,12 @@ pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item
     })
 }
 
-/// The outermost radius inside `edge`, m, at which the stress is infinite whatever is done, if there is one.
+/// The outermost radius inside `edge`, m, at which the stress is infinite under every path, if there is one.
 fn outermost_singular(profile: &Profile, edge: f64) -> Option<f64> {
     profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max)
 }
 
-/// The radius, m, from which on the stress is judged.
+/// The radius, m, from which on the stress is evaluated.
 fn cutoff_of(singular: Option<f64>, edge: f64) -> f64 {
     singular.map_or(0.0, |least| least + DEFAULT_CUTOFF * (edge - least))
 }
@@ -64,17 +65,17 @@ fn alternating(index: usize, size: f64) -> f64 {
 /// A path of equal peaks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EqualPeaks {
-    /// The displacements, m: `reversals` + 1 of them, the last nought.
+    /// The displacements, m: `reversals` + 1 of them, the last zero.
     pub displacements: Vec<f64>,
-    /// The radius, m, from which on the peaks are equal; nought if all are.
+    /// The radius, m, from which on the peaks are equal; zero if all are.
     pub cutoff_radius: f64,
 }
 
 /// The law of equal peaks for the profile and the present load of `contact`, from gross slip to rest.
 ///
-/// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made equal
-/// from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge. Profiles that
-/// need none have none unless it is given.
+/// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made
+/// equal from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge.
+/// Profiles that need none have none unless it is given.
 ///
 /// # ExecutionErrors
 /// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
@@ -121,22 +122,24 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
 /// A path with equal alternating extrema.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimax {
-    /// The displacements, m: that of gross slip, and one a reversal; the last is not nought.
+    /// The displacements, m: that of gross slip, and one a reversal; the last is not zero.
     pub displacements: Vec<f64>,
-    /// The radius, m, from which on the stress is minimised; nought if it is over the whole contact.
+    /// The radius, m, from which on the stress is minimised; zero if it is over the whole contact.
     pub cutoff_radius: f64,
-    /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: nought where all are
-    /// equal.
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: zero where all
+    /// are equal.
     pub gap: f64,
 }
 
-/// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end left free.
+/// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end
+/// left free.
 ///
-/// Where the stress is infinite whatever is done (the tip of a cone, the rim of a truncated profile) it is minimised from
+/// Where the stress is infinite under every path (the tip of a cone, the rim of a truncated profile) it is minimised
+/// from
 /// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `keep_going` is asked before each kink that is sought.
 ///
-/// `None` if `keep_going` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
-/// vertical edge, where the stress stays infinite.
+/// `None` if `keep_going` returned false, and where there is nothing to minimise: without reversals, friction or
+/// contact, and at a vertical edge, where the stress stays infinite.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]
@@ -150,8 +153,8 @@ pub fn minimax(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> boo
     minimax_to(contact, reversals, contact.gross_slip_displacement(), PathEnd::Free, keep_going).pop()
 }
 
-/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then,
-/// and there is a path for each that may be. None without an answer.
+/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is
+/// smaller then, and there is a path for each that may be. None without an answer.
 fn minimax_to(
     contact: &Contact,
     reversals: usize,

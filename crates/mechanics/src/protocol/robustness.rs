@@ -1,27 +1,27 @@
-//! What remains if a path is not followed exactly: the same again and again, each time with errors of its own.
+//! The stress that remains if a path is not followed exactly: repeated trials with random errors.
 
 use super::super::contact::Contact;
 use super::super::error::Error;
 use super::super::state::{Move, Tangential};
 use super::design::EvaluationRange;
 
-/// What may be off.
+/// The random errors of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExecutionErrors {
     /// Standard deviation of each displacement, relative to itself; normally distributed.
     pub amplitude: f64,
-    /// The part that the coefficient of friction may be off either way, the same all along a path; evenly distributed.
+    /// Largest relative error of the coefficient of friction, the same all along a path; evenly distributed.
     pub friction: f64,
-    /// Where the sequence of random numbers begins.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
 /// The largest shear stress, Pa, that a path of displacements, m, leaves in each of so many trials, the smallest first.
-/// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the same
-/// errors, whatever the path.
+/// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the
+/// same errors, whatever the path.
 ///
 /// # ExecutionErrors
-/// What `make` and the moves refuse, and [`Error::Interrupted`] if `keep_going` said no.
+/// Those of `make` and of the moves, and [`Error::Interrupted`] if `keep_going` returned false.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]

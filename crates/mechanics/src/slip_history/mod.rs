@@ -1,12 +1,12 @@
-//! The memory of the contact: a stack of straight pieces instead of springs.
+//! The slip history of a contact: a stack of straight pieces.
 //!
-//! Let y = g(x) run from 0 at the centre to the indentation d at the edge, w = u_x/m be the tangential displacement of the
-//! surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches d - y. For
-//! every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes within [-1, 1], and the
-//! slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole pieces beyond the
-//! bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed. Stuck pieces are
-//! stored relative to the indenter, so what rides along is not touched. The rule is Masing's with wiping-out at constant
-//! load, and that of the history diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
+//! Let y = g(x) run from 0 at the centre to the indentation d at the edge, w = u_x/m be the tangential displacement of
+//! the surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches d -
+//! y. For every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes within [-1,
+//! 1], and the slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole
+//! pieces beyond the bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed.
+//! Stuck pieces are stored relative to the indenter, so that a move does not change them. The rule is Masing's with
+//! wiping-out at constant load, and that of the history diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
 //!
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
@@ -17,15 +17,15 @@ use super::double_double::DoubleDouble;
 use super::friction_work::{self, SlipRing};
 use super::profile::{Moments, Point, Profile, Ring};
 
-/// A stuck core thinner than this, relative to the indentation, is gross slip: the displacement of gross slip is itself rounded.
-/// So is w at the edge.
-pub(super) const SAME: f64 = 2.0 * f64::EPSILON;
-/// Two turning points closer than this, relative to their distance from the edge, are one: met again, a level differs in
-/// its last digits.
-pub(super) const MET_AGAIN: f64 = 1e-28;
+/// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
+/// is itself rounded. w at the edge is rounded by as much.
+pub(super) const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+/// Two turning points closer than this, relative to their distance from the edge, are one: a level that is reached
+/// again differs in its last digits.
+pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
 
 /// The largest part of a change of load that may be its rounding.
-const ROUNDED: f64 = 1e-6;
+const ROUNDED_SHARE: f64 = 1e-6;
 
 /// A straight part of w - W over y: `offset + slope * y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,9 +52,9 @@ fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
     }
 }
 
-/// What force and elastic energy need of the pieces, summed from the centre outward:
-/// `force` = sum of slope * int X dy, `energy` = sum of slope * int (w - W) X dy, and `size`, the magnitudes that `force` is
-/// the sum of: what rounding errors scale with.
+/// What force and elastic energy need of the pieces, summed from the centre outward: `force` = sum of slope * int X dy,
+/// `energy` = sum of slope * int (w - W) X dy, and `size`, the magnitudes that `force` is the sum of: what rounding
+/// errors scale with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sums {
     force: DoubleDouble,
@@ -75,7 +75,7 @@ pub(super) struct Piece {
 pub(super) struct SlipHistory {
     /// From the centre outward; empty without contact.
     pieces: Vec<Piece>,
-    /// Level d and radius a of the edge; a level below nought is a gap.
+    /// Level d and radius a of the edge; a level below zero is a gap.
     edge: Point,
     total: Sums,
     /// W, and the value it had when the stack was last begun: pieces are relative to the latter.
@@ -85,7 +85,7 @@ pub(super) struct SlipHistory {
     slip_from: Option<Point>,
 }
 
-/// What a move did to the contact beyond its new state.
+/// The result of a move beyond the new state.
 #[must_use]
 pub(super) struct MoveResult {
     /// Friction work over 2 G* m^2, m^3.
@@ -104,7 +104,7 @@ impl SlipHistory {
             slip_from: None,
         };
         if history.in_contact() {
-            history.lay_core(profile);
+            history.push_core(profile);
         }
         history
     }
@@ -171,7 +171,7 @@ impl SlipHistory {
         self.pieces.capacity() * size_of::<Piece>()
     }
 
-    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`. The work on the way is returned.
+    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`.
     pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
         self.slip_from = None;
         if !self.in_contact() {
@@ -201,8 +201,8 @@ impl SlipHistory {
         self.reference = position;
     }
 
-    /// The whole contact as one piece that carries nothing.
-    fn lay_core(&mut self, profile: &Profile) {
+    /// The whole contact as one unloaded piece.
+    fn push_core(&mut self, profile: &Profile) {
         let line = Line { offset: DoubleDouble::ZERO, slope: DoubleDouble::ZERO };
         self.pieces.push(Piece { inner: profile.point(DoubleDouble::ZERO), line, below: self.total });
     }
@@ -251,7 +251,7 @@ impl SlipHistory {
             self.position = w1;
             let trial = self.pieces.last().map_or(DoubleDouble::ZERO, |top| top.line.at(d1)) + self.shift();
             if trial.abs().value() <= round_off(d1, self.shift(), dd) {
-                // A rise taken back the same way.
+                // The move takes the last rise of the load back along the same line.
                 self.close(profile);
                 return MoveResult { work };
             }
@@ -319,7 +319,8 @@ impl SlipHistory {
         MoveResult { work }
     }
 
-    /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift` undoes.
+    /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift`
+    /// undoes.
     fn push_through(
         &mut self,
         moments: &Moments,
@@ -364,13 +365,14 @@ impl Sums {
     }
 }
 
-/// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far it
-/// has slid before does not count. A change of load by a few ulp is meant as it is given: there the path is taken at its word.
+/// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far
+/// it has slid before does not count. A change of the load by a few units in the last place is followed exactly as
+/// given.
 fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDouble) -> f64 {
-    (SAME * (indentation.value() + shift.value().abs())).min(ROUNDED * change.value().abs())
+    (ROUND_OFF * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change.value().abs())
 }
 
-/// The edge of a contact at `indentation`; with a gap there is none, and its radius is nought.
+/// The edge of a contact at `indentation`; with a gap there is none, and its radius is zero.
 fn edge_at(profile: &Profile, indentation: DoubleDouble) -> Point {
     if indentation.value() < 0.0 {
         Point { level: indentation, radius: 0.0, square: DoubleDouble::ZERO }

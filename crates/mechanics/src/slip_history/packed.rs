@@ -1,7 +1,8 @@
-//! The history as bytes: edge, sums up to it, position, reference, whether and where the last slip began, then the pieces.
+//! The history as bytes: edge, sums up to it, position, reference, whether and where the last slip began, then the
+//! pieces.
 //!
-//! The pieces come last, so that their number follows from the length, and no length that is written can ask for more room
-//! than there are bytes.
+//! The pieces come last, so that their number follows from the length, and no length that is written can ask for more
+//! room than there are bytes.
 
 use super::super::double_double::DoubleDouble;
 use super::super::packed::{Reader, Writer};
@@ -38,8 +39,8 @@ impl SlipHistory {
         }
     }
 
-    /// `None` unless the numbers are finite, the pieces rise from the centre to the edge, and there are some if and only if
-    /// there is a contact.
+    /// `None` unless the numbers are finite, the pieces rise from the centre to the edge, and there are some if and
+    /// only if there is a contact.
     pub(in super::super) fn unpack(reader: &mut Reader<'_>) -> Option<SlipHistory> {
         let edge = reader.point()?;
         let total = Sums::unpack(reader)?;

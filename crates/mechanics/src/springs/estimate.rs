@@ -1,8 +1,9 @@
-//! What the discretisation costs: fewer springs on the same path, the exact normal contact, and bends between the springs.
+//! Error estimates of the spring foundation: fewer springs, the exact normal contact, and second differences.
 //!
-//! Each one_row may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell dx, is off
-//! by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of 1/sqrt(x^2 - r^2): what the
-//! springs show of second differences bounds both. Where more than a bend falls into a cell, springs of another number differ.
+//! Each one_row may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell
+//! dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of 1/sqrt(x^2
+//! - r^2): what the springs show of second differences bounds both. Where more than a bend falls into a cell, springs
+//! of another number differ.
 
 use std::f64::consts::PI;
 
@@ -15,9 +16,9 @@ const COMPARED: usize = 64;
 const NEAREST: f64 = 2.0;
 
 impl Springs {
-    /// What the discretisation has cost: the largest of several estimates. The one of the stress is for radii some cells (of
-    /// twice the largest contact radius over the number of springs) away from the kinks of the displacement, the centre, the
-    /// edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    /// What the discretisation has cost: the largest of several estimates. The one of the stress is for radii some
+    /// cells (of twice the largest contact radius over the number of springs) away from the kinks of the displacement,
+    /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -57,7 +58,8 @@ impl Springs {
             .filter(move |radius| singular.iter().all(|at| (radius - at).abs() > near))
     }
 
-    /// Magnitudes of the second differences of the displacement, m, at each spring and just outside: (radius, weight, bend).
+    /// Magnitudes of the second differences of the displacement, m, at each spring and just outside: (radius, weight,
+    /// bend).
     fn bends(&self) -> Vec<(f64, f64, f64)> {
         let springs: Vec<_> = self.in_contact().copied().collect();
         let carried = |index: usize| springs.get(index).map_or(0.0, |spring| spring.carried);

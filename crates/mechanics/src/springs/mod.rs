@@ -1,8 +1,8 @@
-//! The paper's spring foundation: an independent second solver, and the yardstick of the first.
+//! The spring foundation of the paper: a discrete solver, independent of the exact one, to compare with.
 //!
-//! N springs at the midpoints of equal cells over twice the reach (Kraft & Pohrt 2016, section 2): normal stiffness E* dx,
-//! tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to order
-//! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
+//! N springs at the midpoints of equal cells over twice the reach (Kraft & Pohrt 2016, section 2): normal stiffness E*
+//! dx, tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to
+//! order N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
 mod estimate;
 mod shear_evaluation;
@@ -33,9 +33,9 @@ pub struct Springs {
     dissipated: f64,
     slipped: bool,
     stick_radius: f64,
-    /// How far a prescribed force may have misplaced the indenter, m.
+    /// Error of the displacement under a prescribed force, m.
     misplaced: f64,
-    /// The same on fewer springs, which shows how far the number matters.
+    /// The same contact on fewer springs, for the error estimate.
     coarser: Vec<Springs>,
 }
 
@@ -87,7 +87,8 @@ impl Springs {
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
         let mut fine = Springs::one_row(setup.clone(), count, reach)?;
-        // Kinks fall elsewhere between the springs of each: one coarse has a spring at the centre if the other has none.
+        // Kinks fall elsewhere between the springs of each: one coarse has a spring at the centre if the other has
+        // none.
         let half = count.div_ceil(2).max(2);
         let more = (2 * count).div_ceil(3).max(3);
         for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {

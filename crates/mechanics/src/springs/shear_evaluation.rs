@@ -1,9 +1,9 @@
-//! From the displacements of the springs to a shear stress: three readings of the same row.
+//! Three formulas for the shear stress from the displacements of the springs.
 //!
-//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx (eq. 19 of Kraft & Pohrt 2016) needs a displacement between the springs
-//! too. Drawn straight over x it gives an arcosh per cell. Drawn straight over g(x) it gives the profile's own integral per
-//! cell, and is exact but in the cells that hold a kink. Not drawn at all, with the derivative taken as a difference and the
-//! integral as a sum, it is what the formula suggests at first sight.
+//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx (eq. 19 of Kraft & Pohrt 2016) needs a displacement between the
+//! springs too. Drawn straight over x it gives an arcosh per cell. Drawn straight over g(x) it gives the profile's own
+//! integral per cell, and is exact but in the cells that hold a kink. Not drawn at all, with the derivative taken as a
+//! difference and the integral as a sum, it is what the formula suggests at first sight.
 
 use std::f64::consts::PI;
 
@@ -14,21 +14,21 @@ use super::super::range;
 use super::super::state::Setup;
 use super::Springs;
 
-/// How a shear stress is read from the springs.
+/// The formula for the shear stress between the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShearEvaluation {
     /// The displacement is straight over x from spring to spring, as in [`Springs::shear`].
     Arcosh,
     /// The displacement is straight over g(x) from spring to spring.
     Level,
-    /// The plain recipe: differences between neighbours over the root at their midpoint, summed at the radius of each spring;
-    /// straight between those radii.
+    /// The plain recipe: differences between neighbours over the root at their midpoint, summed at the radius of each
+    /// spring; straight between those radii.
     Differences,
 }
 
 impl Springs {
-    /// As [`Springs::new`], but for [`Springs::accuracy`], which then knows of no error beyond the bends: nothing is kept that
-    /// the answers do not need.
+    /// As [`Springs::new`], but for [`Springs::accuracy`], which then knows of no error beyond the bends: nothing is
+    /// kept that the answers do not need.
     ///
     /// # Errors
     /// As [`Springs::new`].
@@ -87,7 +87,8 @@ impl Springs {
         (1.0 - part) * self.difference_sum(nodes, inner) + part * self.difference_sum(nodes, outer)
     }
 
-    /// The sum at the radius of spring `index`, over all differences outside it; beyond the last spring nothing is carried.
+    /// The sum at the radius of spring `index`, over all differences outside it; beyond the last spring nothing is
+    /// carried.
     fn difference_sum(&self, nodes: &[(f64, f64)], index: usize) -> f64 {
         let Some(&(radius, _)) = nodes.get(index) else { return 0.0 };
         let next = nodes[index + 1..].iter().map(|(_, carried)| *carried).chain([0.0]);

@@ -30,17 +30,17 @@ impl Springs {
         self.initial.g_star * self.stress(radius, last.clamp(-room, room), |spring| spring.carried)
     }
 
-    /// How deep a vertical edge is pressed in, m; nought for a profile without one, but for rounding.
+    /// How deep a vertical edge is pressed in, m; zero for a profile without one, but for rounding.
     pub(super) fn rim_depth(&self) -> f64 {
-        // Elsewhere rounding would make an infinite stress of what is left over.
+        // Elsewhere a rounded remainder would make the stress infinite.
         if self.profile.rim_radius().is_none_or(|rim| self.contact_radius() < rim) {
             return 0.0;
         }
         (self.indentation - self.profile.level(self.contact_radius())).max(0.0)
     }
 
-    /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring
-    /// to spring and on to `at_edge`; level from the centre to the first spring beyond it.
+    /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from
+    /// spring to spring and on to `at_edge`; level from the centre to the first spring beyond it.
     fn stress(&self, radius: f64, at_edge: f64, displacement: impl Fn(&Spring) -> f64) -> f64 {
         let edge = self.contact_radius();
         if radius > edge || self.indentation <= 0.0 {

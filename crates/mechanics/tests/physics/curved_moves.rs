@@ -122,8 +122,8 @@ fn lowering_the_load_under_a_steady_pull_shrinks_the_stick_circle() {
     assert!(part < 1e-9, "the limit is met at once, not {part}");
 }
 
-/// Tangential force after (U, F_N) has gone straight from (0, `from`) to (`shift`, `to`) without slip: each ring carries
-/// what was moved since its touch, 2 G* int (U_1 - U(x)) dx with U(x) from F_N(x) = 4 E* x^3/(3 R).
+/// Tangential force after (U, F_N) has gone straight from (0, `from`) to (`shift`, `to`) without slip: each ring
+/// carries what was moved since its touch, 2 G* int (U_1 - U(x)) dx with U(x) from F_N(x) = 4 E* x^3/(3 R).
 fn pressed_while_moving(from: f64, to: f64, shift: f64) -> f64 {
     let (inner, outer) = (contact_radius(from), contact_radius(to));
     let ring = outer.powi(3) * (outer - inner) - (outer.powi(4) - inner.powi(4)) / 4.0;
@@ -253,8 +253,8 @@ fn the_default_tolerance_is_met_from_no_load_on() {
     let load = Some(Normal::NormalForce(LOAD));
     let mut contact = touching();
     contact.apply(&Move { normal: load, ..displace(1e-9) }).unwrap();
-    // A displacement that grows with the force keeps U/F, and dU/dd falls with d: nothing slips where U is this small beside d,
-    // and F = 2 G* int a dU = 2 G* (3/2 a) U - G* U a: with a ~ F^(1/3) and U ~ F, int a dU = (3/4) a U.
+    // A displacement that grows with the force keeps U/F, and dU/dd falls with d: nothing slips where U is this small
+    // beside d, and F = 2 G* int a dU = 2 G* (3/2 a) U - G* U a: with a ~ F^(1/3) and U ~ F, int a dU = (3/4) a U.
     let expected = 2.0 * G_STAR * 0.75 * contact_radius(LOAD) * 1e-9;
     assert!((contact.force() - expected).abs() < 1e-10 * FRICTION * LOAD, "{:e}", contact.force() - expected);
     let error = contact.accuracy().path_error;

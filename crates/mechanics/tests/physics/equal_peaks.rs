@@ -6,7 +6,8 @@ use stickslip_mechanics::profile::{Cone, ExactSphere, RoundedCone, Tabulated, Tr
 use stickslip_mechanics::protocol::{equal_peaks, falling_amplitude};
 use stickslip_mechanics::{Profile, Sphere};
 
-/// Largest peak, and its ratio to the smallest, beyond a radius; the outermost peak apart, which the edge makes smaller.
+/// Largest peak, and its ratio to the smallest, beyond a radius; the outermost peak apart, which the edge makes
+/// smaller.
 fn peaks(profile: &Profile, path: &[f64], beyond: f64) -> (f64, f64) {
     let mut contact = pressed(profile.clone());
     follow(&mut contact, path);

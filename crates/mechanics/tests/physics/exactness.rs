@@ -313,8 +313,8 @@ fn the_three_preloads_are_one_contact() {
 
 #[test]
 fn loading_along_a_line_from_zero_carries_its_share_of_friction() {
-    // Touched on the way, a point keeps what came after: w = ratio (d - y), so that tau = ratio mu p everywhere, or mu p
-    // where the ratio exceeds one and all of it slips (Mindlin & Deresiewicz 1953).
+    // Touched on the way, a point keeps what came after: w = ratio (d - y), so that tau = ratio mu p everywhere, or mu
+    // p where the ratio exceeds one and all of it slips (Mindlin & Deresiewicz 1953).
     let shares = Worst::new("force and stress of oblique loading, relative", 1e-13);
     let mut random = Random(3);
     for preload in [Preload::NormalForce(0.0), Preload::Indentation(0.0), Preload::ContactRadius(0.0)] {

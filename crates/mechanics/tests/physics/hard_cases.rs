@@ -1,7 +1,7 @@
 //! Hard cases: every row of the table of naive failures, and more, against a reference in 60 digits (`tests/data`).
 //!
-//! Promised are 1e-11 of mu F_N for forces and 1e-9 of mu p_max for stresses (of the mean where p_max is infinite). Asserted is
-//! what is reached, where that is better; `--nocapture` prints it case by case.
+//! Promised are 1e-11 of mu F_N for forces and 1e-9 of mu p_max for stresses (of the mean where p_max is infinite).
+//! Asserted is what is reached, where that is better; `--nocapture` prints it case by case.
 
 use crate::support::masing::Masing;
 use crate::support::reference::{Outcome, Scene, found, scenes};
@@ -50,7 +50,8 @@ fn gauge(scene: &Scene, contact: &Contact, outcome: &Outcome) -> Gauge {
 
 /// How far off a result is, in its unit.
 fn error(scene: &Scene, outcome: &Outcome, value: f64, unit: f64) -> f64 {
-    // At a cusp an ulp of r is worth 1e-8: only numbers that are exact in doubles say where it is, others say within some ulp.
+    // At a cusp an ulp of r is worth 1e-8: only numbers that are exact in doubles say where it is, others say within
+    // some ulp.
     let (low, high) = if is_round(scene) { (outcome.value, outcome.value) } else { outcome.range };
     if value.is_infinite() && value.to_bits() == outcome.value.to_bits() {
         return 0.0;
@@ -126,8 +127,8 @@ fn paths_straight_in_a_force_keep_their_tolerance() {
 
 #[test]
 fn a_hundred_thousand_nested_reversals_at_a_thousand_radii() {
-    // Against Cattaneo and Masing stroke by stroke, in plain sums: their rounding is what is allowed for. The data hold twelve
-    // of these radii to 60 digits.
+    // Against Cattaneo and Masing stroke by stroke, in plain sums: their rounding is what is allowed for. The data hold
+    // twelve of these radii to 60 digits.
     const REVERSALS: u32 = 100_000;
     let mut contact = UNIT.contact();
     let mut masing = Masing::new(1.0);

@@ -123,7 +123,8 @@ fn the_mirror_image_of_a_path_gives_the_mirror_image_of_its_state() {
 
 #[test]
 fn how_far_it_has_slid_before_changes_nothing() {
-    // Once all of it has slipped, a contact a million u_max further on is the same contact. Both are exact on this grid.
+    // Once all of it has slipped, a contact a million u_max further on is the same contact. Both are exact on this
+    // grid.
     const FAR: f64 = 1_048_576.0;
     let forces = Worst::new("force a million u_max further on / mu F_N", 1e-14);
     let stresses = Worst::new("shear stress a million u_max further on / mu p_max", 1e-12);
@@ -188,8 +189,8 @@ fn splitting_a_straight_move_changes_nothing() {
     let stresses = Worst::new("shear stress of split moves / mu p_max", 1e-10);
     forall(300, (paths::oblique_steps(25), 0..5_u32), |(steps, halvings)| {
         let parts = 1 << halvings;
-        // On the unit contact and on a grid every part of the move ends exactly on the straight line; elsewhere the parts
-        // are rounded, and a load that rises along them may leave their corners behind.
+        // On the unit contact and on a grid every part of the move ends exactly on the straight line; elsewhere the
+        // parts are rounded, and a load that rises along them may leave their corners behind.
         let exact = paths::on_grid(&paths::waypoints(&steps), 20);
         for (ball, path, parts) in [(UNIT, exact, parts), (PLAIN, paths::waypoints(&steps), 2 * halvings + 1)] {
             let contact = walk(&ball, &path);

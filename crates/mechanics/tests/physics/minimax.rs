@@ -1,4 +1,5 @@
-//! The minimax protocol: its largest stress against known values, and against the other protocols on every finite profile.
+//! The minimax protocol: its largest stress against known values, and against the other protocols on every finite
+//! profile.
 
 use crate::support::{follow, pressed, sphere};
 use stickslip_mechanics::profile::{ExactSphere, PowerLaw, RoundedCone};

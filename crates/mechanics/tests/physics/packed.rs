@@ -156,8 +156,8 @@ fn another_contact_and_another_version_are_refused() {
     }
 }
 
-/// Results of the engine, mixed into one number (FNV-1a): of a sphere and a flat punch, by displacement, indentation and
-/// force. They need no function beyond the square root, so that the digits are the same on every machine.
+/// Results of the engine, mixed into one number (FNV-1a): of a sphere and a flat punch, by displacement, indentation
+/// and force. They need no function beyond the square root, so that the digits are the same on every machine.
 fn digest() -> u64 {
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     for shape in [0, 4] {

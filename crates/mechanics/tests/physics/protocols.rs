@@ -52,9 +52,9 @@ fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
     }
 }
 
-/// Far from the edge and the centre the memory is a square wave over (r/a)^2, and the stress its half-integral. With a distance
-/// of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) / n^(3/2) over the
-/// odd n.
+/// Far from the edge and the centre the memory is a square wave over (r/a)^2, and the stress its half-integral. With a
+/// distance of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) /
+/// n^(3/2) over the odd n.
 #[test]
 fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_square_wave() {
     const SAMPLES: usize = 2_000;
@@ -152,7 +152,8 @@ fn minimax_ends_where_it_is_to_end_and_is_never_above_the_others() {
     }
 }
 
-/// The largest stress after gross slip and strokes that slip from these parts of the indentation on, the innermost first.
+/// The largest stress after gross slip and strokes that slip from these parts of the indentation on, the innermost
+/// first.
 fn left(contact: &Contact, levels: &[f64]) -> f64 {
     let full = contact.gross_slip_displacement();
     let mut path = vec![full];
@@ -228,7 +229,8 @@ proptest! {
         let mut fresh = pressed(contact.profile().clone());
         fresh.apply(&Move { normal: Some(Normal::Indentation(contact.indentation())), ..Move::default() }).unwrap();
         let usual = of(&fresh, AmplitudeLaw::Minimax, reversals, end);
-        prop_assert!(found.largest <= usual.largest * (1.0 + 1e-7), "{} {} {:?}", found.largest, usual.largest, found.first_move);
+        let (least, known) = (found.largest, usual.largest);
+        prop_assert!(least <= known * (1.0 + 1e-7), "{least} {known} {:?}", found.first_move);
     }
 }
 

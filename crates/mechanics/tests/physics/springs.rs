@@ -28,7 +28,8 @@ fn slanted() -> Vec<Move> {
     path.iter().map(|&waypoint| PLAIN.towards(waypoint)).collect()
 }
 
-/// The largest errors over a path, each over its unit: forces (tangential and normal), shear stress at the end, friction work.
+/// The largest errors over a path, each over its unit: forces (tangential and normal), shear stress at the end,
+/// friction work.
 #[derive(Clone, Copy, Debug)]
 struct Errors {
     force: f64,
@@ -61,8 +62,8 @@ fn errors(moves: &[Move], count: usize) -> Errors {
     errors
 }
 
-/// The slope of a straight line through the logarithms, over numbers of springs that double. Where kinks fall between the
-/// springs is a matter of chance: several numbers near each other share their mean square.
+/// The slope of a straight line through the logarithms, over numbers of springs that double. Where kinks fall between
+/// the springs is a matter of chance: several numbers near each other share their mean square.
 fn orders(moves: &[Move], first: usize, doublings: u32) -> [f64; 3] {
     let points: Vec<(f64, [f64; 3])> = (0..=doublings)
         .map(|power| {

@@ -199,7 +199,8 @@ impl Random {
     }
 }
 
-/// Extrema of samples that stand out by more than `height` from those on either side, with the samples that bracket each.
+/// Extrema of samples that stand out by more than `height` from those on either side, with the samples that bracket
+/// each.
 pub fn standing_out(samples: &[f64], height: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high, mut rising) = (0, 0, None);

@@ -1,10 +1,10 @@
 //! Brute force for oblique paths on a sphere: points that know nothing of each other, each followed event by event.
 //!
-//! A point at level y carries w, is bounded by |w| <= d - y, and follows the indenter while it sticks. On a straight move
-//! bound and indenter change at constant rates, so that a point which starts to slip slips to the end: there are three
-//! events (touch, slip, lift-off), and between them nothing but addition. The function w(y) is then cut into straight parts
-//! by bisection, down to the last digits, wherever three points are out of line; no kink is known beforehand.
-//! Unit of length: d at the start. Radii: x^2 = y, which makes them units of the first contact radius.
+//! A point at level y carries w, is bounded by |w| <= d - y, and follows the indenter while it sticks. On a straight
+//! move bound and indenter change at constant rates, so that a point which starts to slip slips to the end: there are
+//! three events (touch, slip, lift-off), and between them nothing but addition. The function w(y) is then cut into
+//! straight parts by bisection, down to the last digits, wherever three points are out of line; no kink is known
+//! beforehand. Unit of length: d at the start. Radii: x^2 = y, which makes them units of the first contact radius.
 
 /// A path of waypoints (d, W), the start included.
 #[derive(Clone, Debug)]

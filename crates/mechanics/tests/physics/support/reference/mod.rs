@@ -48,7 +48,8 @@ pub struct Asked {
 pub struct Outcome {
     pub asked: Asked,
     pub value: f64,
-    /// Values at radii not more than eight units in the last place away, the kink's own included; otherwise the value twice.
+    /// Values at radii not more than eight units in the last place away, the kink's own included; otherwise the value
+    /// twice.
     pub range: (f64, f64),
     /// To be compared relative to itself.
     pub own: bool,
