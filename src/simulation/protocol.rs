@@ -102,7 +102,7 @@ impl Subject<'_> {
 
 /// The protocol for a contact that has never moved, from a displacement, m, or from that of gross slip.
 ///
-/// # ExecutionErrors
+/// # Errors
 /// As [`protocol`], and if the preload cannot be reached.
 pub fn protocol_for(
     definition: &ContactDefinition,
@@ -121,7 +121,7 @@ const FEWER: usize = 3;
 
 /// The protocol asked for, with what it leaves and what the others would.
 ///
-/// # ExecutionErrors
+/// # Errors
 /// [`Failure`] where there is nothing to move against, the target is out of reach, or the time is up.
 pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     let timer = Timer::start();

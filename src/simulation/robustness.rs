@@ -11,7 +11,7 @@ use crate::admission::Stop;
 
 /// Tries a path, m, with errors; `unit` is that of stress, Pa.
 ///
-/// # ExecutionErrors
+/// # Errors
 /// [`Failure`] if the time is up.
 pub(super) fn robustness(
     subject: &Subject<'_>,

@@ -16,8 +16,8 @@ use super::shear_stress::Peak;
 const STEP: f64 = 0.511;
 /// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
 const FINEST: f64 = 1e-3;
-/// The same where the profile makes the derivative infinite: at this part of the square of the radius, half that of the
-/// radius.
+/// The same limit where the profile makes the derivative infinite: at this part of the square of the radius, half that
+/// of the radius.
 const FLOOR: f64 = 1e-14;
 /// Beyond this place a distance is below the round-off of twice the digits.
 const LAST: f64 = 72.0;
@@ -130,7 +130,7 @@ impl Stretch {
 }
 
 impl Contact {
-    /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where it is zero to round-off or unknown.
+    /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.
     fn trend(&self, at: &At) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
         for (ring, line) in self.history.rings() {
@@ -246,7 +246,7 @@ impl Contact {
             let bend = bends[index];
             settled[index] = match bends.get(index + 1) {
                 Some(next) => settled[index + 1] && bend * next < 0.0 && bend.abs() >= next.abs(),
-                // A straight end carries nothing on: there is no first term to lead.
+                // Without a bend at the edge there is no first term to lead.
                 None => bend.abs() > 0.0 && self.profile.kernel_falls(),
             };
         }

@@ -1,6 +1,6 @@
 //! Force control: the displacement that gives a tangential force at a given indentation.
 //!
-//! While nothing slips the force is linear in the displacement. From there it grows as the slip ring eats its way
+//! While nothing slips the force is linear in the displacement. From there it grows as the slip ring spreads inward
 //! through the pieces, outermost first: a piece of slope beta that slips towards s gains (1 + s beta) int X dy. So the
 //! piece in which the wanted force is met is found by adding, and the radius within it by the inverse of int X dy:
 //! measured from the nearer end, so that neither a tiny change of force nor the last 1e-15 before the limit mu F_N
@@ -19,7 +19,7 @@ struct Corner {
     held: usize,
     /// int w dx that is still to be gained, m^2.
     missing: f64,
-    /// What friction could hold beyond the wanted magnitude, m^2.
+    /// Distance of the wanted magnitude from the friction limit, m^2.
     room: f64,
 }
 
@@ -29,7 +29,7 @@ impl Contact {
     /// target.
     pub(super) fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
         let wanted = target / self.force_unit();
-        // The product has digits that decide how little sticks just below the limit.
+        // Just below the limit the low digits of the product decide how much still sticks.
         let room = (DoubleDouble::from(normal_force) * self.friction - DoubleDouble::from(target.abs())).value()
             / self.force_unit();
         let edge = self.profile.point(indentation);
@@ -85,7 +85,8 @@ impl Contact {
             let level = if missing <= 0.5 * gain {
                 ring.outer.level - DoubleDouble::from(depth_for(&self.profile, &ring, false, missing / closing))
             } else {
-                // Towards the far limit slip reaches the centre at mu F_N; nearer pieces know their own force.
+                // Towards the far limit slip reaches the centre at mu F_N; for pieces further out the force inside them
+                // is summed.
                 let spare =
                     if index == 0 && sign * wanted > 0.0 { room } else { self.spare_below(index, &edge, sign, wanted) };
                 ring.inner.level + DoubleDouble::from(depth_for(&self.profile, &ring, true, spare / closing))

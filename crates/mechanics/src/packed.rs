@@ -27,7 +27,7 @@ const LAYOUT: u16 = 1;
 /// Writes numbers one after the other.
 pub(super) struct Writer(Vec<u8>);
 
-/// Takes numbers one after the other; nothing once the bytes are used up.
+/// Reads numbers one after the other; `None` after the last byte.
 pub(super) struct Reader<'a>(&'a [u8]);
 
 impl Writer {
@@ -126,7 +126,7 @@ impl Contact {
         writer.0
     }
 
-    /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are sound.
+    /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are undamaged.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -140,8 +140,7 @@ impl Contact {
 
     /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a
     /// contact of the same definition, such as the virgin one. `None` for bytes that are cut short, of another version,
-    /// of a contact with another preload, or no state of a contact at all; damage that leaves sound numbers goes
-    /// unnoticed.
+    /// of a contact with another preload, or of no valid state; damage that leaves valid numbers is not detected.
     ///
     /// ```
     #[doc = include_str!("example.txt")]

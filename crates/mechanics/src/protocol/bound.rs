@@ -9,11 +9,11 @@
 //!
 //! so that a largest stress E allows no piece with g(x2) - g(x1) > (2/(G* m)) E B(x1, x2) between any two of its radii.
 //! From the edge inwards each piece therefore ends at the latest where that first fails against its outer end; if N + 1
-//! such pieces do not come as far as the innermost radius that is judged, no N reversals leave as little as E. (A
-//! sequence whose piece k begins further out than this one's ends further out too: a pair that fails here would lie
+//! such pieces do not come as far as the innermost radius of the evaluation range, no N reversals leave as little as E.
+//! (A sequence whose piece k begins further out than this one's ends further out too: a pair that fails here would lie
 //! within it.)
 //!
-//! It has the right power of N, and on a sphere is some half of what the equal alternating extrema leave. That these
+//! It has the right power of N, and on a sphere is about half of what the equal alternating extrema leave. That these
 //! are the best is not proven by it: an argument by the signs of differences (de la Vallée-Poussin's) fails, as the
 //! kernel (x^2 - r^2)^(-1/2) does not diminish variation. A study with restarts in `tests/physics/protocols.rs` finds
 //! nothing better.
@@ -22,12 +22,12 @@ use super::super::contact::Contact;
 use super::super::profile::Profile;
 use super::{cutoff_of, outermost_singular};
 
-/// Steps from the edge to the centre in which the end of a piece is looked for.
+/// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;
 /// Halvings of the bracket of E.
 const HALVINGS: usize = 40;
 
-/// The shear stress, Pa, that some point of the judged part of the contact carries at the least after gross slip and so
+/// The shear stress, Pa, that some point of the evaluation range carries at the least after gross slip and so
 /// many reversals, whatever their displacements; zero where nothing is known, as at a vertical edge.
 ///
 /// ```
@@ -82,8 +82,8 @@ impl Grid {
         Grid { radii, levels }
     }
 
-    /// Whether so many pieces may come as far as the end of the grid under a largest stress of `limit`, G* m/2. That
-    /// only the radii of the grid are looked at makes it say yes too often, never too seldom.
+    /// Whether so many pieces may come as far as the end of the grid under a largest stress of `limit`, G* m/2. Because
+    /// only the radii of the grid are checked, the answer can be yes wrongly, never no.
     fn reached(&self, limit: f64, pieces: usize) -> bool {
         let square = |index: usize| self.radii[index] * self.radii[index];
         let half = |index: usize| (square(0) - square(index)).max(0.0).sqrt();

@@ -40,7 +40,7 @@ pub enum PathEnd {
     Free,
 }
 
-/// What the reversals begin from.
+/// The state that the reversals begin from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathStart {
     /// This displacement, m, of the contact as it is, which has never moved; the path begins with it.
@@ -153,7 +153,7 @@ struct DesignTask<'a> {
 
 /// The path by an amplitude law. From [`PathStart::Here`] a path of minimax may have fewer reversals than allowed.
 ///
-/// # ExecutionErrors
+/// # Errors
 /// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::Interrupted`]
 /// if `keep_going` returned false.
 ///
@@ -215,7 +215,7 @@ impl DesignTask<'_> {
         Ok(contact)
     }
 
-    /// The path with its last displacement as the end wants it, and what it comes to.
+    /// The path with its last displacement as the end requires it, and the contact after it.
     fn judge(&self, mut path: Vec<f64>, first_move: FirstMove, gap: Option<f64>) -> Result<Design, Error> {
         let last = path.pop().unwrap_or_default();
         let mut contact = self.after(&path)?;
@@ -329,7 +329,7 @@ impl DesignTask<'_> {
         if (self.keep_going)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
 
-    /// The path with its last displacement zero if it is to be and nearly is.
+    /// The path with its last displacement set to zero if the end requires it and only rounding is in the way.
     fn ended(&self, mut path: Vec<f64>) -> Vec<f64> {
         if let (PathEnd::DisplacementZero, Some(last)) = (self.end, path.last_mut())
             && last.abs() <= ROUNDED * self.contact.gross_slip_displacement()
@@ -339,7 +339,7 @@ impl DesignTask<'_> {
         path
     }
 
-    /// Whether the contact stands where a path may end.
+    /// Whether the present state meets the condition of the end.
     fn at_an_end(&self) -> bool {
         let state = self.contact.state();
         match self.end {
@@ -349,7 +349,7 @@ impl DesignTask<'_> {
         }
     }
 
-    /// Strokes by [`FromAnyState`], m, if they end where they are to.
+    /// Strokes by [`FromAnyState`], m, if they meet the condition of the end.
     fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Option<Vec<f64>> {
         let mut path = FromAnyState::new(from, strokes, last, self.end)?.solve(self.keep_going)?;
         path.iter_mut().for_each(|position| *position *= from.scale());

@@ -1,9 +1,9 @@
-//! EqualExtrema alternating extrema with a prescribed end.
+//! Equal alternating extrema with a prescribed end of the path.
 //!
-//! The kinks of the smallest E lead somewhere. To lead elsewhere one extremum must stay below the others. If it is one
-//! of the kinks, its share and E are the two unknowns of two equations, the end and the stress of the core, solved by
-//! Broyden's method from the free optimum. If it is the core, E alone is sought. Among few kinks each is tried, else
-//! the outermost: of many extrema it matters little which one stays below.
+//! The kinks of the smallest E determine where the path ends. For another end, one extremum must be smaller than the
+//! others. If it is one of the kinks, its share and E are the two unknowns of two equations, the end and the stress of
+//! the core, solved by Broyden's method from the free optimum. If it is the core, E alone is sought. Among few kinks
+//! each is tried, else the outermost: of many extrema it matters little which one stays below.
 
 use super::super::profile::{Point, Ring};
 use super::minimax::{KinkSequence, Problem};
@@ -13,7 +13,7 @@ use super::{DoubleDouble, PathEnd};
 pub(super) const FEW: usize = 8;
 /// The largest number of evaluations of the kinks.
 const MAX_EVALUATIONS: usize = 40;
-/// What the two equations may miss, relative to the indentation and to E.
+/// Tolerance of the residuals of the two equations, relative to the indentation and to E.
 const TOLERANCE: f64 = 1e-11;
 /// The first steps, relative, and, over the number of kinks, those by which E is raised.
 const PROBE: f64 = 1e-4;
@@ -36,7 +36,7 @@ pub(super) fn kinks(
     (0..tried).filter_map(|index| equations.by_share(index)).chain(equations.by_core()).collect()
 }
 
-/// What is to be solved.
+/// The equations to be solved.
 struct Equations<'a> {
     problem: &'a Problem<'a>,
     limit: f64,
@@ -46,8 +46,8 @@ struct Equations<'a> {
 }
 
 impl Equations<'_> {
-    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with what they
-    /// miss.
+    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with the
+    /// residuals.
     fn evaluate(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
         let marched = self.problem.march_with(self.limit * stress, (index, share), self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
@@ -57,7 +57,7 @@ impl Equations<'_> {
     fn by_share(&self, index: usize) -> Option<Vec<Point>> {
         let mut at = [1.0, 1.0];
         let (mut missed, mut marched) = self.evaluate(index, at)?;
-        // The Jacobian by differences once, then kept up.
+        // The Jacobian by differences once, then updated.
         let (by_stress, _) = self.evaluate(index, [1.0 + PROBE, 1.0])?;
         let (by_share, _) = self.evaluate(index, [1.0, 1.0 - PROBE])?;
         let row = |row: usize| [(by_stress[row] - missed[row]) / PROBE, (missed[row] - by_share[row]) / PROBE];
@@ -70,7 +70,7 @@ impl Equations<'_> {
             let determinant = a * d - b * c;
             let mut step =
                 [(b * missed[1] - d * missed[0]) / determinant, (c * missed[0] - a * missed[1]) / determinant];
-            // Not so far that the kinks get lost.
+            // Limited, so that no kink is lost.
             let far = (step[0].abs() / 0.1).max(step[1].abs() / 0.25);
             if !far.is_finite() {
                 return None;
@@ -144,7 +144,7 @@ impl Equations<'_> {
     }
 }
 
-/// What the end misses: of the displacement over the indentation, of the force over that of gross slip.
+/// The residual at the end: of the displacement over the indentation, or of the force over that of gross slip.
 fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
     let profile = problem.profile;
     let alternating = |index: usize, size: f64| if index.is_multiple_of(2) { size } else { -size };

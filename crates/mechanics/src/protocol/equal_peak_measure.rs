@@ -6,7 +6,7 @@
 
 use super::super::profile::{Profile, gauss::Panel};
 
-/// What halving a panel may change, relative to the whole so far; the halves are then good to round-off.
+/// Tolerance of halving a panel, relative to the sum so far; the halves are then good to round-off.
 const TOLERANCE: f64 = 1e-12;
 /// How often a panel may be halved.
 const HALVINGS: u32 = 60;
@@ -20,7 +20,7 @@ pub(super) struct EqualPeakMeasure<'a> {
     leaves: Vec<Leaf>,
     /// The integral over all leaves.
     sum: f64,
-    /// What is left of it down to the tip.
+    /// The rest of the integral, down to the tip.
     rest: f64,
 }
 
@@ -119,7 +119,7 @@ impl<'a> EqualPeakMeasure<'a> {
         let middle = 0.5 * (low + high);
         let (lower, upper) = (self.area(along, low, middle), self.area(along, middle, high));
         let both = lower + upper;
-        // Written so that what is not a number ends it too.
+        // Written so that a NaN ends it too.
         let coarse = (both - whole).abs() > TOLERANCE * (self.sum + both);
         if coarse && left > 0 && both.is_finite() {
             self.halve(along, (middle, high), upper, left - 1);

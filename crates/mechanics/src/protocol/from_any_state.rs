@@ -6,7 +6,7 @@
 //! lowered until the inside would be above it.
 //!
 //! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
-//! a last stroke, during which nothing slips but the edge itself, takes the load off it.
+//! a last stroke, during which nothing slips but the edge itself, unloads it.
 
 use super::super::contact::Contact;
 use super::super::profile::{At, Point, Ring};
@@ -19,7 +19,7 @@ const MAX_DEPTH: usize = 256;
 /// Number of sampled radii besides the kinks of the history, and of cuts that are tried.
 const GRID: usize = 64;
 const CUTS: usize = 16;
-/// Among the cuts tried none is this much above the best there is.
+/// The best of the cuts tried is within this factor of the best of all.
 const COARSE: f64 = 1.1;
 /// Halvings of a bracket.
 const HALVINGS: usize = 60;
@@ -27,9 +27,9 @@ const HALVINGS: usize = 60;
 const MAX_EVALUATIONS: usize = 48;
 const STRIDE: f64 = 1.6;
 const PACE: f64 = 1.06;
-/// What E may be off, relative to itself.
+/// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-8;
-/// An E below this part of the first guess is as good as none.
+/// An E below this share of the first guess counts as zero.
 const LEAST: f64 = 1e-4;
 
 /// Strokes from the state of a contact.
@@ -49,7 +49,7 @@ pub(super) struct FromAnyState<'a> {
     end: PathEnd,
 }
 
-/// What the strokes of one E come to, all scaled by m and for a last stroke forwards.
+/// The strokes of one E, scaled by m, for a last stroke forwards.
 struct Strokes {
     kinks: Vec<Point>,
     /// Where the first stroke leads to.
@@ -133,7 +133,7 @@ impl<'a> FromAnyState<'a> {
         })
     }
 
-    /// What the end misses with a cut at a level, in the direction of the first stroke: it falls as the cut goes
+    /// The residual of the end with a cut at a level, in the direction of the first stroke: it falls as the cut goes
     /// outwards.
     fn miss(&self, kinks: &[Point], level: DoubleDouble) -> f64 {
         let value = match self.end {
@@ -340,7 +340,7 @@ fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Sa
     all.into_iter().map(sample).collect()
 }
 
-/// What an E comes to.
+/// Whether there are strokes with a largest stress E.
 enum StrokeOutcome {
     /// It is enough, and these are the strokes.
     Fits(Strokes),

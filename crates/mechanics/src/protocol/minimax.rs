@@ -17,9 +17,9 @@ const CORE: usize = 32;
 /// Sections of the stretch about the largest of these, and their ratio.
 const SECTIONS: usize = 22;
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// What E may be off, relative to itself.
+/// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-13;
-/// How E is changed until it is bracketed.
+/// Factor by which E is changed until it is bracketed.
 const STRIDE: f64 = 1.25;
 /// How often, and by which part, a lower E is tried than the one found.
 const BELOW: usize = 8;
@@ -47,7 +47,7 @@ pub(super) struct EqualExtrema {
     pub(super) limit: f64,
 }
 
-/// A contact that is judged from a cut-off radius outwards.
+/// A contact whose stress counts from a cut-off radius outwards.
 pub(super) struct Problem<'a> {
     pub(super) profile: &'a Profile,
     pub(super) edge: Point,
@@ -138,7 +138,7 @@ impl Problem<'_> {
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
         let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
         if looks > 1 {
-            // Between two looks it may be larger: golden sections about the best.
+            // Between two samples it may be larger: golden sections about the largest.
             let (mut low, mut high) = ((best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0));
             let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
             for _ in 0..SECTIONS {

@@ -75,9 +75,9 @@ pub struct EqualPeaks {
 ///
 /// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made
 /// equal from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge.
-/// Profiles that need none have none unless it is given.
+/// Other profiles have no cut-off unless it is given.
 ///
-/// # ExecutionErrors
+/// # Errors
 /// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
 ///
 /// ```
@@ -108,7 +108,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     let size = |index: usize| {
         let part = index as f64 / reversals.max(1) as f64;
         match &spread {
-            // The first stroke slips as a whole, so that nothing before it matters.
+            // The first stroke is gross slip, which wipes out the history.
             _ if index == 0 => full,
             _ if index == reversals => 0.0,
             Some(spread) => full * (1.0 - contact.profile.level(spread.radius(part)) / indentation).max(0.0),
@@ -135,8 +135,7 @@ pub struct Minimax {
 /// left free.
 ///
 /// Where the stress is infinite under every path (the tip of a cone, the rim of a truncated profile) it is minimised
-/// from
-/// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `keep_going` is asked before each kink that is sought.
+/// from [`DEFAULT_CUTOFF`] of the way from there to the edge on. `keep_going` is asked before each kink that is sought.
 ///
 /// `None` if `keep_going` returned false, and where there is nothing to minimise: without reversals, friction or
 /// contact, and at a vertical edge, where the stress stays infinite.

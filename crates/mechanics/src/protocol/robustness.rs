@@ -20,7 +20,7 @@ pub struct ExecutionErrors {
 /// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the
 /// same errors, whatever the path.
 ///
-/// # ExecutionErrors
+/// # Errors
 /// Those of `make` and of the moves, and [`Error::Interrupted`] if `keep_going` returned false.
 ///
 /// ```

@@ -6,7 +6,7 @@
 //! 1], and the slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole
 //! pieces beyond the bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed.
 //! Stuck pieces are stored relative to the indenter, so that a move does not change them. The rule is Masing's with
-//! wiping-out at constant load, and that of the history diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
+//! wiping-out at constant load, and that of the memory diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
 //!
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
@@ -24,7 +24,7 @@ pub(super) const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 /// again differs in its last digits.
 pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
 
-/// The largest part of a change of load that may be its rounding.
+/// The largest share of a change of the load that may be rounding.
 const ROUNDED_SHARE: f64 = 1e-6;
 
 /// A straight part of w - W over y: `offset + slope * y`.
@@ -40,7 +40,7 @@ impl Line {
     }
 }
 
-/// `slope * level`. At constant load every slope is -1, 0 or 1, and the product is spared.
+/// `slope * level`, without a product for the slopes -1, 0 and 1 of all moves at constant load.
 fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
     let (whole, rest) = slope.parts();
     if rest.abs() > 0.0 {
@@ -52,9 +52,9 @@ fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
     }
 }
 
-/// What force and elastic energy need of the pieces, summed from the centre outward: `force` = sum of slope * int X dy,
-/// `energy` = sum of slope * int (w - W) X dy, and `size`, the magnitudes that `force` is the sum of: what rounding
-/// errors scale with.
+/// Sums over the pieces for force and elastic energy, from the centre outward: `force` = sum of slope * int X dy,
+/// `energy` = sum of slope * int (w - W) X dy, and `size`, the sum of the magnitudes in `force`, with which rounding
+/// errors scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sums {
     force: DoubleDouble,
@@ -284,7 +284,7 @@ impl SlipHistory {
                 let ring = Ring::between(cut, outer);
                 let moments = profile.moments(&ring);
                 work += slipping.work(&moments, &top.line, excess, &ring);
-                // At constant load, a slip that stays within one piece is itself the piece to be laid.
+                // At constant load, a slip that stays within one piece is itself the piece to be pushed.
                 slipped = (outer.level == d1).then_some(moments);
                 break cut;
             }
@@ -365,7 +365,7 @@ impl Sums {
     }
 }
 
-/// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far
+/// The error of w at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far
 /// it has slid before does not count. A change of the load by a few units in the last place is followed exactly as
 /// given.
 fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDouble) -> f64 {

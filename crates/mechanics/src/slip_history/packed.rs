@@ -1,8 +1,8 @@
 //! The history as bytes: edge, sums up to it, position, reference, whether and where the last slip began, then the
 //! pieces.
 //!
-//! The pieces come last, so that their number follows from the length, and no length that is written can ask for more
-//! room than there are bytes.
+//! The pieces come last, so that their number follows from the length, and no stored length can request more memory
+//! than there are bytes.
 
 use super::super::double_double::DoubleDouble;
 use super::super::packed::{Reader, Writer};

@@ -1,8 +1,9 @@
 //! Error estimates of the spring foundation: fewer springs, the exact normal contact, and second differences.
 //!
-//! Each one_row may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell
-//! dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of 1/sqrt(x^2
-//! - r^2): what the springs show of second differences bounds both. Where more than a bend falls into a cell, springs
+//! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in
+//! a cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
+//! 1/sqrt(x^2
+//! - r^2): the second differences between the springs bound both. Where more than a bend falls into a cell, springs
 //! of another number differ.
 
 use std::f64::consts::PI;
@@ -16,7 +17,7 @@ const COMPARED: usize = 64;
 const NEAREST: f64 = 2.0;
 
 impl Springs {
-    /// What the discretisation has cost: the largest of several estimates. The one of the stress is for radii some
+    /// The errors by the discretisation: the largest of several estimates. The one of the stress is for radii some
     /// cells (of twice the largest contact radius over the number of springs) away from the kinks of the displacement,
     /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
     ///
@@ -82,13 +83,13 @@ impl Springs {
             .collect()
     }
 
-    /// What the bends leave open of the force, N.
+    /// Bound on the error of the force by the second differences, N.
     fn force_bound(&self, bends: &[(f64, f64, f64)]) -> f64 {
         let sum: f64 = bends.iter().map(|(_, weight, bend)| weight * bend).sum();
         self.initial.g_star * self.spacing * sum / 8.0
     }
 
-    /// What a shear stress at a radius, m, may be off by, Pa.
+    /// Estimated error of the shear stress at a radius, m, in Pa.
     fn stress_doubt(&self, radius: f64, bends: &[(f64, f64, f64)]) -> f64 {
         let nearest = radius + NEAREST * self.spacing;
         let sum: f64 = bends
@@ -107,7 +108,7 @@ impl Springs {
         differences.fold(open.max(normal), f64::max)
     }
 
-    /// How far the displacement, m, of a force that is asked for may be off: as far as forces within the estimate lead.
+    /// Error of the displacement, m, under a prescribed force: the change that a force within its error bound makes.
     pub(super) fn misplacement(&self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
         let scale = self.scale();
@@ -116,7 +117,7 @@ impl Springs {
         after.advance(self.indentation, displacement);
         let error = after.force_bound(&after.bends());
         let force = after.force();
-        // At the most as far as where all of it slips.
+        // At most up to gross slip.
         let room = |sign: f64| {
             self.in_contact()
                 .map(|spring| scale * (self.indentation - spring.level) - sign * spring.carried)

@@ -87,8 +87,7 @@ impl Springs {
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
         let mut fine = Springs::one_row(setup.clone(), count, reach)?;
-        // Kinks fall elsewhere between the springs of each: one coarse has a spring at the centre if the other has
-        // none.
+        // Kinks fall elsewhere between the springs of each: one of them has a spring at the centre, the other has none.
         let half = count.div_ceil(2).max(2);
         let more = (2 * count).div_ceil(3).max(3);
         for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {
@@ -128,7 +127,7 @@ impl Springs {
         })
     }
 
-    /// ContactSummary of the definition, from the exact normal contact.
+    /// The summary of the definition, from the exact normal contact.
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
         self.initial
@@ -181,7 +180,7 @@ impl Springs {
         self.normal = normal;
         let indentation = self.normal.indentation();
         for coarse in &mut self.coarser {
-            // Near the limit of friction a coarse may hold less than the force.
+            // Near the limit of friction a coarser row may hold less than the force.
             let displacement = coarse.target(step).unwrap_or(displacement);
             coarse.advance(indentation, displacement);
         }
@@ -245,7 +244,7 @@ impl Springs {
         let limit = self.friction * self.normal_force();
         if target.abs() >= limit {
             let way = (target - self.force()).abs();
-            // Without friction even to stay is too much, and there is no way to be a part of.
+            // Without friction no force can be held, and the move has no length.
             let part = if way > 0.0 { (limit - target.signum() * self.force()) / way } else { 0.0 };
             return Err(Error::ForceExceedsFriction { target, limit, part: part.clamp(0.0, 1.0) });
         }

@@ -3,7 +3,7 @@
 //! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx (eq. 19 of Kraft & Pohrt 2016) needs a displacement between the
 //! springs too. Drawn straight over x it gives an arcosh per cell. Drawn straight over g(x) it gives the profile's own
 //! integral per cell, and is exact but in the cells that hold a kink. Not drawn at all, with the derivative taken as a
-//! difference and the integral as a sum, it is what the formula suggests at first sight.
+//! difference and the integral as a sum, it is the direct discretisation of the formula.
 
 use std::f64::consts::PI;
 
@@ -27,8 +27,8 @@ pub enum ShearEvaluation {
 }
 
 impl Springs {
-    /// As [`Springs::new`], but for [`Springs::accuracy`], which then knows of no error beyond the bends: nothing is
-    /// kept that the answers do not need.
+    /// As [`Springs::new`], but for [`Springs::accuracy`], which then estimates the error from second differences
+    /// alone: no coarser rows are kept.
     ///
     /// # Errors
     /// As [`Springs::new`].

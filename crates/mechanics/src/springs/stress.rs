@@ -3,7 +3,7 @@
 use super::super::shear_stress::{Peak, Residual};
 use super::{Spring, Springs};
 
-/// Radii at which the search for extrema looks, at the most.
+/// The largest number of radii of the search for extrema.
 const SCAN: usize = 2000;
 
 impl Springs {
