@@ -51,14 +51,14 @@ fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
 /// The contact after so many reversals of falling amplitude: as many pieces, and one or two.
 fn deep(reversals: usize) -> Contact {
     let mut contact = virgin();
-    let amplitude = contact.figures().gross_slip_displacement;
+    let amplitude = contact.summary().gross_slip_displacement;
     follow(&mut contact, falling_amplitude(reversals, amplitude));
     contact
 }
 
 fn paths() {
     println!("| random moves in a path | time of a move |\n|---|---|");
-    let unit = virgin().figures().gross_slip_displacement;
+    let unit = virgin().summary().gross_slip_displacement;
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -301,7 +301,7 @@ impl From<Failure> for Problem {
                     mechanics::Error::BeyondProfile { .. } => Kind::BeyondProfile,
                     mechanics::Error::NotConvexEnough { .. } => Kind::ProfileNotConvexEnough,
                     mechanics::Error::ForceExceedsFriction { .. } => Kind::ForceExceedsFriction,
-                    mechanics::Error::BrokenOff => Kind::TooMuchWork,
+                    mechanics::Error::Interrupted => Kind::TooMuchWork,
                     mechanics::Error::Unsupported { .. } => Kind::UnsupportedMove,
                 };
                 Problem::at(kind, pointer, error.to_string())
@@ -383,8 +383,8 @@ mod tests {
             mechanics::Error::NotConvexEnough { radius: 1.0 },
             mechanics::Error::Table { fault: mechanics::TableFault::RadiusNotRising, index: 1 },
             mechanics::Error::ForceExceedsFriction { target: 2.0, limit: 1.0, part: 0.5 },
-            mechanics::Error::BrokenOff,
-            mechanics::Error::Unsupported { what: "this" },
+            mechanics::Error::Interrupted,
+            mechanics::Error::Unsupported(mechanics::UnsupportedMove::TangentialForceWithNormalTarget),
         ];
         let refused = errors.map(|error| Failure::Refused { pointer: String::new(), error });
         let others = [

@@ -41,7 +41,7 @@ impl Live {
     pub(super) fn start(session: Session, setup: Setup) -> Result<Live, simulation::Failure> {
         let elasticity = setup.elasticity;
         let contact = simulation::contact(setup, "")?;
-        let figures: Figures = contact.initial_figures().into();
+        let figures: Figures = contact.initial_summary().into();
         let Figures { contact_radius, e_star, indentation, .. } = figures;
         let noise = contact.profile().noise(contact_radius);
         let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };

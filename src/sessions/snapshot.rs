@@ -117,7 +117,7 @@ pub(super) fn worth(state: &Contact, snapshot: &[u8]) -> Worth {
     let sound = snapshot.split_last_chunk::<CHECKSUM>();
     match sound.filter(|(state, checksum)| crc32fast::hash(state) == u32::from_le_bytes(**checksum)) {
         None => Worth::Damaged,
-        Some((state, _)) if !Contact::packs_like(state) => Worth::Foreign,
+        Some((state, _)) if !Contact::is_current_packing(state) => Worth::Foreign,
         Some(_) if snapshot == sealed(state) => Worth::Same,
         Some(_) => Worth::Wrong,
     }

@@ -45,7 +45,7 @@ impl Sessions {
         let snapshot = self.common.store.snapshot(id).await;
         let virgin = {
             let mut guard = self.lock(id).await?;
-            self.present(&mut guard).await?.contact.anew()
+            self.present(&mut guard).await?.contact.virgin()
         };
         let (mut contact, mut at) = self.newest(snapshot, virgin, after).await?;
         while at < last {
@@ -103,7 +103,7 @@ fn along(
         let part = index as f64 / points as f64;
         // A target on the way may be one that nobody can ask for, such as a force of 1e-300 N; then there is no point.
         if let Some(copy) = &mut copy
-            && copy.apply_while(&contact.waypoint(&step, part), record.tolerance, &go_on).is_ok()
+            && copy.apply_while(&contact.partial_move(&step, part), record.tolerance, &go_on).is_ok()
         {
             let state = copy.state();
             page.push(record.sequence, part, state.displacement, state.force);

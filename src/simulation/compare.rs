@@ -6,14 +6,15 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_mechanics::{Contact, Estimate};
+use stickslip_mechanics::{Contact, ErrorEstimate};
 use stickslip_wire::reply::finite;
 use stickslip_wire::{
     AccuracyReply, AccuracyRow, Comparison, Fault, Fields, Points, Protocol, Reference, Sampling, Solver as Named,
     SolverKind, limits,
 };
 
-use super::run::{contact, equal_peaks, follow, foundation, stresses};
+use super::path::equal_peaks;
+use super::run::{contact, follow, foundation, stresses};
 use super::{Failure, Solver};
 use crate::admission::Stop;
 
@@ -35,7 +36,7 @@ const CURVED: &str =
 struct Answer {
     forces: Vec<f64>,
     shears: Vec<Option<f64>>,
-    estimate: Estimate,
+    estimate: ErrorEstimate,
     time: f64,
 }
 
@@ -80,7 +81,7 @@ pub fn compare(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Fa
     let fields = Fields { pressure: false, shear: true, slip: false, displacement: false };
     let sampling = Sampling { points: Points::Radii(radii), fields };
     let shears = stresses(&truth, &sampling, stop)?.shear.unwrap_or_default();
-    let figures = truth.figures();
+    let figures = truth.summary();
     let pressure = figures.unit_pressure();
     let pressure = if pressure.is_finite() { pressure } else { 0.0 };
     let estimate = truth.accuracy();

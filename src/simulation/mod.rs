@@ -5,6 +5,7 @@
 
 mod compare;
 pub mod cost;
+mod path;
 mod protocol;
 mod robustness;
 mod rows;
@@ -12,19 +13,22 @@ mod run;
 mod shape;
 mod solver;
 mod sweep;
+#[cfg(test)]
+mod tests;
 mod warnings;
 
 pub use compare::compare;
+pub use path::equal_peaks;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use rows::Rows;
-pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
+pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use sweep::{Sweep, SweepError, Workers};
 pub use warnings::{Seen, missed, news, warnings};
 
 use std::time::Duration;
 
-use stickslip_mechanics as mechanics;
+use stickslip_mechanics::{self as mechanics, range::Quantity};
 use stickslip_wire::limits;
 
 use crate::admission::Interrupted;
@@ -86,7 +90,7 @@ impl Failure {
                 mechanics::Error::BeyondProfile { .. } => "beyond_profile",
                 mechanics::Error::NotConvexEnough { .. } => "profile_not_convex_enough",
                 mechanics::Error::ForceExceedsFriction { .. } => "force_exceeds_friction",
-                mechanics::Error::BrokenOff => "too_much_work",
+                mechanics::Error::Interrupted => "too_much_work",
                 mechanics::Error::Unsupported { .. } => "unsupported_move",
             },
             Failure::MemoryFull { .. } => "conflict",
@@ -96,15 +100,10 @@ impl Failure {
     }
 }
 
-/// The member of the wire documents that an error is about, if it is about one.
-fn quantity(error: &mechanics::Error) -> Option<&'static str> {
+/// The quantity that an error is about, if it is about one.
+fn quantity(error: &mechanics::Error) -> Option<Quantity> {
     match error {
-        mechanics::Error::OutOfRange { quantity, .. } => Some(quantity),
-        mechanics::Error::BeyondProfile { .. }
-        | mechanics::Error::NotConvexEnough { .. }
-        | mechanics::Error::Table { .. }
-        | mechanics::Error::ForceExceedsFriction { .. }
-        | mechanics::Error::BrokenOff
-        | mechanics::Error::Unsupported { .. } => None,
+        mechanics::Error::OutOfRange { quantity, .. } => Some(*quantity),
+        _ => None,
     }
 }

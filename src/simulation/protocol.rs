@@ -1,6 +1,9 @@
 //! From a protocol asked for to the path, what it leaves, and what the others would.
 
-use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
+use stickslip_mechanics::protocol::{
+    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
+};
+use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
 use stickslip_wire::limits;
 use stickslip_wire::protocol::{
@@ -28,21 +31,21 @@ pub struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    fn start(&self) -> Start {
-        self.first.map_or(Start::Here, Start::Displacement)
+    fn start(&self) -> PathStart {
+        self.first.map_or(PathStart::Here, PathStart::Displacement)
     }
 
     /// A JSON pointer to what the mechanics finds fault with.
     fn place(&self, error: &Error) -> &'static str {
         match error {
-            Error::OutOfRange { quantity: "friction", .. } if self.setup.is_some() => "/contact/friction",
-            Error::OutOfRange { quantity: "indentation", .. } if self.setup.is_some() => "/contact/preload",
-            Error::OutOfRange { quantity: "displacement", .. } => "/start/displacement",
+            Error::OutOfRange { quantity: Quantity::Friction, .. } if self.setup.is_some() => "/contact/friction",
+            Error::OutOfRange { quantity: Quantity::Indentation, .. } if self.setup.is_some() => "/contact/preload",
+            Error::OutOfRange { quantity: Quantity::Displacement, .. } => "/start/displacement",
             _ => "",
         }
     }
 
-    fn design(&self, kind: Kind, reversals: usize, end: End, stop: &Stop) -> Result<Design, Failure> {
+    fn design(&self, kind: AmplitudeLaw, reversals: usize, end: PathEnd, stop: &Stop) -> Result<Design, Failure> {
         let found = design(self.contact, self.start(), kind, reversals, end, &|| stop.check().is_ok());
         found.map_err(|error| match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, "/reversals"),
@@ -51,7 +54,14 @@ impl Subject<'_> {
     }
 
     /// The design of the fewest reversals that leave no more than `largest`, Pa.
-    fn fewest(&self, kind: Kind, largest: f64, target: f64, end: End, stop: &Stop) -> Result<(usize, Design), Failure> {
+    fn fewest(
+        &self,
+        kind: AmplitudeLaw,
+        largest: f64,
+        target: f64,
+        end: PathEnd,
+        stop: &Stop,
+    ) -> Result<(usize, Design), Failure> {
         let most = *limits::PROTOCOL_REVERSALS.end();
         let mut low = 0;
         let mut high = 1;
@@ -62,7 +72,7 @@ impl Subject<'_> {
             }
             if high == most {
                 let error = Error::OutOfRange {
-                    quantity: "target",
+                    quantity: Quantity::ProtocolTarget,
                     value: target,
                     allowed: format!("what {most} reversals reach, {:.3e}, or more", target * design.largest / largest),
                 };
@@ -116,9 +126,9 @@ const FEWER: usize = 3;
 pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     let timer = Timer::start();
     let contact = subject.contact;
-    let (figures, judged) = (contact.figures(), Judged::of(contact));
+    let (figures, judged) = (contact.summary(), EvaluationRange::of(contact));
     let unit = figures.gross_slip_force / figures.normal_force * figures.unit_pressure();
-    let end = End::from(task.end);
+    let end = PathEnd::from(task.end);
     let (reversals, chosen) = match task.aim {
         Aim::Reversals(reversals) => (reversals, subject.design(task.kind.into(), reversals, end, stop)?),
         Aim::Target(target) => subject.fewest(task.kind.into(), target * unit, target, end, stop)?,
@@ -160,11 +170,11 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         reversals,
         start: StartReply {
             displacement: chosen.displacements.first().copied().unwrap_or_default(),
-            stroke: match chosen.way {
-                Way::Given => FirstStroke::Given,
-                Way::GrossSlip => FirstStroke::GrossSlip,
-                Way::Partial => FirstStroke::Partial,
-                Way::Stay => FirstStroke::Stay,
+            stroke: match chosen.first_move {
+                FirstMove::Given => FirstStroke::Given,
+                FirstMove::GrossSlip => FirstStroke::GrossSlip,
+                FirstMove::Partial => FirstStroke::Partial,
+                FirstMove::Stay => FirstStroke::Stay,
             },
         },
         judged: JudgedReply {
@@ -198,8 +208,8 @@ fn noted(subject: &Subject<'_>) -> Vec<Warning> {
     warnings(contact.profile(), &elasticity, &seen)
 }
 
-fn objective(judged: &Judged) -> String {
-    let Judged { from, to, vertical } = *judged;
+fn objective(judged: &EvaluationRange) -> String {
+    let EvaluationRange { from, to, vertical } = *judged;
     match (from > 0.0, vertical) {
         (false, false) => "the largest shear stress of the whole contact".to_owned(),
         (true, false) => format!(
@@ -218,19 +228,19 @@ fn objective(judged: &Judged) -> String {
 }
 
 fn gap(design: &Design, bound: Option<f64>) -> Gap {
-    let method = match (design.spread.is_some(), design.way) {
+    let method = match (design.gap.is_some(), design.first_move) {
         (true, _) => {
             "equal alternating extrema; a study with restarts has found nothing better, and `lower_bound` is proven"
         }
-        (false, Way::Stay) => "the present state has less than any path that was found would leave",
-        (false, Way::Partial) => {
+        (false, FirstMove::Stay) => "the present state has less than any path that was found would leave",
+        (false, FirstMove::Partial) => {
             "alternating extrema outside, and inside the part of the history that leaves least with them; found by search, no \
              bound is known"
         }
-        (false, Way::Given | Way::GrossSlip) => {
+        (false, FirstMove::Given | FirstMove::GrossSlip) => {
             "alternating extrema, all but one equal for the sake of the end, or the better one of the two laws; found by search"
         }
     };
     let proven = bound.map(|bound| 1.0 - bound / design.largest).filter(|gap| gap.is_finite());
-    Gap { spread: design.spread, lower_bound: bound, proven, method: method.to_owned() }
+    Gap { spread: design.gap, lower_bound: bound, proven, method: method.to_owned() }
 }

@@ -1,6 +1,6 @@
 //! What remains if a protocol is not followed exactly, in a few numbers.
 
-use stickslip_mechanics::protocol::{Errors, trials};
+use stickslip_mechanics::protocol::{ExecutionErrors, trials};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::protocol::{Robustness, RobustnessReply};
 use stickslip_wire::reply::finite;
@@ -25,7 +25,7 @@ pub(super) fn robustness(
         Some(setup) if friction > 0.0 => Contact::new(Setup { friction: setup.friction * factor, ..setup.clone() }),
         _ => Ok(subject.contact.clone()),
     };
-    let found = trials(&make, path, &Errors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
+    let found = trials(&make, path, &ExecutionErrors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
     let found = found.map_err(|error| match stop.check() {
         Err(interrupted) => Failure::interrupted(interrupted, "/robustness/samples"),
         Ok(()) => Failure::Refused { pointer: "/robustness".to_owned(), error },

@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use stickslip_mechanics::{self as mechanics, Contact, Estimate, Preload, Setup, Springs, springs};
+use stickslip_mechanics::{
+    self as mechanics, Contact, ErrorEstimate, Preload, Setup, Springs, range::Quantity, springs,
+};
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
@@ -10,7 +12,9 @@ use stickslip_wire::{
 };
 
 use super::{
-    Failure, Solver, cost, quantity,
+    Failure, Solver, cost,
+    path::{equal_peaks, moves},
+    quantity,
     warnings::{Seen, missed, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
@@ -51,14 +55,15 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
     }
 }
 
-fn run<S: Solver>(
+/// The reply of one solver. It is asked for what the simulation names and for nothing else.
+pub(super) fn run<S: Solver>(
     mut solver: S,
     simulation: &Simulation,
     timer: Timer,
     reason: &str,
     stop: &Stop,
 ) -> Result<SimulateReply, Failure> {
-    let figures = solver.figures();
+    let figures = solver.summary();
     let protocol = equal_peaks(&simulation.plan, &solver)?;
     let mut largest = figures.contact_radius;
     let all = simulation.steps == Steps::All;
@@ -118,30 +123,22 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
 pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
-    let moves = plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
-    let springs = springs::reach(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
+    let moves = moves(plan, start.gross_slip_displacement(), None).map(|step| step.step());
+    let springs =
+        springs::largest_contact_radius(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
     springs.map_err(refused_at("/contact", setup.preload))
 }
 
 fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
     move |error| {
-        let quantity = match error {
-            mechanics::Error::NotConvexEnough { .. } => Some("profile"),
-            mechanics::Error::BeyondProfile { .. } => Some("contact_radius"),
-            _ => quantity(&error),
+        let place_of = |quantity| ContactDefinition::place_of(quantity, &preload);
+        let place = match error {
+            mechanics::Error::NotConvexEnough { .. } => "/profile",
+            mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
+            _ => quantity(&error).map_or("", place_of),
         };
-        let place = quantity.map_or("", |quantity| ContactDefinition::place_of(quantity, &preload));
         Failure::Refused { pointer: format!("{base}{place}"), error }
     }
-}
-
-/// The displacements of a plan that follows the law of equal peaks, on the contact as it stands.
-///
-/// # Errors
-/// [`Failure::Refused`] for a cut-off radius that the contact does not allow.
-pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
-    plan.protocol(solver.exact())
-        .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })
 }
 
 /// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
@@ -157,13 +154,12 @@ pub fn follow<S: Solver>(
     stop: &Stop,
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
-    let moves = plan.moves(solver.gross_slip_displacement(), protocol);
-    for (index, step) in moves.enumerate() {
+    for (index, step) in moves(plan, solver.gross_slip_displacement(), protocol).enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, &plan.place_of(index, None)),
             Ok(()) => {
-                let named = quantity(&error).filter(|name| step.names(name));
+                let named = quantity(&error).filter(|quantity| step.names(*quantity));
                 Failure::Refused { pointer: plan.place_of(index, named), error }
             }
         })?;
@@ -228,7 +224,7 @@ pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
     stated::<S>(&solver.accuracy(), timer, reason)
 }
 
-fn stated<S: Solver>(estimate: &Estimate, timer: Timer, reason: &str) -> Accuracy {
+fn stated<S: Solver>(estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
     Accuracy {
         solver: S::KIND,
         reason: reason.to_owned(),

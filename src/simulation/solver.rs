@@ -1,6 +1,6 @@
 //! What the two solvers have in common.
 
-use stickslip_mechanics::{Contact, Error, Estimate, Figures, Move, Residual, Springs, State};
+use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, Springs, State};
 use stickslip_wire::SolverKind;
 
 /// A contact that can be moved and looked at.
@@ -9,13 +9,13 @@ pub trait Solver {
     const KIND: SolverKind;
 
     /// The figures of the definition.
-    fn figures(&self) -> Figures;
+    fn summary(&self) -> ContactSummary;
     /// Displacement of gross slip at the normal load at hand, m.
     fn gross_slip_displacement(&self) -> f64;
     /// Makes a move while `go_on` says so; a refused one changes nothing. The tolerance is for what is not exact.
     ///
     /// # Errors
-    /// What the mechanics has no answer to, and [`Error::BrokenOff`].
+    /// What the mechanics has no answer to, and [`Error::Interrupted`].
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error>;
     /// The state after the last move.
     fn state(&self) -> State;
@@ -36,7 +36,7 @@ pub trait Solver {
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
-    fn accuracy(&self) -> Estimate;
+    fn accuracy(&self) -> ErrorEstimate;
     /// What curved moves have left of error in the force, relative to μ F_N.
     fn path_error(&self) -> f64;
 }
@@ -44,8 +44,8 @@ pub trait Solver {
 impl Solver for Contact {
     const KIND: SolverKind = SolverKind::Exact;
 
-    fn figures(&self) -> Figures {
-        self.initial_figures()
+    fn summary(&self) -> ContactSummary {
+        self.initial_summary()
     }
 
     fn gross_slip_displacement(&self) -> f64 {
@@ -92,7 +92,7 @@ impl Solver for Contact {
         self.residual_while(go_on)
     }
 
-    fn accuracy(&self) -> Estimate {
+    fn accuracy(&self) -> ErrorEstimate {
         self.accuracy()
     }
 
@@ -104,12 +104,12 @@ impl Solver for Contact {
 impl Solver for Springs {
     const KIND: SolverKind = SolverKind::Springs;
 
-    fn figures(&self) -> Figures {
-        self.initial_figures()
+    fn summary(&self) -> ContactSummary {
+        self.initial_summary()
     }
 
     fn gross_slip_displacement(&self) -> f64 {
-        self.initial_figures().gross_slip_displacement
+        self.initial_summary().gross_slip_displacement
     }
 
     fn apply(&mut self, step: &Move, _tolerance: f64, _go_on: &dyn Fn() -> bool) -> Result<(), Error> {
@@ -152,7 +152,7 @@ impl Solver for Springs {
         go_on().then(|| self.residual())
     }
 
-    fn accuracy(&self) -> Estimate {
+    fn accuracy(&self) -> ErrorEstimate {
         self.accuracy()
     }
 

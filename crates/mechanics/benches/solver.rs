@@ -1,4 +1,4 @@
-//! What the solver costs: `cargo bench -p stickslip-mechanics --bench solver`. Read the figures as ratios to each other.
+//! The cost of moves, stresses and searches: `cargo bench -p stickslip-mechanics`. Compare the figures with each other.
 
 use std::hint::black_box;
 
@@ -29,7 +29,7 @@ fn to(displacement: f64) -> Move {
 
 fn exact_scene() -> f64 {
     let mut contact = virgin();
-    let figures = contact.figures();
+    let figures = contact.summary();
     for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
         contact.apply(&to(target)).expect("a displacement has no limit");
     }
@@ -38,7 +38,7 @@ fn exact_scene() -> f64 {
 }
 
 fn springs_scene(count: usize) -> f64 {
-    let figures = virgin().figures();
+    let figures = virgin().summary();
     let mut springs = Springs::new(setup(), count, figures.contact_radius).expect("a valid count");
     for target in falling_amplitude(REVERSALS, figures.gross_slip_displacement) {
         springs.apply(&to(target)).expect("a displacement has no limit");
@@ -60,7 +60,7 @@ fn moves(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("move at constant load");
     for history in [1_000, 10_000_000] {
         let mut contact = virgin();
-        let path = positions(history, contact.figures().gross_slip_displacement);
+        let path = positions(history, contact.summary().gross_slip_displacement);
         for &target in &path {
             contact.apply(&to(target)).expect("a displacement has no limit");
         }
@@ -85,7 +85,7 @@ fn profiles(criterion: &mut Criterion) {
         ("table of 1000 points", Profile::Tabulated(Tabulated::new(&radii, &heights).expect("a convex table"))),
     ] {
         let mut contact = Contact::new(Setup { profile, ..setup() }).expect("a valid contact");
-        let path = positions(1_000, contact.figures().gross_slip_displacement);
+        let path = positions(1_000, contact.summary().gross_slip_displacement);
         let mut targets = path.iter().cycle();
         group.bench_function(name, |bencher| {
             bencher
@@ -105,12 +105,12 @@ fn scenes(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A memory of so many pieces, asked at so many radii: beside it as many plain square roots.
+/// The stress of a history of so many pieces at so many radii, and as many plain square roots to compare with.
 fn stresses(criterion: &mut Criterion) {
     const MANY: usize = 1_000;
     let mut group = criterion.benchmark_group("shear stress at 1000 radii under 1000 pieces");
     let mut contact = virgin();
-    let figures = contact.figures();
+    let figures = contact.summary();
     for target in falling_amplitude(MANY, figures.gross_slip_displacement) {
         contact.apply(&to(target)).expect("a displacement has no limit");
     }

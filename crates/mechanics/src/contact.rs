@@ -1,16 +1,15 @@
-//! A contact with its history: what it is made of, how it moves, what state it is in.
+//! A contact with its slip history: construction, and the quantities that need no search.
 
 use std::sync::Arc;
 
 use super::double_double::DoubleDouble;
 use super::elasticity::Elasticity;
 use super::error::Error;
-use super::normal::{self, Figures, Preload};
+use super::normal::{self, ContactSummary, Preload};
 use super::profile::{Point, Profile, StressRadius};
 use super::range;
-use super::route::{Approach, DEFAULT_TOLERANCE, Route, Stop, Tangent};
-use super::slip_history::Memory;
-use super::state::{Move, Normal, Regime, Setup, State, Tangential};
+use super::slip_history::SlipHistory;
+use super::state::Setup;
 
 /// A frictional contact, solved exactly.
 ///
@@ -23,7 +22,7 @@ use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 ///     friction: 0.3,
 ///     preload: Preload::NormalForce(10.0),
 /// })?;
-/// let half = 0.5 * contact.figures().gross_slip_displacement;
+/// let half = 0.5 * contact.summary().gross_slip_displacement;
 /// contact.apply(&Move { tangential: Some(Tangential::Displacement(half)), ..Move::default() })?;
 /// // Cattaneo (1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
 /// assert!((contact.state().force - 3.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-14);
@@ -31,28 +30,37 @@ use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// Shared by all copies: a table's is large.
+    /// Shared by all copies of the contact, because a table is large.
     pub(super) profile: Arc<Profile>,
     pub(super) elasticity: Elasticity,
     pub(super) friction: f64,
-    pub(super) memory: Memory,
+    pub(super) history: SlipHistory,
     pub(super) displacement: DoubleDouble,
-    /// As asked for or, under a prescribed indentation, as it follows: rounding it twice would move the friction limit.
+    /// As prescribed, or as it follows from a prescribed indentation: rounding it twice would move the friction limit.
     pub(super) normal_force: f64,
     pub(super) dissipated: DoubleDouble,
-    pub(super) initial: Figures,
+    pub(super) initial: ContactSummary,
     pub(super) path_error: f64,
     pub(super) path_kernel: f64,
-    /// 1/m, or nought without friction, when nothing is carried and the memory need not be told of the displacement.
+    /// 1/m; zero without friction, when the surface carries nothing and the slip history does not follow the
+    /// displacement.
     pub(super) inverse_scale: DoubleDouble,
 }
 
 impl Contact {
-    /// The virgin contact of a definition: displacement and tangential force are nought.
+    /// The virgin contact of a definition: displacement and tangential force are zero.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
     /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!((contact.contact_radius() - 0.1).abs() < 1e-15);
+    /// assert!((contact.normal_force() - 4000.0).abs() < 1e-9);
+    /// assert_eq!(contact.force(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn new(setup: Setup) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup;
         range::check_friction(friction)?;
@@ -65,12 +73,12 @@ impl Contact {
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
         range::CONTACT_RADIUS.check(profile.check_radius(profile.radius(indentation))?)?;
-        let memory = Memory::new(&profile, DoubleDouble::from(indentation));
+        let history = SlipHistory::new(&profile, DoubleDouble::from(indentation));
         let normal_force = match preload {
             Preload::NormalForce(force) => force,
-            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, memory.edge()),
+            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
         };
-        let initial = figures(&profile, &elasticity, friction, memory.edge(), normal_force);
+        let initial = summary_of(&profile, &elasticity, friction, history.edge(), normal_force);
         let inverse_scale = if friction > 0.0 {
             DoubleDouble::from(elasticity.g_star()).over(DoubleDouble::from(elasticity.e_star()) * friction)
         } else {
@@ -80,7 +88,7 @@ impl Contact {
             profile: Arc::new(profile),
             elasticity,
             friction,
-            memory,
+            history,
             displacement: DoubleDouble::ZERO,
             normal_force,
             dissipated: DoubleDouble::ZERO,
@@ -91,114 +99,28 @@ impl Contact {
         })
     }
 
-    /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
+    /// The same contact at its preload, before its first move.
     ///
-    /// # Errors
-    /// As [`Contact::apply_within`].
-    pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
-        self.apply_within(step, DEFAULT_TOLERANCE)
-    }
-
-    /// Moves along a line that is straight in the quantities named. What is straight in displacement and indentation is
-    /// exact; what is straight in a force while the other quantity changes is followed to `tolerance`, relative to mu F_N.
-    /// Nothing has changed when an error is returned.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] for a target outside [`range`]; [`Error::ForceExceedsFriction`] for a tangential force that
-    /// friction cannot hold all the way.
-    pub fn apply_within(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
-        self.apply_while(step, tolerance, &|| true)
-    }
-
-    /// As [`Contact::apply_within`], for as long as `go_on` says so: a curved move can take seconds.
-    ///
-    /// # Errors
-    /// As [`Contact::apply_within`], and [`Error::BrokenOff`].
-    pub fn apply_while(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
-        let approach = self.approach(step)?;
-        let tangent = self.tangent(step)?;
-        // Without a tangential target the displacement stays, and any way to the new indentation is the same.
-        let straight = match (step.tangential, step.normal) {
-            (None, _) => true,
-            (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
-            (Some(Tangential::Force(_)), _) => false,
-        };
-        if let (true, Tangent::Displacement { to: displacement, .. }) = (straight, tangent) {
-            let (indentation, normal_force) = match approach {
-                Approach::Indentation { from, to } if from == to => (to, self.normal_force),
-                Approach::Indentation { to, .. } => (to, self.normal_force_at(to)),
-                Approach::Force { to, .. } => (self.indentation_for(to), to),
-            };
-            self.advance(&Stop { indentation, normal_force, displacement });
-            return Ok(());
-        }
-        // Only a way of many chords can be broken off half-way; a copy is nothing beside it.
-        let before = self.clone();
-        let followed = self.follow(&Route { tangent, approach }, tolerance, go_on);
-        if followed.is_err() {
-            *self = before;
-        }
-        followed
-    }
-
-    fn approach(&self, step: &Move) -> Result<Approach, Error> {
-        let here = self.memory.edge().level;
-        Ok(match step.normal {
-            None => Approach::Indentation { from: here, to: here },
-            Some(Normal::Indentation(depth)) => {
-                let depth = DoubleDouble::from(depth);
-                let to = if step.relative { here + depth } else { depth };
-                self.check_indentation(to.value())?;
-                Approach::Indentation { from: here, to }
-            }
-            Some(Normal::NormalForce(force)) => {
-                let from = self.normal_force();
-                let to = range::check_normal_force(if step.relative { from + force } else { force })?;
-                self.check_indentation(self.indentation_for(to).value())?;
-                Approach::Force { from, to }
-            }
-        })
-    }
-
-    /// Whether the profile has a contact of this indentation, m.
-    fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
-        range::INDENTATION.check(indentation)?;
-        if indentation > 0.0 {
-            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.radius(indentation))?)?;
-        }
-        Ok(())
-    }
-
-    fn tangent(&self, step: &Move) -> Result<Tangent, Error> {
-        let here = self.displacement;
-        Ok(match step.tangential {
-            None => Tangent::Displacement { from: here, to: here },
-            Some(Tangential::Displacement(target)) => {
-                let target = DoubleDouble::from(target);
-                let to = if step.relative { here + target } else { target };
-                range::DISPLACEMENT.check(to.value())?;
-                Tangent::Displacement { from: here, to }
-            }
-            Some(Tangential::Force(target)) => {
-                let from = self.force();
-                let to = range::FORCE.check(if step.relative { from + target } else { target })?;
-                Tangent::Force { from, to }
-            }
-        })
-    }
-
-    /// The straight move in displacement and indentation that every other move is made of.
-    pub(super) fn advance(&mut self, stop: &Stop) {
-        self.displacement = stop.displacement;
-        self.normal_force = stop.normal_force;
-        let passage = self.memory.advance(&self.profile, stop.indentation, self.scaled(stop.displacement));
-        let scale = self.scale();
-        let work = 2.0 * self.elasticity.g_star() * scale * scale * passage.work;
-        self.dissipated = self.dissipated + DoubleDouble::from(work);
-        if self.memory.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
-            // What gross slip wipes out takes its errors with it.
-            self.path_error = 0.0;
-            self.path_kernel = 0.0;
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.01))?;
+    /// assert_eq!(contact.virgin().state().displacement, 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn virgin(&self) -> Contact {
+        Contact {
+            profile: self.profile.clone(),
+            elasticity: self.elasticity,
+            friction: self.friction,
+            history: SlipHistory::new(&self.profile, DoubleDouble::from(self.initial.indentation)),
+            displacement: DoubleDouble::ZERO,
+            normal_force: self.initial.normal_force,
+            dissipated: DoubleDouble::ZERO,
+            initial: self.initial,
+            path_error: 0.0,
+            path_kernel: 0.0,
+            inverse_scale: self.inverse_scale,
         }
     }
 
@@ -216,7 +138,7 @@ impl Contact {
         self.displacement
     }
 
-    /// Notes what a chord has cost: errors of the force add up, those of the stress are local.
+    /// Adds the errors of a chord: errors of the force accumulate, those of the stress are local.
     pub(super) fn add_path_error(&mut self, force: f64, kernel: f64) {
         self.path_error += force;
         self.path_kernel = self.path_kernel.max(kernel);
@@ -236,9 +158,17 @@ impl Contact {
     }
 
     /// Tangential force, N.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(-1.0))?;
+    /// // Gross slip backwards: -mu F_N.
+    /// assert!((contact.force() + 2000.0).abs() < 1e-9);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn force(&self) -> f64 {
-        2.0 * self.elasticity.g_star() * self.scale() * self.memory.force()
+        2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
     }
 
     /// Indentation, m, that carries a normal force, N.
@@ -246,28 +176,55 @@ impl Contact {
         DoubleDouble::from(normal::indentation(&self.profile, &self.elasticity, normal_force))
     }
 
-    /// Normal force, N: the one asked for, to the bit, where one was.
+    /// Normal force, N; to the bit the prescribed one, where one was prescribed.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// // Hertz: F_N = 4/3 E* a d.
+    /// assert!((contact.normal_force() / (4.0 / 3.0 * 3e6 * 0.1 * 0.01) - 1.0).abs() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn normal_force(&self) -> f64 {
         self.normal_force
     }
 
-    /// Pressure, Pa, at a radius (m) of at least nought; nought outside the contact, infinite at a sharp edge.
+    /// Pressure, Pa, at a radius (m) of at least zero; zero outside the contact, infinite at a sharp edge.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// // Hertz: p(0) = 2 E* a/(pi R).
+    /// assert!((contact.pressure(0.0) / (0.6e6 / std::f64::consts::PI) - 1.0).abs() < 1e-14);
+    /// assert_eq!(contact.pressure(0.11), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        normal::pressure(&self.profile, &self.elasticity, self.memory.edge(), &StressRadius::new(radius))
+        normal::pressure(&self.profile, &self.elasticity, self.history.edge(), &StressRadius::new(radius))
     }
 
-    /// [`Contact::pressure`] at each of `radii`, m: quicker than one by one.
+    /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.pressures(&[0.0, 0.05])[1], contact.pressure(0.05));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        normal::pressures(&self.profile, &self.elasticity, self.memory.edge(), radii)
+        normal::pressures(&self.profile, &self.elasticity, self.history.edge(), radii)
     }
 
     /// The shape of the indenter.
     #[must_use]
     pub fn profile(&self) -> &Profile {
         &self.profile
+    }
+
+    /// Coulomb's coefficient of friction mu.
+    #[must_use]
+    pub fn friction(&self) -> f64 {
+        self.friction
     }
 
     /// The elastic constants.
@@ -277,95 +234,118 @@ impl Contact {
     }
 
     /// The error that curved moves have left in the tangential force, relative to mu F_N: an estimate from above.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// // A straight move has no such error.
+    /// assert_eq!(contact.path_error(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn path_error(&self) -> f64 {
         self.path_error
     }
 
     /// Contact radius a, m.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// // Hertz: a^2 = R d.
+    /// assert!((contact.contact_radius().powi(2) - 0.01).abs() < 1e-15);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
-        self.memory.edge().radius
+        self.history.edge().radius
     }
 
-    /// Indentation d, m; below nought a gap.
+    /// Indentation d, m; below zero a gap.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&Move { normal: Some(Normal::Indentation(-0.001)), ..Move::default() })?;
+    /// assert_eq!((contact.indentation(), contact.contact_radius()), (-0.001, 0.0));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn indentation(&self) -> f64 {
-        self.memory.edge().level.value()
+        self.history.edge().level.value()
     }
 
     /// Displacement of gross slip on first loading, m, at the present load.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!((contact.gross_slip_displacement() - 0.0075).abs() < 1e-15);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn gross_slip_displacement(&self) -> f64 {
         self.scale() * self.indentation().max(0.0)
     }
 
-    /// How many straight pieces the history has left.
+    /// Number of straight pieces that the slip history consists of.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// // A stuck core and a ring that has slipped.
+    /// assert_eq!(contact.memory_depth(), 2);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn memory_depth(&self) -> usize {
-        self.memory.pieces().len()
+        self.history.pieces().len()
     }
 
-    /// Bytes that the contact takes, its history included.
+    /// Bytes of RAM that the contact takes, its slip history included.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(contact.memory_bytes() > size_of::<Contact>());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Contact>() + self.memory.heap_bytes()
+        size_of::<Contact>() + self.history.heap_bytes()
     }
 
-    /// The figures of the present normal load.
+    /// The summary at the present normal load.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!((contact.summary().gross_slip_force - 2000.0).abs() < 1e-9);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
-    pub fn figures(&self) -> Figures {
-        figures(&self.profile, &self.elasticity, self.friction, self.memory.edge(), self.normal_force)
+    pub fn summary(&self) -> ContactSummary {
+        summary_of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
-    /// The figures of the definition's preload.
+    /// The summary at the preload of the definition.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&Move { normal: Some(Normal::Indentation(0.02)), ..Move::default() })?;
+    /// assert_eq!((contact.initial_summary().indentation, contact.summary().indentation), (0.01, 0.02));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
-    pub fn initial_figures(&self) -> Figures {
+    pub fn initial_summary(&self) -> ContactSummary {
         self.initial
-    }
-
-    /// The state after the last move.
-    #[must_use]
-    pub fn state(&self) -> State {
-        #[cfg(test)]
-        super::profile::call_count::add(|calls| &mut calls.states);
-        let edge = self.memory.edge();
-        let scale = self.scale();
-        let (stick_radius, regime) = self.stick();
-        State {
-            displacement: self.displacement.value(),
-            force: self.force(),
-            indentation: edge.level.value(),
-            normal_force: self.normal_force(),
-            contact_radius: edge.radius,
-            stick_radius,
-            regime,
-            dissipated_energy: self.dissipated.value(),
-            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.memory.energy()).max(0.0),
-            memory_depth: self.memory_depth(),
-        }
-    }
-
-    fn stick(&self) -> (f64, Regime) {
-        let edge = self.memory.edge();
-        if edge.level.value() < 0.0 {
-            return (0.0, Regime::Separated);
-        }
-        if self.friction <= 0.0 {
-            return (0.0, Regime::GrossSlip);
-        }
-        match self.memory.slip_from() {
-            None => (edge.radius, Regime::Stick),
-            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
-            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
-            Some(_) => (edge.radius, Regime::Stick),
-        }
     }
 }
 
-fn figures(profile: &Profile, elasticity: &Elasticity, friction: f64, edge: &Point, normal_force: f64) -> Figures {
+fn summary_of(
+    profile: &Profile,
+    elasticity: &Elasticity,
+    friction: f64,
+    edge: &Point,
+    normal_force: f64,
+) -> ContactSummary {
     let indentation = edge.level.value();
-    Figures {
+    ContactSummary {
         e_star: elasticity.e_star(),
         g_star: elasticity.g_star(),
         indentation,

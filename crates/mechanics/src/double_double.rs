@@ -1,12 +1,19 @@
-//! Twice the digits: a number kept as the unevaluated sum of two `f64`.
+//! Double-double arithmetic: a number as the unevaluated sum of two `f64`.
 //!
-//! Levels and positions differ by far less than they measure: a turning point 1e-14 of the indentation away from the
-//! edge must keep all its digits. The error-free sum and product below are Dekker's (1971) and Knuth's; a result is
-//! good to about 1e-31 of its operands.
+//! Differences of levels are far smaller than the levels: a turning point 1e-14 of the indentation away from the edge
+//! must keep all its digits. The error-free sum and product below are Dekker's (1971) and Knuth's; a result is good to
+//! about 1e-31 of its operands.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// `hi + lo`, with `lo` at most half a unit in the last place of `hi`.
+///
+/// ```
+/// use stickslip_mechanics::DoubleDouble;
+///
+/// let third = DoubleDouble::from(1.0).over(DoubleDouble::from(3.0));
+/// assert!((third * 3.0 - DoubleDouble::from(1.0)).value().abs() < 1e-31);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     hi: f64,
@@ -27,7 +34,8 @@ fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: b - (hi - a) }
 }
 
-/// The two 26-bit halves of `a`. Splitting beats a fused multiply-add here: it needs no instruction set beyond the baseline.
+/// The two 26-bit halves of `a`. Splitting beats a fused multiply-add here: it needs no instruction set beyond the
+/// baseline.
 fn split(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0;
     let t = SPLITTER * a;
@@ -45,7 +53,7 @@ fn two_product(a: f64, b: f64) -> DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// Nought.
+    /// Zero.
     pub const ZERO: DoubleDouble = DoubleDouble { hi: 0.0, lo: 0.0 };
 
     /// The sum `hi + lo` of two numbers of any size.
@@ -72,8 +80,7 @@ impl DoubleDouble {
         (self.hi, self.lo)
     }
 
-    /// What [`DoubleDouble::parts`] gave, put together again bit for bit; nothing is added up, so that not even a sign of nought
-    /// is lost.
+    /// The inverse of [`DoubleDouble::parts`], bit for bit: nothing is added, so that even the sign of zero is kept.
     pub(super) fn from_parts(hi: f64, lo: f64) -> DoubleDouble {
         DoubleDouble { hi, lo }
     }
@@ -84,19 +91,19 @@ impl DoubleDouble {
         if self.hi < 0.0 { -self } else { self }
     }
 
-    /// With the sign of `sign` put before it.
+    /// Itself, or its negative if `sign` is negative.
     #[must_use]
     pub fn signed(self, sign: f64) -> DoubleDouble {
         if sign < 0.0 { -self } else { self }
     }
 
-    /// Half of it, exact but for what underflows.
+    /// Half of it, exact unless it underflows.
     #[must_use]
     pub fn halved(self) -> DoubleDouble {
         DoubleDouble { hi: 0.5 * self.hi, lo: 0.5 * self.lo }
     }
 
-    /// The quotient; `divisor` must not be nought.
+    /// The quotient; `divisor` must not be zero.
     #[must_use]
     pub fn over(self, divisor: DoubleDouble) -> DoubleDouble {
         let first = self.hi / divisor.hi;
@@ -106,7 +113,7 @@ impl DoubleDouble {
         quick_two_sum(first, second) + DoubleDouble::from(rest.hi / divisor.hi)
     }
 
-    /// The square root; nought for what is not positive.
+    /// The square root; zero for what is not positive.
     #[must_use]
     pub fn sqrt(self) -> DoubleDouble {
         if self.hi <= 0.0 {

@@ -18,6 +18,12 @@ impl Body {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::YOUNGS_MODULUS`] and [`range::POISSON_RATIO`].
+    ///
+    /// ```
+    /// use stickslip_mechanics::Body;
+    ///
+    /// assert!(Body::new(2.1e11, 0.3).is_ok() && Body::new(2.1e11, 0.6).is_err());
+    /// ```
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Result<Body, Error> {
         Ok(Body {
             youngs_modulus: range::YOUNGS_MODULUS.check(youngs_modulus)?,
@@ -49,6 +55,17 @@ pub struct Elasticity {
 
 impl Elasticity {
     /// Two elastic bodies.
+    ///
+    /// ```
+    /// use stickslip_mechanics::{Body, Elasticity};
+    ///
+    /// let steel = Body::new(2.1e11, 0.3)?;
+    /// let pair = Elasticity::of_bodies(steel, steel);
+    /// // Mindlin (1949): E*/G* = (2 - nu)/(2 (1 - nu)) for equal bodies, which do not couple.
+    /// assert!((pair.e_star() / pair.g_star() - 1.7 / 1.4).abs() < 1e-15);
+    /// assert_eq!(pair.dundurs_beta(), Some(0.0));
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
     #[must_use]
     pub fn of_bodies(first: Body, second: Body) -> Elasticity {
         let (g1, g2) = (first.shear_modulus(), second.shear_modulus());
@@ -63,6 +80,15 @@ impl Elasticity {
     }
 
     /// An elastic body against a rigid one.
+    ///
+    /// ```
+    /// use stickslip_mechanics::{Body, Elasticity};
+    ///
+    /// // Incompressible rubber does not couple normal and tangential contact: E* = E/(1 - nu^2).
+    /// let rubber = Elasticity::against_rigid(Body::new(3e6, 0.5)?);
+    /// assert_eq!((rubber.e_star(), rubber.dundurs_beta().map(f64::abs)), (4e6, Some(0.0)));
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
     #[must_use]
     pub fn against_rigid(body: Body) -> Elasticity {
         let nu = body.poisson_ratio;
@@ -100,7 +126,7 @@ impl Elasticity {
     }
 
     /// Dundurs' second parameter of the pair; `None` where only the reduced moduli are known. Normal and tangential
-    /// contact decouple exactly only where it is nought.
+    /// contact decouple exactly only where it is zero.
     #[must_use]
     pub fn dundurs_beta(&self) -> Option<f64> {
         self.dundurs_beta

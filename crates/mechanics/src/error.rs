@@ -1,8 +1,8 @@
-//! What the mechanics refuses, and why. It knows no status codes.
+//! The errors of the mechanics, and the reasons that they name.
 
 use thiserror::Error as ThisError;
 
-use super::range::short;
+use super::range::{Quantity, short};
 
 /// A request that has no answer. Nothing has changed when one is returned.
 #[derive(Clone, Debug, PartialEq, ThisError)]
@@ -10,9 +10,9 @@ pub enum Error {
     /// A number outside what is accepted.
     #[error("{quantity} = {} is out of range: allowed is {allowed}", short(*value))]
     OutOfRange {
-        /// The name that clients know the quantity by.
-        quantity: &'static str,
         /// What was given.
+        quantity: Quantity,
+        /// Its value, in its SI unit.
         value: f64,
         /// The range, in words.
         allowed: String,
@@ -52,15 +52,12 @@ pub enum Error {
         /// Where along the move that is, from 0 to 1.
         part: f64,
     },
-    /// The caller has broken the move off.
-    #[error("broken off")]
-    BrokenOff,
+    /// The caller has ended the computation before it was complete.
+    #[error("interrupted")]
+    Interrupted,
     /// The solver cannot follow this pair of targets.
-    #[error("{what}")]
-    Unsupported {
-        /// What cannot be followed.
-        what: &'static str,
-    },
+    #[error("{0}")]
+    Unsupported(UnsupportedMove),
 }
 
 /// Why two columns of radii r and heights z are not a profile.
@@ -78,4 +75,15 @@ pub enum TableFault {
     /// No height is above the one at the centre.
     #[error("z does not rise anywhere")]
     HeightNeverRises,
+}
+
+/// A pair of targets that the spring foundation has no rule for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+pub enum UnsupportedMove {
+    /// A normal force together with a tangential target.
+    #[error("springs follow a normal force only without a tangential target")]
+    NormalForceWithTangentialTarget,
+    /// A tangential force while the indentation changes.
+    #[error("springs follow a tangential force only at constant indentation")]
+    TangentialForceWithNormalTarget,
 }

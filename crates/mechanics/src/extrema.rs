@@ -1,31 +1,32 @@
 //! The extrema of the shear stress.
 //!
-//! Just inside a kink of the memory, where the slope changes by gamma, tau falls off like -gamma sqrt(x - r), so that its
-//! derivative is infinite there with a known sign; where f'' of the profile jumps it is log-infinite with one sign on both
-//! sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled between these radii, ever
-//! closer to those it is infinite at, and an extremum is where its sign changes: within a stretch a root, between two the
-//! radius they meet at. Signs alternate from one to the next, so none is found twice.
+//! Just inside a kink of the slip history, where the slope changes by gamma, tau falls off like -gamma sqrt(x - r), so
+//! that its derivative is infinite there with a known sign; where f'' of the profile jumps it is log-infinite with one
+//! sign on both sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled
+//! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
+//! stretch a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::profile::StressRadius;
-use super::traction::Peak;
+use super::shear_stress::Peak;
 
-/// Towards a kink of the memory each distance is smaller by this factor, as a logarithm: beneath a thin ring the derivative
-/// has structure of every size from the whole stretch down to the ring's depth.
+/// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
+/// derivative has structure of every size from the whole stretch down to the ring's depth.
 const STEP: f64 = 0.511;
 /// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
 const FINEST: f64 = 1e-3;
-/// The same where the profile makes the derivative infinite: at this part of the square of the radius, half that of the radius.
+/// The same limit where the profile makes the derivative infinite: at this part of the square of the radius, half that
+/// of the radius.
 const FLOOR: f64 = 1e-14;
 /// Beyond this place a distance is below the round-off of twice the digits.
 const LAST: f64 = 72.0;
 /// Towards a knot a logarithm is followed by places that grow by this factor.
 const STRIDE: f64 = 2.0;
-/// With more stretches than this between the knots of a table, each is looked at in its middle and at its ends alone.
+/// With more stretches than this between the knots of a table, each is sampled at its middle and its ends alone.
 const MANY: usize = 100;
 
-/// A derivative below this share of what it is the sum of is nought: the kernels of some families are good to 1e-13.
+/// A derivative below this share of what it is the sum of is zero: the kernels of some families are good to 1e-13.
 const NOISE: f64 = 1e-12;
 
 /// How the derivative behaves at the end of a stretch.
@@ -41,16 +42,16 @@ enum End {
     Inverse,
 }
 
-/// A stretch of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end to
-/// infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their squares.
+/// A stretch of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end
+/// to infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their squares.
 struct Stretch {
     inner: StressRadius,
     outer: StressRadius,
-    /// How it begins, and the sign of the derivative there, nought if unknown.
+    /// How it begins, and the sign of the derivative there, zero if unknown.
     start: (End, f64),
     /// How it ends, likewise.
     end: (End, f64),
-    /// One of so many that a few looks must do.
+    /// One of so many stretches that each gets a few samples only.
     brief: bool,
 }
 
@@ -75,7 +76,7 @@ impl Stretch {
         StressRadius { radius: square.value().max(0.0).sqrt(), square }
     }
 
-    /// What dips stand out by: the derivative grows with the inverse of this.
+    /// Scales samples for comparison: near the end the derivative grows with the inverse of this.
     fn weight(&self, place: f64) -> f64 {
         let end = if place > 0.0 { self.end.0 } else { self.start.0 };
         match end {
@@ -129,10 +130,10 @@ impl Stretch {
 }
 
 impl Contact {
-    /// d tau/d(r^2) but for a positive factor, from the right at a kink; nought where it is nought to round-off or unknown.
+    /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.
     fn trend(&self, at: &StressRadius) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
-        for (ring, line) in self.memory.rings() {
+        for (ring, line) in self.history.rings() {
             if ring.outer.radius < at.radius {
                 break;
             }
@@ -147,17 +148,17 @@ impl Contact {
         if sum.is_infinite() || sum.abs() > NOISE * size { sum } else { 0.0 }
     }
 
-    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `go_on` said no.
-    pub(super) fn peaks(&self, go_on: impl Fn() -> bool) -> Option<Vec<Peak>> {
-        let edge = StressRadius::of_point(self.memory.edge());
+    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
+    pub(super) fn peaks(&self, keep_going: impl Fn() -> bool) -> Option<Vec<Peak>> {
+        let edge = StressRadius::of_point(self.history.edge());
         let bends = self.bends();
         let settled = self.settled_from(&bends);
-        let pieces = self.memory.pieces();
+        let pieces = self.history.pieces();
         let knots = self.profile.knots_below(edge.radius);
         let singular = self.profile.singular_radii();
         let mut search = Search { contact: self, sign: 0.0, peaks: Vec::new() };
         for (index, &bend) in bends.iter().enumerate() {
-            if !go_on() {
+            if !keep_going() {
                 return None;
             }
             // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
@@ -166,26 +167,26 @@ impl Contact {
                 // The rest lies at a vertical edge.
                 break;
             }
-            let outer = pieces.get(index + 1).map_or(*self.memory.edge(), |next| next.inner);
+            let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
             let to = StressRadius::of_point(&outer);
             if settled[index] {
                 search.pass(&from, -bend);
                 continue;
             }
-            let beyond = pieces.get(index + 2).map_or(*self.memory.edge(), |next| next.inner);
-            let last = if to.square >= edge.square && self.memory.edge().level.value() > self.profile.level(edge.radius)
-            {
-                (End::Logarithm, 0.0)
-            } else {
-                (End::Root((beyond.square - outer.square).value()), -bend)
-            };
+            let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
+            let last =
+                if to.square >= edge.square && self.history.edge().level.value() > self.profile.level(edge.radius) {
+                    (End::Logarithm, 0.0)
+                } else {
+                    (End::Root((beyond.square - outer.square).value()), -bend)
+                };
             let begins = knots.partition_point(|&knot| knot <= from.radius);
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
             let brief = ends - begins > MANY;
             let within = knots[begins..ends].iter().map(|&knot| {
                 let at = StressRadius::new(knot);
                 let rim = singular.contains(&knot);
-                // At the same distance on either side a logarithm has the same value: one look serves both.
+                // StressRadius the same distance on either side a logarithm has the same value: one sample serves both.
                 let beside = DoubleDouble::square_of(knot) * (1.0 + FLOOR);
                 let infinite = if rim {
                     self.trend(&at)
@@ -204,7 +205,7 @@ impl Contact {
             let mut start = self.start(index, &from, &knots);
             let mut inner = from;
             for (outer, end, next) in within.chain([(to, last, last)]) {
-                if !go_on() {
+                if !keep_going() {
                     return None;
                 }
                 search.through(&Stretch { inner, outer, start, end, brief });
@@ -216,11 +217,11 @@ impl Contact {
         Some(search.peaks)
     }
 
-    /// How the derivative begins beyond kink `index` of the memory, the centre for the first.
+    /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
     fn start(&self, index: usize, from: &StressRadius, knots: &[f64]) -> (End, f64) {
         let sign = self.trend(from);
         let end = if index == 0 {
-            let slips = self.memory.pieces()[0].line.slope.value().abs() > 0.0;
+            let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
             if !slips || self.profile.smooth_centre() { End::Smooth } else { End::Inverse }
         } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
             return (End::Logarithm, 0.0);
@@ -232,19 +233,20 @@ impl Contact {
 
     /// Change of slope at each kink, from the first beyond the centre to the edge.
     fn bends(&self) -> Vec<f64> {
-        let slope = |index: usize| self.memory.pieces().get(index).map_or(0.0, |piece| piece.line.slope.value());
-        (0..self.memory.pieces().len()).map(|index| slope(index + 1) - slope(index)).collect()
+        let slope = |index: usize| self.history.pieces().get(index).map_or(0.0, |piece| piece.line.slope.value());
+        (0..self.history.pieces().len()).map(|index| slope(index + 1) - slope(index)).collect()
     }
 
-    /// Whether the derivative keeps one sign in the interval inside each kink, known without a search: where all bends from
-    /// there on alternate and do not grow, and the kernel falls, the sum is an alternating one led by its first term.
+    /// Whether the derivative keeps one sign in the interval inside each kink, known without a search: where all bends
+    /// from there on alternate and do not grow, and the kernel falls, the sum is an alternating one led by its first
+    /// term.
     fn settled_from(&self, bends: &[f64]) -> Vec<bool> {
         let mut settled = vec![false; bends.len()];
         for index in (0..bends.len()).rev() {
             let bend = bends[index];
             settled[index] = match bends.get(index + 1) {
                 Some(next) => settled[index + 1] && bend * next < 0.0 && bend.abs() >= next.abs(),
-                // A straight end carries nothing on: there is no first term to lead.
+                // Without a bend at the edge there is no first term to lead.
                 None => bend.abs() > 0.0 && self.profile.kernel_falls(),
             };
         }
@@ -255,7 +257,7 @@ impl Contact {
 /// The search on its way from the centre outward.
 struct Search<'a> {
     contact: &'a Contact,
-    /// The sign that the derivative had last, nought before the first.
+    /// The sign that the derivative had last, zero before the first.
     sign: f64,
     peaks: Vec<Peak>,
 }
@@ -308,7 +310,7 @@ impl Search<'_> {
         }
     }
 
-    /// Where the derivative dips through nought between two samples of one sign, if it does.
+    /// Where the derivative dips through zero between two samples of one sign, if it does.
     fn dip(&self, stretch: &Stretch, mut low: Sample, mut high: Sample) -> Option<Sample> {
         let sign = low.value.signum();
         for _ in 0..48 {
@@ -329,8 +331,8 @@ impl Search<'_> {
         None
     }
 
-    /// Bisects for the change of sign between a sample and a place: the derivative ends in an inverse root, which nothing
-    /// quicker takes without care, and there are few of these.
+    /// Bisects for the change of sign between a sample and a place. The derivative ends in an inverse root, for which
+    /// faster methods need special care, and there are few of these searches.
     fn turn(&mut self, stretch: &Stretch, from: Sample, to: f64) {
         let (mut low, mut high) = (from.place.max(-LAST), to.min(LAST));
         loop {
@@ -345,7 +347,7 @@ impl Search<'_> {
             }
         }
         self.sign = -from.value.signum();
-        // So near to the centre there is no telling it from the centre.
+        // An extremum this near to the centre cannot be distinguished from the centre.
         if stretch.inner.square.value() > 0.0 || low > -LAST {
             self.found(&stretch.at(high));
         }

@@ -1,10 +1,15 @@
-//! The mechanics of a frictional contact, in plain numbers: no HTTP, no serialisation, no concurrency.
+//! The frictional contact of two elastic bodies, solved exactly, in plain numbers.
+//!
+//! A [`Contact`] is made from a [`Setup`], moved by [`Contact::apply`] and asked for its [`State`], its stresses and
+//! its
+//! [`Residual`]. `README.md` has a complete example.
 //!
 //! # The theory in a page
 //!
-//! Two elastic bodies, rotationally symmetric about the z axis, are pressed together over a circle of radius a and moved
-//! sideways by U. Coulomb friction bounds the shear stress by mu times the pressure. By the method of dimensionality
-//! reduction (Popov & Hess 2015) the contact is that of a row of independent springs along x with a plane profile g(x):
+//! Two elastic bodies, rotationally symmetric about the z axis, are pressed together over a circle of radius a and
+//! moved sideways by U. Coulomb friction bounds the shear stress by mu times the pressure. By the method of
+//! dimensionality reduction (Popov & Hess 2015) the contact is that of a row of independent springs along x with a
+//! plane profile g(x):
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
@@ -16,8 +21,9 @@
 //! | u_x, w = u_x/m | tangential displacement of a spring, and scaled | m |
 //! | y = g(x), X(y) | level of a spring, and its radius | m |
 //!
-//! A spring at level y is pressed in by d - y, and slips where |w| = d - y. The memory holds w over y as a stack of
-//! straight pieces, which is exact for every path that is straight in (d, U) from move to move. From the pieces follow
+//! A spring at level y is pressed in by d - y, and slips where |w| = d - y. The slip history is w over y, held as a
+//! stack of straight pieces, which is exact for every path that is straight in (d, U) from move to move. From the
+//! pieces follow
 //!
 //! - the tangential force F_x = 2 G* m int_0^a w dx,
 //! - the shear stress tau(r) = -(G*/pi) int_r^a u_x'(x)/sqrt(x^2 - r^2) dx,
@@ -25,45 +31,70 @@
 //!
 //! all as sums over pieces of a few integrals that each [`Profile`] knows in closed form.
 //!
-//! Positive displacement gives positive force and positive shear stress. Energies are of the tangential problem alone.
+//! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem
+//! alone.
 //!
 //! # The map
 //!
-//! [`elasticity`]: moduli. [`profile`]: shapes. `normal`: the normal contact. `memory` and `release`: the stack, and the
-//! friction work of a move. `state`, `contact`, `force`, `route`, `traction`, `extrema`, `surface`, `accuracy`: what is
-//! asked of it. `waypoint`: where a move is on its way. `packed`: a contact as bytes. [`protocol`]: paths. [`springs`]: the
-//! paper's discrete foundation, an independent yardstick. `double`: arithmetic with twice the digits.
+//! | module | its question |
+//! |---|---|
+//! | [`elasticity`] | which two moduli do the bodies have together? |
+//! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
+//! | `normal` | how do indentation, contact radius, normal force and pressure follow from each other? |
+//! | `slip_history` | what is left of the path, and what does a move change? |
+//! | `friction_work` | how much work does a move dissipate? |
+//! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |
+//! | `force_control` | which displacement gives a tangential force? |
+//! | `curved_move` | how is a move followed that is straight in a force? |
+//! | `partial_move` | where does a part of a move lead? |
+//! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
+//! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
+//! | `accuracy` | how far may a result be off? |
+//! | `packed` | how does a contact become bytes, and bytes a contact? |
+//! | [`protocol`] | which paths leave little shear stress? |
+//! | [`springs`] | what does the discrete foundation of the paper answer? |
+//! | [`range`](mod@range), `error` | which numbers are accepted, and what is refused? |
+//! | `double_double` | how do small differences of levels keep their digits? |
 
 mod accuracy;
 mod contact;
+mod curved_move;
 mod double_double;
 pub mod elasticity;
 mod error;
 mod extrema;
-mod force;
+mod force_control;
+mod friction_work;
+mod moves;
 mod normal;
 mod packed;
+mod partial_move;
 pub mod profile;
 pub mod protocol;
+mod quantity;
 pub mod range;
-mod release;
-mod route;
+mod shear_stress;
 mod slip_history;
 pub mod springs;
 mod state;
-mod surface;
-mod traction;
-mod waypoint;
+mod surface_displacement;
+#[cfg(test)]
+mod tests;
 
-pub use accuracy::Estimate;
+/// Runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+pub use accuracy::ErrorEstimate;
 pub use contact::Contact;
+pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use double_double::DoubleDouble;
 pub use elasticity::{Body, Elasticity};
-pub use error::{Error, TableFault};
-pub use normal::{Figures, Preload};
+pub use error::{Error, TableFault, UnsupportedMove};
+pub use normal::{ContactSummary, Preload};
 pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};
-pub use route::{DEFAULT_TOLERANCE, MAX_CHORDS};
+pub use shear_stress::{Peak, Residual};
 pub use springs::Springs;
 pub use state::{Move, Normal, Regime, Setup, State, Tangential};
-pub use traction::{Peak, Residual};

@@ -1,17 +1,17 @@
 //! Normal contact: indentation, contact radius, normal force and pressure, each from the others.
 //!
-//! d = g(a), F_N = 2 E* int_0^a (d - g) dx = 2 E* int_0^d X(y) dy, p(r) = (E*/pi) int dy/sqrt(X(y)^2 - r^2) over X(y) > r
-//! (Popov & Hess 2015; the last form takes in a vertical edge as well).
+//! d = g(a), F_N = 2 E* int_0^a (d - g) dx = 2 E* int_0^d X(y) dy, p(r) = (E*/pi) int dy/sqrt(X(y)^2 - r^2) over
+//! X(y) > r (Popov & Hess 2015; the last form takes in a vertical edge as well).
 
 use super::elasticity::Elasticity;
 use super::error::Error;
 use super::profile::{Point, Profile, Ring, StressRadius};
-use super::range::short;
+use super::range::{Quantity, short};
 
-/// Radii at which the largest pressure is looked for first.
+/// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
 
-/// What presses the bodies together at the start. Zero is a contact just touching.
+/// The normal load at the start. Zero is a contact just touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preload {
     /// F_N, N.
@@ -22,14 +22,14 @@ pub enum Preload {
     ContactRadius(f64),
 }
 
-/// The figures that follow from a definition and a normal load.
+/// Moduli, normal contact and limits of gross slip that follow from a definition and a normal load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figures {
+pub struct ContactSummary {
     /// Reduced modulus E*, Pa.
     pub e_star: f64,
     /// Reduced shear modulus G*, Pa.
     pub g_star: f64,
-    /// Indentation d, m; below nought a gap.
+    /// Indentation d, m; below zero a gap.
     pub indentation: f64,
     /// Contact radius a, m.
     pub contact_radius: f64,
@@ -43,8 +43,15 @@ pub struct Figures {
     pub gross_slip_force: f64,
 }
 
-impl Figures {
-    /// The pressure that stresses are compared with, Pa: the largest, or where that is infinite the mean.
+impl ContactSummary {
+    /// The pressure that stresses are related to, Pa: the largest, or the mean where that is infinite.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let summary = contact.summary();
+    /// assert_eq!(Some(summary.unit_pressure()), summary.max_pressure);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn unit_pressure(&self) -> f64 {
         self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))
@@ -61,7 +68,7 @@ pub(super) fn whole(profile: &Profile, edge: &Point) -> Ring {
     Ring::between(profile.point(super::double_double::DoubleDouble::ZERO), *edge)
 }
 
-/// int_0^d X dy = F_N/(2 E*), m^2, over a ring: what its levels add to the load.
+/// int X dy, m^2, over a ring: its share of F_N/(2 E*).
 pub(super) fn load(profile: &Profile, ring: &Ring) -> f64 {
     if ring.depth <= 0.0 {
         return 0.0;
@@ -84,7 +91,7 @@ pub(super) fn indentation(profile: &Profile, elasticity: &Elasticity, normal_for
 /// # Errors
 /// [`Error::OutOfRange`] for a radius that is not that of one load alone: below a flat end, or from a vertical edge on.
 pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Error> {
-    let allowed = |allowed: String| Error::OutOfRange { quantity: "contact_radius", value: radius, allowed };
+    let allowed = |allowed: String| Error::OutOfRange { quantity: Quantity::ContactRadius, value: radius, allowed };
     profile.check_radius(radius)?;
     let flat = profile.radius(0.0);
     if radius < flat {
@@ -101,7 +108,7 @@ pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Erro
     Ok(profile.level(radius))
 }
 
-/// Pressure, Pa, at radius r; nought outside the contact.
+/// Pressure, Pa, at radius r; zero outside the contact.
 pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point, at: &StressRadius) -> f64 {
     let ring = whole(profile, edge);
     if ring.depth <= 0.0 {
@@ -110,7 +117,7 @@ pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point,
     elasticity.e_star() / std::f64::consts::PI * profile.kernel(at, &ring)
 }
 
-/// [`pressure`] at each of `radii`, m: quicker than one by one.
+/// [`pressure`] at each of `radii`, m: faster than one by one.
 pub(super) fn pressures(profile: &Profile, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
     let ring = whole(profile, edge);
     if ring.depth <= 0.0 {
@@ -131,12 +138,13 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if profile.kernel_falls() {
         return Some(at(0.0));
     }
-    // The largest of a scan, then thirds about it: a profile that is steep outside has its maximum off the centre.
+    // A scan, then a ternary search about its largest value: a profile that is steep outside has its maximum off the
+    // centre.
     let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
     let scan: Vec<f64> = (0..PRESSURE_SCAN).map(|index| at(radius(index))).collect();
     let best = (0..PRESSURE_SCAN).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
     let (mut low, mut high) = (radius(best.saturating_sub(1)), radius(best + 1));
-    // At a maximum, half the digits of the radius are all that count.
+    // StressRadius a maximum the pressure depends on half the digits of the radius alone.
     for _ in 0..40 {
         let third = (high - low) / 3.0;
         if at(low + third) >= at(high - third) { high -= third } else { low += third }

@@ -1,23 +1,24 @@
-//! A contact as bytes, and back to the last bit: what a replay can begin at.
+//! A contact as bytes and back, equal to the last bit.
 //!
-//! Everything that moves is written as it is, sums included; what follows from the definition is not, since whoever reads
-//! the bytes has made the contact from it. Little-endian `f64` throughout:
+//! Everything that a move changes is written as it is, sums included. What follows from the definition is not, because
+//! the reader has already made a contact from it. Little-endian `f64` throughout:
 //!
 //! | bytes | what |
 //! |---|---|
 //! | 4 | [`LAYOUT`] and, in the upper half, [`ENGINE`] |
 //! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
-//! | the rest | the memory, see `memory/packed.rs` |
+//! | the rest | the slip history, see `slip_history/packed.rs` |
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::profile::Point;
-use super::slip_history::Memory;
+use super::slip_history::SlipHistory;
 
-/// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for whatever
-/// contact: bytes of another version are not read, so that states packed by an older engine are computed anew from their
-/// moves and agree with those that never were packed. `tests/packed.rs` holds a digest of results to this number.
+/// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for
+/// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
+/// from their moves and agree with those that never were packed. `tests/physics/packed.rs` compares a digest of results
+/// for it.
 pub const ENGINE: u16 = 2;
 
 /// The version of the arrangement of the bytes.
@@ -26,7 +27,7 @@ const LAYOUT: u16 = 1;
 /// Writes numbers one after the other.
 pub(super) struct Writer(Vec<u8>);
 
-/// Takes numbers one after the other; nothing once the bytes are used up.
+/// Reads numbers one after the other; `None` after the last byte.
 pub(super) struct Reader<'a>(&'a [u8]);
 
 impl Writer {
@@ -54,8 +55,8 @@ impl Reader<'_> {
         Some(u16::from_le_bytes(*head))
     }
 
-    /// Takes the versions at the beginning; whether they are those of this program.
-    fn is_ours(&mut self) -> bool {
+    /// Reads the versions at the beginning, and compares them with those of this program.
+    fn is_current(&mut self) -> bool {
         self.version() == Some(LAYOUT) && self.version() == Some(ENGINE)
     }
 
@@ -86,20 +87,34 @@ impl Reader<'_> {
 
 impl Contact {
     /// How many bytes [`Contact::pack`] makes.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert_eq!(contact.packed_length(), contact.pack().len());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn packed_length(&self) -> usize {
-        2 * size_of::<u16>() + 11 * size_of::<f64>() + self.memory.packed_length()
+        2 * size_of::<u16>() + 11 * size_of::<f64>() + self.history.packed_length()
     }
 
-    /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another version
-    /// of the engine or of the layout refuses them.
+    /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another
+    /// version of the engine or of the layout refuses them.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// let back = Contact::new(setup)?.unpack(&contact.pack()).unwrap();
+    /// assert_eq!(back.force().to_bits(), contact.force().to_bits());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn pack(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.packed_length());
         bytes.extend_from_slice(&LAYOUT.to_le_bytes());
         bytes.extend_from_slice(&ENGINE.to_le_bytes());
         let mut writer = Writer(bytes);
-        for value in self.marks() {
+        for value in self.definition_marks() {
             writer.number(value);
         }
         writer.double(self.displacement);
@@ -107,26 +122,39 @@ impl Contact {
         writer.double(self.dissipated);
         writer.number(self.path_error);
         writer.number(self.path_kernel);
-        self.memory.pack(&mut writer);
+        self.history.pack(&mut writer);
         writer.0
     }
 
-    /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are sound.
+    /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are undamaged.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(Contact::is_current_packing(&contact.pack()) && !Contact::is_current_packing(&[0; 4]));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
-    pub fn packs_like(bytes: &[u8]) -> bool {
-        Reader(bytes).is_ours()
+    pub fn is_current_packing(bytes: &[u8]) -> bool {
+        Reader(bytes).is_current()
     }
 
-    /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a contact of
-    /// the same definition, such as the virgin one. `None` for bytes that are cut short, of another version, of a contact
-    /// with another preload, or no state of a contact at all; damage that leaves sound numbers goes unnoticed.
+    /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a
+    /// contact of the same definition, such as the virgin one. `None` for bytes that are cut short, of another version,
+    /// of a contact with another preload, or of no valid state; damage that leaves valid numbers is not detected.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let other = Contact::new(Setup { preload: Preload::Indentation(0.02), ..setup })?;
+    /// assert!(other.unpack(&contact.pack()).is_none());
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
         let mut reader = Reader(bytes);
-        if !reader.is_ours() {
+        if !reader.is_current() {
             return None;
         }
-        for value in self.marks() {
+        for value in self.definition_marks() {
             reader.any().filter(|found| found.to_bits() == value.to_bits())?;
         }
         let displacement = reader.double()?;
@@ -134,12 +162,12 @@ impl Contact {
         let dissipated = reader.double()?;
         // The error of a stress may be without bound.
         let (path_error, path_kernel) = (reader.any()?, reader.any()?);
-        let memory = Memory::unpack(&mut reader)?;
+        let history = SlipHistory::unpack(&mut reader)?;
         Some(Contact {
             profile: self.profile.clone(),
             elasticity: self.elasticity,
             friction: self.friction,
-            memory,
+            history,
             displacement,
             normal_force,
             dissipated,
@@ -150,8 +178,8 @@ impl Contact {
         })
     }
 
-    /// What tells contacts of different definitions apart well enough, and machines that compute a preload differently.
-    fn marks(&self) -> [f64; 4] {
+    /// Numbers that distinguish contacts of different definitions, and machines that compute a preload differently.
+    fn definition_marks(&self) -> [f64; 4] {
         let (hi, lo) = self.inverse_scale.parts();
         [self.initial.indentation, self.initial.normal_force, hi, lo]
     }

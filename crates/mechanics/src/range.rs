@@ -1,14 +1,15 @@
-//! What numbers the mechanics accepts: one constant a quantity, used by every check and every document that names it.
+//! The ranges of the numbers that the mechanics accepts, one constant each, for checks and documents alike.
 
 use std::fmt;
 
 use super::error::Error;
+pub use super::quantity::Quantity;
 
 /// A quantity's name, unit and closed interval, bounds included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// The name that clients know the quantity by.
-    pub quantity: &'static str,
+    /// What the number measures.
+    pub quantity: Quantity,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
     /// The smallest value accepted.
@@ -18,58 +19,64 @@ pub struct Range {
 }
 
 /// Any radius of a body or a contact.
-pub const RADIUS: Range = Range { quantity: "radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const RADIUS: Range = Range { quantity: Quantity::Radius, unit: "m", min: 1e-15, max: 1e9 };
 /// Radius of a flat end.
-pub const FLAT_RADIUS: Range = Range { quantity: "flat_radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const FLAT_RADIUS: Range = Range { quantity: Quantity::FlatRadius, unit: "m", min: 1e-15, max: 1e9 };
 /// Curvature radius of a rounded edge.
-pub const EDGE_RADIUS: Range = Range { quantity: "edge_radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const EDGE_RADIUS: Range = Range { quantity: Quantity::EdgeRadius, unit: "m", min: 1e-15, max: 1e9 };
 /// Radius up to which the tip of a cone is rounded.
-pub const TIP_RADIUS: Range = Range { quantity: "tip_radius", unit: "m", min: 1e-15, max: 1e9 };
+pub const TIP_RADIUS: Range = Range { quantity: Quantity::TipRadius, unit: "m", min: 1e-15, max: 1e9 };
 /// Slope dz/dr of a cone.
-pub const SLOPE: Range = Range { quantity: "slope", unit: "", min: 1e-9, max: 1e9 };
+pub const SLOPE: Range = Range { quantity: Quantity::Slope, unit: "", min: 1e-9, max: 1e9 };
 /// Exponent of a power law.
-pub const EXPONENT: Range = Range { quantity: "exponent", unit: "", min: 0.1, max: 1000.0 };
-/// Coefficient of a power law; its unit, m^(1 - n), hangs on the exponent.
-pub const COEFFICIENT: Range = Range { quantity: "coefficient", unit: "m^(1-n)", min: 1e-280, max: 1e280 };
+pub const EXPONENT: Range = Range { quantity: Quantity::Exponent, unit: "", min: 0.1, max: 1000.0 };
+/// Coefficient of a power law; its unit, m^(1 - n), depends on the exponent.
+pub const COEFFICIENT: Range = Range { quantity: Quantity::Coefficient, unit: "m^(1-n)", min: 1e-280, max: 1e280 };
 /// How many points a tabulated profile may have.
-pub const TABLE_POINTS: Range = Range { quantity: "points of the table", unit: "", min: 3.0, max: 10_000.0 };
+pub const TABLE_POINTS: Range = Range { quantity: Quantity::TablePoints, unit: "", min: 3.0, max: 10_000.0 };
 /// A radius in a table.
-pub const TABLE_RADIUS: Range = Range { quantity: "r", unit: "m", min: 0.0, max: 1e9 };
+pub const TABLE_RADIUS: Range = Range { quantity: Quantity::TableRadius, unit: "m", min: 0.0, max: 1e9 };
 /// A height in a table.
-pub const TABLE_HEIGHT: Range = Range { quantity: "z", unit: "m", min: -1e9, max: 1e9 };
+pub const TABLE_HEIGHT: Range = Range { quantity: Quantity::TableHeight, unit: "m", min: -1e9, max: 1e9 };
 /// How many profiles a sum may have, sums within it counted by their parts.
-pub const PARTS: Range = Range { quantity: "number of parts", unit: "", min: 1.0, max: 16.0 };
+pub const PARTS: Range = Range { quantity: Quantity::Parts, unit: "", min: 1.0, max: 16.0 };
 /// Young's modulus of a body.
-pub const YOUNGS_MODULUS: Range = Range { quantity: "youngs_modulus", unit: "Pa", min: 1e-3, max: 1e18 };
+pub const YOUNGS_MODULUS: Range = Range { quantity: Quantity::YoungsModulus, unit: "Pa", min: 1e-3, max: 1e18 };
 /// Poisson's ratio of a body; auxetic bodies are allowed.
-pub const POISSON_RATIO: Range = Range { quantity: "poisson_ratio", unit: "", min: -0.99, max: 0.5 };
+pub const POISSON_RATIO: Range = Range { quantity: Quantity::PoissonRatio, unit: "", min: -0.99, max: 0.5 };
 /// The reduced modulus E*.
-pub const E_STAR: Range = Range { quantity: "e_star", unit: "Pa", min: 1e-3, max: 1e18 };
+pub const E_STAR: Range = Range { quantity: Quantity::EStar, unit: "Pa", min: 1e-3, max: 1e18 };
 /// The reduced shear modulus G*.
-pub const G_STAR: Range = Range { quantity: "g_star", unit: "Pa", min: 1e-3, max: 1e18 };
-/// Coulomb's coefficient of friction; nought means no tangential force at all.
-pub const FRICTION: Range = Range { quantity: "friction", unit: "", min: 0.0, max: 100.0 };
-/// The smallest coefficient of friction beside nought: below it, displacements over that of gross slip outgrow all numbers.
-pub const LEAST_FRICTION: f64 = 1e-9;
+pub const G_STAR: Range = Range { quantity: Quantity::GStar, unit: "Pa", min: 1e-3, max: 1e18 };
+/// Coulomb's coefficient of friction; zero means no tangential force at all.
+pub const FRICTION: Range = Range { quantity: Quantity::Friction, unit: "", min: 0.0, max: 100.0 };
+/// The smallest coefficient of friction above zero: below it, displacements relative to that of gross slip overflow.
+pub const MIN_POSITIVE_FRICTION: f64 = 1e-9;
 /// A normal force that presses the bodies together.
-pub const NORMAL_FORCE: Range = Range { quantity: "normal_force", unit: "N", min: 0.0, max: 1e18 };
-/// The smallest normal force beside nought, N: below it, what follows from a force has no digits left.
-pub const LEAST_NORMAL_FORCE: f64 = 1e-250;
-/// The contact radius, as a preload asks for it or as it comes of a load; nought is a contact just touching.
-pub const CONTACT_RADIUS: Range = Range { quantity: "contact_radius", unit: "m", min: 0.0, max: 1e9 };
+pub const NORMAL_FORCE: Range = Range { quantity: Quantity::NormalForce, unit: "N", min: 0.0, max: 1e18 };
+/// The smallest normal force above zero, N: below it, quantities that follow from the force underflow.
+pub const MIN_POSITIVE_NORMAL_FORCE: f64 = 1e-250;
+/// The contact radius, prescribed or as it follows from a load; zero is a contact just touching.
+pub const CONTACT_RADIUS: Range = Range { quantity: Quantity::ContactRadius, unit: "m", min: 0.0, max: 1e9 };
 /// The indentation that a preload may ask for.
-pub const PRELOAD_INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: 0.0, max: 1e9 };
-/// The indentation that a move may ask for; below nought the bodies are apart.
-pub const INDENTATION: Range = Range { quantity: "indentation", unit: "m", min: -1e9, max: 1e9 };
+pub const PRELOAD_INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: 0.0, max: 1e9 };
+/// The indentation that a move may ask for; below zero the bodies are apart.
+pub const INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m", min: -1e9, max: 1e9 };
 /// The tangential displacement of the indenter.
-pub const DISPLACEMENT: Range = Range { quantity: "displacement", unit: "m", min: -1e9, max: 1e9 };
+pub const DISPLACEMENT: Range = Range { quantity: Quantity::Displacement, unit: "m", min: -1e9, max: 1e9 };
 /// A tangential force.
-pub const FORCE: Range = Range { quantity: "force", unit: "N", min: -1e20, max: 1e20 };
+pub const FORCE: Range = Range { quantity: Quantity::Force, unit: "N", min: -1e20, max: 1e20 };
 /// How many springs the foundation may have.
-pub const SPRING_COUNT: Range = Range { quantity: "count", unit: "", min: 2.0, max: 1e6 };
+pub const SPRING_COUNT: Range = Range { quantity: Quantity::SpringCount, unit: "", min: 2.0, max: 1e6 };
 
 impl Range {
     /// Whether `value` lies inside, bounds included; never for a NaN.
+    ///
+    /// ```
+    /// use stickslip_mechanics::range::FRICTION;
+    ///
+    /// assert!(FRICTION.contains(0.0) && !FRICTION.contains(f64::NAN));
+    /// ```
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
@@ -79,6 +86,16 @@ impl Range {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] if it lies outside or is not a number.
+    ///
+    /// ```
+    /// use stickslip_mechanics::range;
+    ///
+    /// assert_eq!(range::POISSON_RATIO.check(0.3), Ok(0.3));
+    /// assert_eq!(
+    ///     range::POISSON_RATIO.check(0.6).unwrap_err().to_string(),
+    ///     "poisson_ratio = 0.6 is out of range: allowed is -0.99 to 0.5",
+    /// );
+    /// ```
     pub fn check(&self, value: f64) -> Result<f64, Error> {
         if self.contains(value) {
             Ok(value)
@@ -88,26 +105,38 @@ impl Range {
     }
 }
 
-/// Gives a coefficient of friction back: nought, or from [`LEAST_FRICTION`] on.
+/// Gives a coefficient of friction back: zero, or from [`MIN_POSITIVE_FRICTION`] on.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
+///
+/// ```
+/// use stickslip_mechanics::range::check_friction;
+///
+/// assert!(check_friction(0.0).is_ok() && check_friction(0.3).is_ok() && check_friction(1e-12).is_err());
+/// ```
 pub fn check_friction(friction: f64) -> Result<f64, Error> {
-    if friction > 0.0 && friction < LEAST_FRICTION {
-        let allowed = format!("0, or {} to {}", short(LEAST_FRICTION), short(FRICTION.max));
+    if friction > 0.0 && friction < MIN_POSITIVE_FRICTION {
+        let allowed = format!("0, or {} to {}", short(MIN_POSITIVE_FRICTION), short(FRICTION.max));
         return Err(Error::OutOfRange { quantity: FRICTION.quantity, value: friction, allowed });
     }
     FRICTION.check(friction)
 }
 
-/// Gives a normal force back: nought, or from [`LEAST_NORMAL_FORCE`] on.
+/// Gives a normal force back: zero, or from [`MIN_POSITIVE_NORMAL_FORCE`] on.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] otherwise.
+///
+/// ```
+/// use stickslip_mechanics::range::check_normal_force;
+///
+/// assert!(check_normal_force(0.0).is_ok() && check_normal_force(-1.0).is_err());
+/// ```
 pub fn check_normal_force(force: f64) -> Result<f64, Error> {
-    if force > 0.0 && force < LEAST_NORMAL_FORCE {
+    if force > 0.0 && force < MIN_POSITIVE_NORMAL_FORCE {
         let allowed =
-            format!("0, or {} to {} {}", short(LEAST_NORMAL_FORCE), short(NORMAL_FORCE.max), NORMAL_FORCE.unit);
+            format!("0, or {} to {} {}", short(MIN_POSITIVE_NORMAL_FORCE), short(NORMAL_FORCE.max), NORMAL_FORCE.unit);
         return Err(Error::OutOfRange { quantity: NORMAL_FORCE.quantity, value: force, allowed });
     }
     NORMAL_FORCE.check(force)
@@ -123,7 +152,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// The number as a person would write it: with an exponent only where it saves a row of noughts.
+/// The number in decimal notation, with an exponent only for very large and very small magnitudes.
 pub(super) fn short(value: f64) -> String {
     let magnitude = value.abs();
     let plain = magnitude.to_bits() == 0 || (1e-2..1e5).contains(&magnitude);

@@ -1,5 +1,6 @@
-//! What a contact is made of, what it is told, and what it answers.
+//! The definition of a contact, its moves and its state.
 
+use super::contact::Contact;
 use super::elasticity::Elasticity;
 use super::normal::Preload;
 use super::profile::Profile;
@@ -17,7 +18,7 @@ pub struct Setup {
     pub preload: Preload,
 }
 
-/// Where a move leads, along a straight line in the quantities that it names.
+/// The end of a move, which is straight in the quantities named.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Move {
     /// The tangential target; without one the displacement stays.
@@ -40,13 +41,13 @@ pub enum Tangential {
 /// A normal target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normal {
-    /// Indentation d, m; below nought the bodies part.
+    /// Indentation d, m; below zero the bodies part.
     Indentation(f64),
     /// Normal force F_N, N.
     NormalForce(f64),
 }
 
-/// What the last move did to the contact.
+/// Which parts of the contact slipped in the last move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
     /// Nothing slipped.
@@ -74,12 +75,62 @@ pub struct State {
     pub contact_radius: f64,
     /// Radius of the part that did not slip in the last move, m.
     pub stick_radius: f64,
-    /// What the last move did.
+    /// Which parts the last move made slip.
     pub regime: Regime,
     /// Friction work since the start, J.
     pub dissipated_energy: f64,
     /// Elastic energy of the tangential deformation, J.
     pub elastic_energy: f64,
-    /// Pieces held in memory.
+    /// Number of straight pieces that the slip history consists of.
     pub memory_depth: usize,
+}
+
+impl Contact {
+    /// The state after the last move.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.00375))?;
+    /// let state = contact.state();
+    /// // The stuck core ends where W = d - g(c): c^2 = R d/2.
+    /// assert!((state.stick_radius - 0.005_f64.sqrt()).abs() < 1e-15);
+    /// assert!(state.force > 0.0 && state.dissipated_energy > 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn state(&self) -> State {
+        #[cfg(test)]
+        super::profile::call_count::add(|calls| &mut calls.states);
+        let edge = self.history.edge();
+        let scale = self.scale();
+        let (stick_radius, regime) = self.stick();
+        State {
+            displacement: self.displacement.value(),
+            force: self.force(),
+            indentation: edge.level.value(),
+            normal_force: self.normal_force(),
+            contact_radius: edge.radius,
+            stick_radius,
+            regime,
+            dissipated_energy: self.dissipated.value(),
+            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
+            memory_depth: self.memory_depth(),
+        }
+    }
+
+    fn stick(&self) -> (f64, Regime) {
+        let edge = self.history.edge();
+        if edge.level.value() < 0.0 {
+            return (0.0, Regime::Separated);
+        }
+        if self.friction <= 0.0 {
+            return (0.0, Regime::GrossSlip);
+        }
+        match self.history.slip_from() {
+            None => (edge.radius, Regime::Stick),
+            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
+            Some(start) if start.radius < edge.radius => (start.radius, Regime::PartialSlip),
+            Some(_) => (edge.radius, Regime::Stick),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{self as mechanics, Setup, elasticity, range};
+use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
 
 use super::check::{At, Faults};
 use super::one_key::one_key;
@@ -132,17 +132,17 @@ impl ContactDefinition {
     /// Where in a definition with this preload the quantity stands that the mechanics finds fault with. A preload can be at
     /// fault by what follows from it, such as the indentation under a force.
     #[must_use]
-    pub fn place_of(quantity: &str, preload: &mechanics::Preload) -> &'static str {
+    pub fn place_of(quantity: Quantity, preload: &mechanics::Preload) -> &'static str {
         match quantity {
-            "friction" => "/friction",
-            "normal_force" | "indentation" | "contact_radius" => match preload {
+            Quantity::Friction => "/friction",
+            Quantity::NormalForce | Quantity::Indentation | Quantity::ContactRadius => match preload {
                 mechanics::Preload::NormalForce(_) => "/preload/normal_force",
                 mechanics::Preload::Indentation(_) => "/preload/indentation",
                 mechanics::Preload::ContactRadius(_) => "/preload/contact_radius",
             },
-            "e_star" => "/material/effective/e_star",
-            "g_star" => "/material/effective/g_star",
-            "youngs_modulus" | "poisson_ratio" => "/material/bodies",
+            Quantity::EStar => "/material/effective/e_star",
+            Quantity::GStar => "/material/effective/g_star",
+            Quantity::YoungsModulus | Quantity::PoissonRatio => "/material/bodies",
             _ => "/profile",
         }
     }

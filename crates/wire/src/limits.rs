@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use stickslip_mechanics::range::{self, Range};
+use stickslip_mechanics::range::{self, Quantity, Range};
 
 /// Moves in one path.
 pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
@@ -12,11 +12,11 @@ pub const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 /// Reversals of a protocol that is to be found: kinks are sought one by one, and the cost grows with their square.
 pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
 /// What may remain of the largest stress after a protocol, over μ times the pressure.
-pub const TARGET: Range = Range { quantity: "target", unit: "", min: 1e-4, max: 10.0 };
+pub const TARGET: Range = Range { quantity: Quantity::ProtocolTarget, unit: "", min: 1e-4, max: 10.0 };
 /// Standard deviation of the displacements of a protocol, relative to themselves.
-pub const AMPLITUDE_ERROR: Range = Range { quantity: "amplitude_error", unit: "", min: 0.0, max: 1.0 };
+pub const AMPLITUDE_ERROR: Range = Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 };
 /// The fraction that the coefficient of friction may be off.
-pub const FRICTION_ERROR: Range = Range { quantity: "friction_error", unit: "", min: 0.0, max: 0.9 };
+pub const FRICTION_ERROR: Range = Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 };
 /// How many times a protocol is tried with errors.
 pub const SAMPLES: RangeInclusive<usize> = 2..=10_000;
 /// The same if the client does not say.
@@ -59,7 +59,7 @@ pub const AXIS_COUNT: RangeInclusive<usize> = 2..=2_000_000;
 /// Values of an axis that lists them.
 pub const AXIS_VALUES: RangeInclusive<usize> = 1..=10_000;
 /// A value of an axis; the field that it goes to has a range of its own.
-pub const AXIS_NUMBER: Range = Range { quantity: "value of an axis", unit: "", min: -1e280, max: 1e280 };
+pub const AXIS_NUMBER: Range = Range { quantity: Quantity::Number, unit: "", min: -1e280, max: 1e280 };
 /// Outputs of a sweep.
 pub const SWEEP_OUTPUTS: RangeInclusive<usize> = 1..=16;
 /// Points of a sweep: the product of the counts of its axes.

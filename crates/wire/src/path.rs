@@ -3,12 +3,14 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::{self as mechanics, Contact, Normal, Tangential, protocol, range, range::Range};
+use stickslip_mechanics::{
+    self as mechanics, Normal, Tangential, range,
+    range::{Quantity, Range},
+};
 
 use super::check::{At, Faults};
 use super::limits;
 use super::one_key::{given, one_key};
-use super::reply::Protocol;
 
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
@@ -149,10 +151,16 @@ impl Move {
         ]
     }
 
-    /// Whether the move has a target of this name.
+    /// Whether the move has a target for this quantity.
     #[must_use]
-    pub fn names(&self, quantity: &str) -> bool {
-        self.targets().iter().any(|(name, value, _)| *name == quantity && value.is_some())
+    pub fn names(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::Displacement => self.displacement.is_some(),
+            Quantity::Force => self.force.is_some(),
+            Quantity::Indentation => self.indentation.is_some(),
+            Quantity::NormalForce => self.normal_force.is_some(),
+            _ => false,
+        }
     }
 
     /// Whether the move is straight in a force while the other quantity changes. Such a move is curved in displacement
@@ -241,52 +249,18 @@ impl Plan {
         }
     }
 
-    /// The displacements that the law of equal peaks gives on `contact`, if the path follows it.
-    ///
-    /// # Errors
-    /// That of [`protocol::equal_peaks`].
-    pub fn protocol(&self, contact: &Contact) -> Result<Option<Protocol>, mechanics::Error> {
-        let Plan::EqualPeaks(peaks) = self else { return Ok(None) };
-        let protocol::EqualPeaks { displacements, cutoff_radius } =
-            protocol::equal_peaks(contact, peaks.reversals, peaks.cutoff_radius)?;
-        Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
-    }
-
-    /// The moves. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and `protocol` what
-    /// [`Plan::protocol`] has found for it.
-    pub fn moves<'a>(
-        &'a self,
-        gross_slip: f64,
-        protocol: Option<&'a Protocol>,
-    ) -> Box<dyn Iterator<Item = Move> + Send + 'a> {
-        match self {
-            Plan::Moves(moves) => Box::new(moves.iter().copied()),
-            Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
-            Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
-            Plan::FallingAmplitude(fall) => {
-                let amplitude = fall.amplitude.unwrap_or(gross_slip);
-                Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
-            }
-            Plan::EqualPeaks(_) => {
-                let displacements = protocol.into_iter().flat_map(|protocol| &protocol.displacement);
-                Box::new(displacements.copied().map(Move::displacement))
-            }
-            Plan::Single(step) => Box::new(std::iter::once(*step)),
-        }
-    }
-
     /// Where in the body the move of this number stands, as a JSON pointer; `quantity` is the member at fault, if one is.
     #[must_use]
-    pub fn place_of(&self, index: usize, quantity: Option<&str>) -> String {
-        let quantity = quantity.map(|name| format!("/{name}")).unwrap_or_default();
+    pub fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
+        let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();
         match self {
-            Plan::Moves(_) => format!("/path/moves/{index}{quantity}"),
+            Plan::Moves(_) => format!("/path/moves/{index}{member}"),
             Plan::Displacement(_) => format!("/path/displacement/{index}"),
             Plan::Force(_) => format!("/path/force/{index}"),
             Plan::FallingAmplitude(_) => "/path/falling_amplitude".to_owned(),
-            Plan::EqualPeaks(_) if quantity == "/cutoff_radius" => format!("/path/equal_peaks{quantity}"),
+            Plan::EqualPeaks(_) if quantity == Some(Quantity::CutoffRadius) => format!("/path/equal_peaks{member}"),
             Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
-            Plan::Single(_) => quantity,
+            Plan::Single(_) => member,
         }
     }
 }

@@ -153,8 +153,8 @@ pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-impl From<mechanics::Figures> for Figures {
-    fn from(figures: mechanics::Figures) -> Self {
+impl From<mechanics::ContactSummary> for Figures {
+    fn from(figures: mechanics::ContactSummary) -> Self {
         Figures {
             e_star: figures.e_star,
             g_star: figures.g_star,

@@ -121,11 +121,11 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
 fn write_gaps(schemas: &mut Map<String, Value>) {
     let gap = |least: f64| json!({"exclusiveMinimum": 0, "exclusiveMaximum": least});
     for schema in ["ContactDefinition", "CreateRequest"] {
-        schemas[schema]["properties"]["friction"]["not"] = gap(range::LEAST_FRICTION);
+        schemas[schema]["properties"]["friction"]["not"] = gap(range::MIN_POSITIVE_FRICTION);
     }
     for choice in schemas["Preload"]["oneOf"].as_array_mut().into_iter().flatten() {
         if let Some(force) = choice["properties"].get_mut("normal_force") {
-            force["not"] = gap(range::LEAST_NORMAL_FORCE);
+            force["not"] = gap(range::MIN_POSITIVE_NORMAL_FORCE);
         }
     }
 }

@@ -1,32 +1,46 @@
-//! A bound from below on what any sequence of reversals can leave, with its proof.
+//! A lower bound on the stress that any sequence of reversals leaves, with its proof.
 //!
 //! After gross slip and N reversals w is made of N + 1 straight pieces of slope 1 or -1 over the levels. The stress is
-//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx; by Abel's inversion u(x) = (2/G*) int_x^a tau r dr/sqrt(r^2 - x^2). Between two radii
-//! x1 < x2 of one piece the difference of u is m (g(x2) - g(x1)). The difference of the two kernels of the inversion, by its
-//! magnitude, has the integral
+//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx; by Abel's inversion u(x) = (2/G*) int_x^a tau r dr/sqrt(r^2 -
+//! x^2). Between two radii x1 < x2 of one piece the difference of u is m (g(x2) - g(x1)). The difference of the two
+//! kernels of the inversion, by its magnitude, has the integral
 //!
 //! B(x1, x2) = 2 sqrt(x2^2 - x1^2) - (sqrt(a^2 - x1^2) - sqrt(a^2 - x2^2)),
 //!
 //! so that a largest stress E allows no piece with g(x2) - g(x1) > (2/(G* m)) E B(x1, x2) between any two of its radii.
-//! From the edge inwards each piece therefore ends at the latest where that first fails against its outer end; if N + 1 such
-//! pieces do not come as far as the innermost radius that is judged, no N reversals leave as little as E. (A sequence whose
-//! piece k begins further out than this one's ends further out too: a pair that fails here would lie within it.)
+//! From the edge inwards each piece therefore ends at the latest where that first fails against its outer end; if N + 1
+//! such pieces do not come as far as the innermost radius of the evaluation range, no N reversals leave as little as E.
+//! (A sequence whose piece k begins further out than this one's ends further out too: a pair that fails here would lie
+//! within it.)
 //!
-//! It has the right power of N, and on a sphere is some half of what the equal alternating extrema leave. That these are
-//! the best is not proven by it: an argument by the signs of differences (de la Vallée-Poussin's) fails, as the kernel
-//! (x^2 - r^2)^(-1/2) does not diminish variation. A study with restarts in `tests/protocols.rs` finds nothing better.
+//! It has the right power of N, and on a sphere is about half of what the equal alternating extrema leave. That these
+//! are the best is not proven by it: an argument by the signs of differences (de la Vallée-Poussin's) fails, as the
+//! kernel (x^2 - r^2)^(-1/2) does not diminish variation. A study with restarts in `tests/physics/protocols.rs` finds
+//! nothing better.
 
 use super::super::contact::Contact;
 use super::super::profile::Profile;
 use super::{cutoff_of, outermost_singular};
 
-/// Steps from the edge to the centre in which the end of a piece is looked for.
+/// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;
 /// Halvings of the bracket of E.
 const HALVINGS: usize = 40;
 
-/// The shear stress, Pa, that some point of the judged part of the contact carries at the least after gross slip and so many
-/// reversals, whatever their displacements; nought where nothing is known, as at a vertical edge.
+/// The shear stress, Pa, that some point of the evaluation range carries at the least after gross slip and so
+/// many reversals, whatever their displacements; zero where nothing is known, as at a vertical edge.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::{lower_bound, minimax};
+///
+/// let bound = lower_bound(&contact, 3);
+/// for target in minimax(&contact, 3, &|| true).unwrap().displacements {
+///     contact.apply(&slide(target))?;
+/// }
+/// assert!(bound > 0.0 && bound <= contact.residual().max.unwrap());
+/// # Ok::<(), Error>(())
+/// ```
 #[must_use]
 pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
     let (profile, edge) = (&*contact.profile, contact.contact_radius());
@@ -68,8 +82,8 @@ impl Grid {
         Grid { radii, levels }
     }
 
-    /// Whether so many pieces may come as far as the end of the grid under a largest stress of `limit`, G* m/2. That only the
-    /// radii of the grid are looked at makes it say yes too often, never too seldom.
+    /// Whether so many pieces may come as far as the end of the grid under a largest stress of `limit`, G* m/2. Because
+    /// only the radii of the grid are checked, the answer can be yes wrongly, never no.
     fn reached(&self, limit: f64, pieces: usize) -> bool {
         let square = |index: usize| self.radii[index] * self.radii[index];
         let half = |index: usize| (square(0) - square(index)).max(0.0).sqrt();

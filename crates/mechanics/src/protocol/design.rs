@@ -1,26 +1,29 @@
-//! Paths that leave little stress, from a start, in a number of reversals, to an end; and what they leave.
+//! The design of a path that leaves little stress, with a given start, end and number of reversals.
 
 use super::super::contact::Contact;
 use super::super::double_double::DoubleDouble;
 use super::super::error::Error;
+use super::super::range::Quantity;
+use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
-use super::super::traction::Residual;
-use super::relief::Relief;
+use super::from_any_state::FromAnyState;
 use super::{
-    DEFAULT_CUTOFF, alternating, cutoff_of, ending, equal_peaks, falling_amplitude, outermost_singular, spread::Spread,
+    DEFAULT_CUTOFF, alternating, cutoff_of, end_constraint, equal_peak_measure::EqualPeakMeasure, equal_peaks,
+    falling_amplitude, outermost_singular,
 };
 
-/// What rounding may leave of a displacement, relative to that of gross slip.
+/// A displacement below this share of that of gross slip is zero but for rounding.
 const ROUNDED: f64 = 1e-9;
-/// A memory deeper than this is not judged before it is moved: its extrema cost its square.
-const DEEPEST: usize = 256;
+/// The present state of a deeper slip history is no candidate: the cost of its extrema grows with the square of the
+/// depth.
+const MAX_DEPTH: usize = 256;
 
 /// A law for the amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum AmplitudeLaw {
     /// They fall linearly (eq. 20).
     Linear,
-    /// They leave equal peaks on the profile at hand.
+    /// They leave equal peaks on the given profile.
     EqualPeaks,
     /// They leave the smallest largest stress that is found, by equal alternating extrema.
     Minimax,
@@ -28,8 +31,8 @@ pub enum Kind {
 
 /// Where the path is to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// At displacement nought.
+pub enum PathEnd {
+    /// At displacement zero.
     DisplacementZero,
     /// Without a tangential force.
     ForceZero,
@@ -37,9 +40,9 @@ pub enum End {
     Free,
 }
 
-/// What the reversals begin from.
+/// The state that the reversals begin from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
+pub enum PathStart {
     /// This displacement, m, of the contact as it is, which has never moved; the path begins with it.
     Displacement(f64),
     /// The contact as it is, whatever its history; the path begins with a stroke of its own.
@@ -48,56 +51,76 @@ pub enum Start {
 
 /// How a path begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum FirstMove {
     /// With the displacement that was asked for.
     Given,
     /// With a stroke to gross slip, which wipes out the whole history.
     GrossSlip,
     /// With a stroke that wipes out the outer part of the history alone.
     Partial,
-    /// Not at all: less stress is there already than any other path would leave.
+    /// With none: the present state has less stress than any path found would leave.
     Stay,
 }
 
-/// A path and what it comes to.
+/// A path, and the contact at its end.
 #[derive(Clone, Debug)]
 pub struct Design {
     /// The displacements, m.
     pub displacements: Vec<f64>,
     /// How it begins.
-    pub way: Way,
+    pub first_move: FirstMove,
     /// By how much the smallest of the alternating extrema falls short of the largest, where they are all to be equal.
-    pub spread: Option<f64>,
+    pub gap: Option<f64>,
     /// The contact at the end.
     pub contact: Contact,
     /// Its extrema.
     pub residual: Residual,
-    /// The largest shear stress, Pa, where it is judged; infinite at a vertical edge that carries some.
+    /// The largest shear stress, Pa, within the evaluation range; infinite at a vertical edge that carries some.
     pub largest: f64,
 }
 
-/// The radii, m, between which the stress is judged: all of them but where it is infinite whatever is done.
+/// The radii, m, between which the stress is evaluated: all but where it is infinite under every path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Judged {
+pub struct EvaluationRange {
     /// From this radius on.
     pub from: f64,
     /// Up to this one.
     pub to: f64,
-    /// Whether the contact ends at a vertical edge, which only the end of a path can free of stress.
+    /// Whether the contact ends at a vertical edge, which only the last move of a path can unload.
     pub vertical: bool,
 }
 
-impl Judged {
-    /// Where the stress of a contact is judged at its present load.
+impl EvaluationRange {
+    /// The range of a contact at its present load.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::protocol::EvaluationRange;
+    ///
+    /// // On a sphere it is the whole contact.
+    /// let range = EvaluationRange::of(&contact);
+    /// assert_eq!((range.from, range.to), (0.0, contact.contact_radius()));
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
-    pub fn of(contact: &Contact) -> Judged {
+    pub fn of(contact: &Contact) -> EvaluationRange {
         let edge = contact.contact_radius();
         let from = cutoff_of(outermost_singular(&contact.profile, edge), edge);
         let vertical = contact.profile.rim_radius().is_some_and(|rim| edge >= rim);
-        Judged { from, to: if vertical { edge - DEFAULT_CUTOFF * (edge - from) } else { edge }, vertical }
+        EvaluationRange { from, to: if vertical { edge - DEFAULT_CUTOFF * (edge - from) } else { edge }, vertical }
     }
 
     /// The largest magnitude of the shear stress there, Pa; infinite if a vertical edge carries some.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::protocol::EvaluationRange;
+    ///
+    /// contact.apply(&slide(1.0))?;
+    /// let largest = EvaluationRange::of(&contact).largest(&contact, &contact.residual());
+    /// assert!((largest / (0.5 * contact.pressure(0.0)) - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn largest(&self, contact: &Contact, residual: &Residual) -> f64 {
         if self.vertical && edge_load(contact) > ROUNDED {
@@ -110,62 +133,72 @@ impl Judged {
     }
 }
 
-/// What a vertical edge carries, over the most that it can.
+/// The load of a vertical edge, over the largest that it can carry.
 fn edge_load(contact: &Contact) -> f64 {
-    let (profile, memory) = (&*contact.profile, &contact.memory);
+    let (profile, history) = (&*contact.profile, &contact.history);
     let level = profile.rim_radius().map_or(0.0, |rim| profile.level(rim));
-    let piece = memory.rings().find(|(ring, _)| ring.inner.level.value() <= level);
-    let carried = piece.map_or(0.0, |(_, line)| (line.at(DoubleDouble::from(level)) + memory.shift()).value());
-    carried.abs() / (memory.edge().level.value() - level)
+    let piece = history.rings().find(|(ring, _)| ring.inner.level.value() <= level);
+    let carried = piece.map_or(0.0, |(_, line)| (line.at(DoubleDouble::from(level)) + history.shift()).value());
+    carried.abs() / (history.edge().level.value() - level)
 }
 
-/// What is asked of every path of a family.
-struct Task<'a> {
+/// What every candidate path has in common.
+struct DesignTask<'a> {
     contact: &'a Contact,
     reversals: usize,
-    end: End,
-    judged: Judged,
-    go_on: &'a dyn Fn() -> bool,
+    end: PathEnd,
+    range: EvaluationRange,
+    keep_going: &'a dyn Fn() -> bool,
 }
 
-/// The path of a kind. From [`Start::Here`] a path of minimax may have fewer reversals than allowed.
+/// The path by an amplitude law. From [`PathStart::Here`] a path of minimax may have fewer reversals than allowed.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::BrokenOff`] if
-/// `go_on` said no.
+/// [`Error::OutOfRange`] without friction, without contact, or for a displacement out of range; [`Error::Interrupted`]
+/// if `keep_going` returned false.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd, PathStart, design};
+///
+/// let law = |law| design(&contact, PathStart::Here, law, 5, PathEnd::ForceZero, &|| true);
+/// let (linear, best) = (law(AmplitudeLaw::Linear)?, law(AmplitudeLaw::Minimax)?);
+/// assert!(best.largest <= linear.largest);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn design(
     contact: &Contact,
-    start: Start,
-    kind: Kind,
+    start: PathStart,
+    kind: AmplitudeLaw,
     reversals: usize,
-    end: End,
-    go_on: &dyn Fn() -> bool,
+    end: PathEnd,
+    keep_going: &dyn Fn() -> bool,
 ) -> Result<Design, Error> {
     let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
     if contact.friction <= 0.0 {
-        return Err(above("friction", contact.friction, "nothing holds without friction"));
+        return Err(above(Quantity::Friction, contact.friction, "nothing holds without friction"));
     }
     if contact.indentation() <= 0.0 {
-        return Err(above("indentation", contact.indentation(), "bodies that do not touch carry no stress"));
+        return Err(above(Quantity::Indentation, contact.indentation(), "bodies that do not touch carry no stress"));
     }
-    let task = Task { contact, reversals, end, judged: Judged::of(contact), go_on };
-    let (first, way) = match start {
-        Start::Displacement(first) => (first, Way::Given),
-        Start::Here => (task.gross(), Way::GrossSlip),
+    let task = DesignTask { contact, reversals, end, range: EvaluationRange::of(contact), keep_going };
+    let (first, first_move) = match start {
+        PathStart::Displacement(first) => (first, FirstMove::Given),
+        PathStart::Here => (task.gross(), FirstMove::GrossSlip),
     };
     match kind {
-        Kind::Linear | Kind::EqualPeaks => task.by_law(kind, first, way),
-        Kind::Minimax => task.best(first, way),
+        AmplitudeLaw::Linear | AmplitudeLaw::EqualPeaks => task.by_law(kind, first, first_move),
+        AmplitudeLaw::Minimax => task.best(first, first_move),
     }
 }
 
-impl Task<'_> {
+impl DesignTask<'_> {
     /// The displacement of gross slip, m, in the direction in which it is one whatever the history.
     fn gross(&self) -> f64 {
-        let memory = &self.contact.memory;
-        let carried = memory.pieces().first().map_or(0.0, |core| (core.line.offset + memory.shift()).value());
-        let apart = carried - memory.position().value();
-        // At the centre w - W is `apart`: +d is gross slip forwards if that is not below nought, else -d is backwards.
+        let history = &self.contact.history;
+        let carried = history.pieces().first().map_or(0.0, |core| (core.line.offset + history.shift()).value());
+        let apart = carried - history.position().value();
+        // At the centre w - W is `apart`: +d is gross slip forwards if that is not below zero, else -d is backwards.
         let full = self.contact.gross_slip_displacement();
         if apart < 0.0 { -full } else { full }
     }
@@ -174,39 +207,39 @@ impl Task<'_> {
     fn after(&self, path: &[f64]) -> Result<Contact, Error> {
         let mut contact = self.contact.clone();
         for &target in path {
-            if !(self.go_on)() {
-                return Err(Error::BrokenOff);
+            if !(self.keep_going)() {
+                return Err(Error::Interrupted);
             }
             contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         }
         Ok(contact)
     }
 
-    /// The path with its last displacement as the end wants it, and what it comes to.
-    fn judge(&self, mut path: Vec<f64>, way: Way, spread: Option<f64>) -> Result<Design, Error> {
+    /// The path with its last displacement as the end requires it, and the contact after it.
+    fn judge(&self, mut path: Vec<f64>, first_move: FirstMove, gap: Option<f64>) -> Result<Design, Error> {
         let last = path.pop().unwrap_or_default();
         let mut contact = self.after(&path)?;
         let target = match self.end {
-            End::ForceZero => {
+            PathEnd::ForceZero => {
                 let mut freed = contact.clone();
                 freed.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
                 freed.state().displacement
             }
-            End::DisplacementZero | End::Free => last,
+            PathEnd::DisplacementZero | PathEnd::Free => last,
         };
         path.push(target);
         contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
-        let residual = contact.residual_while(self.go_on).ok_or(Error::BrokenOff)?;
-        let largest = self.judged.largest(&contact, &residual);
-        Ok(Design { displacements: path, way, spread, contact, residual, largest })
+        let residual = contact.residual_while(self.keep_going).ok_or(Error::Interrupted)?;
+        let largest = self.range.largest(&contact, &residual);
+        Ok(Design { displacements: path, first_move, gap, contact, residual, largest })
     }
 
-    fn by_law(&self, kind: Kind, first: f64, way: Way) -> Result<Design, Error> {
+    fn by_law(&self, kind: AmplitudeLaw, first: f64, first_move: FirstMove) -> Result<Design, Error> {
         let path = match kind {
-            Kind::Linear => falling_amplitude(self.reversals, first).collect(),
-            Kind::EqualPeaks | Kind::Minimax => self.equal_from(first)?,
+            AmplitudeLaw::Linear => falling_amplitude(self.reversals, first).collect(),
+            AmplitudeLaw::EqualPeaks | AmplitudeLaw::Minimax => self.equal_from(first)?,
         };
-        self.judge(path, way, None)
+        self.judge(path, first_move, None)
     }
 
     /// The law of equal peaks from an amplitude on, which may be less than gross slip.
@@ -221,8 +254,8 @@ impl Task<'_> {
         }
         let (profile, indentation) = (&*self.contact.profile, self.contact.indentation());
         let inner = profile.radius(indentation * (1.0 - first.abs() / full));
-        let from = inner.max(self.judged.from);
-        let spread = Spread::new(profile, from, self.contact.contact_radius());
+        let from = inner.max(self.range.from);
+        let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());
         let size = |index: usize| {
             let part = index as f64 / self.reversals.max(1) as f64;
             match &spread {
@@ -235,8 +268,8 @@ impl Task<'_> {
         Ok((0..=self.reversals).map(|index| sign * alternating(index, size(index))).collect())
     }
 
-    /// The best of what there is: equal alternating extrema, and the laws, which win where those cannot be had.
-    fn best(&self, first: f64, way: Way) -> Result<Design, Error> {
+    /// The best of all candidates: equal alternating extrema, and the two laws, for where those do not exist.
+    fn best(&self, first: f64, first_move: FirstMove) -> Result<Design, Error> {
         let mut best: Option<Design> = None;
         let mut offer = |design: Result<Design, Error>| match design {
             Ok(design) => {
@@ -245,12 +278,12 @@ impl Task<'_> {
                 }
                 Ok(())
             }
-            Err(Error::BrokenOff) => Err(Error::BrokenOff),
-            // What a law or a construction cannot have is no candidate.
+            Err(Error::Interrupted) => Err(Error::Interrupted),
+            // A law or construction that does not exist here is no candidate.
             Err(_) => Ok(()),
         };
-        if way == Way::GrossSlip && self.contact.memory_depth() <= DEEPEST && self.at_an_end() {
-            let stay = self.judge(vec![self.contact.state().displacement], Way::Stay, None)?;
+        if first_move == FirstMove::GrossSlip && self.contact.memory_depth() <= MAX_DEPTH && self.at_an_end() {
+            let stay = self.judge(vec![self.contact.state().displacement], FirstMove::Stay, None)?;
             if stay.largest <= 0.0 {
                 return Ok(stay);
             }
@@ -259,46 +292,46 @@ impl Task<'_> {
         let full = self.contact.gross_slip_displacement();
         let sign = if first < 0.0 { -1.0 } else { 1.0 };
         // The smallest of the extrema is nowhere near the largest where the end is prescribed.
-        let spread = |found: &super::Minimax| (self.end == End::Free).then_some(found.gap);
+        let gap = |found: &super::Minimax| (self.end == PathEnd::Free).then_some(found.gap);
         let found = if first.abs() >= full {
-            super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.go_on)
+            super::minimax_to(self.contact, self.reversals, first.abs(), self.end, self.keep_going)
         } else {
             Vec::new()
         };
         for found in &found {
             let path = found.displacements.iter().map(|target| sign * target).collect::<Vec<f64>>();
-            offer(self.judge(self.ended(path), way, spread(found)))?;
+            offer(self.judge(self.ended(path), first_move, gap(found)))?;
         }
-        if found.is_empty() || (self.end != End::Free && self.reversals <= ending::FEW) {
+        if found.is_empty() || (self.end != PathEnd::Free && self.reversals <= end_constraint::FEW) {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
             if let Some(path) = self.relieved(&begun, self.reversals, last) {
-                offer(self.judge([vec![first], path].concat(), way, None))?;
+                offer(self.judge([vec![first], path].concat(), first_move, None))?;
             }
         }
-        if way == Way::GrossSlip {
+        if first_move == FirstMove::GrossSlip {
             for last in [1.0, -1.0] {
                 if let Some(path) = self.relieved(self.contact, self.reversals + 1, last) {
                     let wiped = self.after(&path[..1])?.state().regime == Regime::GrossSlip;
-                    offer(self.judge(path, if wiped { Way::GrossSlip } else { Way::Partial }, None))?;
+                    offer(self.judge(path, if wiped { FirstMove::GrossSlip } else { FirstMove::Partial }, None))?;
                 }
             }
         }
-        for kind in [Kind::EqualPeaks, Kind::Linear] {
-            offer(self.by_law(kind, first, way))?;
+        for kind in [AmplitudeLaw::EqualPeaks, AmplitudeLaw::Linear] {
+            offer(self.by_law(kind, first, first_move))?;
         }
-        if self.judged.vertical && self.end != End::DisplacementZero {
+        if self.range.vertical && self.end != PathEnd::DisplacementZero {
             // Without a force a punch carries nothing at all.
             let path = falling_amplitude(self.reversals, first).collect();
-            offer(Task { end: End::ForceZero, ..*self }.judge(path, way, None))?;
+            offer(DesignTask { end: PathEnd::ForceZero, ..*self }.judge(path, first_move, None))?;
         }
-        if (self.go_on)() { best.ok_or(Error::BrokenOff) } else { Err(Error::BrokenOff) }
+        if (self.keep_going)() { best.ok_or(Error::Interrupted) } else { Err(Error::Interrupted) }
     }
 
-    /// The path with its last displacement nought if it is to be and nearly is.
+    /// The path with its last displacement set to zero if the end requires it and only rounding is in the way.
     fn ended(&self, mut path: Vec<f64>) -> Vec<f64> {
-        if let (End::DisplacementZero, Some(last)) = (self.end, path.last_mut())
+        if let (PathEnd::DisplacementZero, Some(last)) = (self.end, path.last_mut())
             && last.abs() <= ROUNDED * self.contact.gross_slip_displacement()
         {
             *last = 0.0;
@@ -306,22 +339,22 @@ impl Task<'_> {
         path
     }
 
-    /// Whether the contact stands where a path may end.
+    /// Whether the present state meets the condition of the end.
     fn at_an_end(&self) -> bool {
         let state = self.contact.state();
         match self.end {
-            End::Free => true,
-            End::DisplacementZero => state.displacement.abs() <= 0.0,
-            End::ForceZero => state.force.abs() <= ROUNDED * self.contact.figures().gross_slip_force,
+            PathEnd::Free => true,
+            PathEnd::DisplacementZero => state.displacement.abs() <= 0.0,
+            PathEnd::ForceZero => state.force.abs() <= ROUNDED * self.contact.summary().gross_slip_force,
         }
     }
 
-    /// Strokes by [`Relief`], m, if they end where they are to.
+    /// Strokes by [`FromAnyState`], m, if they meet the condition of the end.
     fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Option<Vec<f64>> {
-        let mut path = Relief::new(from, strokes, last, self.end)?.solve(self.go_on)?;
+        let mut path = FromAnyState::new(from, strokes, last, self.end)?.solve(self.keep_going)?;
         path.iter_mut().for_each(|position| *position *= from.scale());
         let end = path.last_mut()?;
-        if self.end == End::DisplacementZero {
+        if self.end == PathEnd::DisplacementZero {
             if end.abs() > ROUNDED * from.gross_slip_displacement() {
                 return None;
             }

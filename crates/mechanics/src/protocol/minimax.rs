@@ -1,51 +1,53 @@
 //! The sequence of amplitudes whose largest remaining shear stress is smallest, by equal alternating extrema.
 //!
-//! After gross slip and N reversals the shear stress is an alternating sum of kernels between the radii where slip began. At
-//! such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the other from the edge
-//! inwards: each where the stress first meets E with the other sign. E is then lowered until the centre meets it too.
+//! After gross slip and N reversals the shear stress is an alternating sum of kernels between the radii where slip
+//! began. StressRadius such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the
+//! other from the edge inwards: each where the stress first meets E with the other sign. E is then lowered until the
+//! centre meets it too.
 
 use super::super::profile::{Point, Profile, Ring, StressRadius};
 use super::DoubleDouble;
 
-/// Looks at the level E at the most, after it has been bracketed.
-const LOOKS: usize = 80;
+/// The largest number of evaluations of E, after it has been bracketed.
+const MAX_EVALUATIONS: usize = 80;
 /// Steps of one search for a kink, and of its refinement, at the most.
 const STEPS: usize = 400;
-/// Radii at which the core is looked at where its stress need not fall outwards.
+/// Radii at which the core is sampled where its stress need not fall outwards.
 const CORE: usize = 32;
 /// Sections of the stretch about the largest of these, and their ratio.
 const SECTIONS: usize = 22;
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// What E may be off, relative to itself.
+/// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-13;
-/// How E is changed until it is bracketed.
+/// Factor by which E is changed until it is bracketed.
 const STRIDE: f64 = 1.25;
 /// How often, and by which part, a lower E is tried than the one found.
 const BELOW: usize = 8;
 const STEP_BELOW: f64 = 0.01;
 
 /// The kinks for one E, the outermost first.
-pub(super) struct Marched {
+pub(super) struct KinkSequence {
     pub(super) kinks: Vec<Point>,
     /// The stress of the core over E, less one; `None` if fewer kinks than allowed were enough.
     pub(super) excess: Option<f64>,
 }
 
-impl Marched {
+impl KinkSequence {
     fn fits(&self) -> bool {
         self.excess.is_none_or(|excess| excess <= 0.0)
     }
 }
 
-/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over the largest.
-pub(super) struct Equal {
+/// The levels that reversals begin to slip at, the outermost first, and the smallest of the alternating extrema over
+/// the largest.
+pub(super) struct EqualExtrema {
     pub(super) levels: Vec<f64>,
     pub(super) ratio: f64,
     /// The largest of them, over G* m/pi.
     pub(super) limit: f64,
 }
 
-/// A contact that is judged from a cut-off radius outwards.
+/// A contact whose stress counts from a cut-off radius outwards.
 pub(super) struct Problem<'a> {
     pub(super) profile: &'a Profile,
     pub(super) edge: Point,
@@ -136,7 +138,7 @@ impl Problem<'_> {
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
         let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
         if looks > 1 {
-            // Between two looks it may be larger: golden sections about the best.
+            // Between two samples it may be larger: golden sections about the largest.
             let (mut low, mut high) = ((best - 1.0 / CORE as f64).max(0.0), (best + 1.0 / CORE as f64).min(1.0));
             let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
             for _ in 0..SECTIONS {
@@ -153,8 +155,8 @@ impl Problem<'_> {
         largest
     }
 
-    pub(super) fn march(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Option<Marched> {
-        self.march_with(limit, (0, 1.0), go_on)
+    pub(super) fn march(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Option<KinkSequence> {
+        self.march_with(limit, (0, 1.0), keep_going)
     }
 
     /// The same with a share of the limit for the extremum of this index, the outermost first.
@@ -162,20 +164,20 @@ impl Problem<'_> {
         &self,
         limit: f64,
         (index, share): (usize, f64),
-        go_on: &dyn Fn() -> bool,
-    ) -> Option<Marched> {
+        keep_going: &dyn Fn() -> bool,
+    ) -> Option<KinkSequence> {
         let mut kinks = Vec::with_capacity(self.reversals);
         while kinks.len() < self.reversals {
-            if !go_on() {
+            if !keep_going() {
                 return None;
             }
             match self.next(&kinks, if kinks.len() == index { share * limit } else { limit }) {
                 Some(kink) => kinks.push(kink),
-                None => return Some(Marched { kinks, excess: None }),
+                None => return Some(KinkSequence { kinks, excess: None }),
             }
         }
         let excess = self.core(&kinks) / limit - 1.0;
-        Some(Marched { kinks, excess: Some(excess) })
+        Some(KinkSequence { kinks, excess: Some(excess) })
     }
 
     /// Closes the bracket of an E that is too small and one that is not.
@@ -184,21 +186,21 @@ impl Problem<'_> {
         mut low: f64,
         mut under: Option<f64>,
         high: &mut f64,
-        best: &mut Marched,
-        go_on: &dyn Fn() -> bool,
+        best: &mut KinkSequence,
+        keep_going: &dyn Fn() -> bool,
     ) -> Option<()> {
         let mut over = best.excess;
-        for look in 0..LOOKS {
+        for evaluation in 0..MAX_EVALUATIONS {
             if *high - low <= TOLERANCE * *high || best.excess.is_some_and(|excess| excess.abs() <= TOLERANCE) {
                 break;
             }
-            // Every fifth look halves, so that the bracket closes whatever the curve.
+            // Every fifth evaluation halves, so that the bracket closes whatever the curve.
             let share = match (under, over) {
-                (Some(above), Some(below)) if look % 5 != 4 && above > below => above / (above - below),
+                (Some(above), Some(below)) if evaluation % 5 != 4 && above > below => above / (above - below),
                 _ => 0.5,
             };
             let trial = low + share.clamp(1e-3, 1.0 - 1e-3) * (*high - low);
-            let marched = self.march(trial, go_on)?;
+            let marched = self.march(trial, keep_going)?;
             // The weight of an end that stays is halved (Illinois).
             if marched.fits() {
                 (*high, over) = (trial, marched.excess);
@@ -212,29 +214,29 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The smallest E, and its kinks; `None` if `go_on` said no, or there is no such E.
-    pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Equal> {
+    /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
+    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
         let guess = self.shear(&[], &middle) / (self.reversals as f64).sqrt();
         if !(guess > 0.0 && guess.is_finite()) {
             return None;
         }
         let (mut low, mut high) = (guess, guess);
-        let mut best = self.march(high, go_on)?;
+        let mut best = self.march(high, keep_going)?;
         let mut under = best.excess;
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if best.fits() {
                 break;
             }
             (low, under) = (high, best.excess);
             high *= STRIDE;
-            best = self.march(high, go_on)?;
+            best = self.march(high, keep_going)?;
         }
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if low < high {
                 break;
             }
-            let trial = self.march(low / STRIDE, go_on)?;
+            let trial = self.march(low / STRIDE, keep_going)?;
             low /= STRIDE;
             if trial.fits() {
                 (high, low, best) = (low, low, trial);
@@ -245,23 +247,23 @@ impl Problem<'_> {
         if !best.fits() || low >= high {
             return None;
         }
-        self.close(low, under, &mut high, &mut best, go_on)?;
+        self.close(low, under, &mut high, &mut best, keep_going)?;
         // The core need not fall all the way as E rises: a little lower there may be another one that fits.
         for _ in 0..BELOW {
             let trial = high * (1.0 - STEP_BELOW);
-            let marched = self.march(trial, go_on)?;
+            let marched = self.march(trial, keep_going)?;
             if marched.excess.is_some_and(|excess| excess <= 0.0) {
                 let lower = trial * (1.0 - STEP_BELOW);
-                let under = self.march(lower, go_on)?;
+                let under = self.march(lower, keep_going)?;
                 (high, best) = (trial, marched);
                 if !under.fits() {
-                    self.close(lower, under.excess, &mut high, &mut best, go_on)?;
+                    self.close(lower, under.excess, &mut high, &mut best, keep_going)?;
                 }
             } else {
                 break;
             }
         }
         let ratio = (self.core(&best.kinks) / high).clamp(0.0, 1.0);
-        Some(Equal { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
+        Some(EqualExtrema { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
     }
 }

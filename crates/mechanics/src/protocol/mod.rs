@@ -1,38 +1,45 @@
 //! Paths that lower the residual shear stress.
 //!
-//! Each reversal leaves a kink of the shear stress at the radius where its slip began. Kraft & Pohrt (2016) let the amplitude
-//! fall linearly, which gives equal peaks on a sphere alone. For any profile the peaks are equal where the steps of the
-//! amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are spread evenly in
-//! s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear fall.
+//! Each reversal leaves a kink of the shear stress at the radius where its slip began. Kraft & Pohrt (2016) let the
+//! amplitude fall linearly, which gives equal peaks on a sphere alone. For any profile the peaks are equal where the
+//! steps of the amplitude are proportional to x/g'(x) at its stick radius x; in other words, where the reversals are
+//! spread evenly in s(x) = int_0^x g'(t)^2/t dt, at the amplitude m (d - g(x)). For g ~ x^2 that is again the linear
+//! fall.
 
 mod bound;
 mod design;
-mod ending;
+mod end_constraint;
+mod equal_peak_measure;
+mod from_any_state;
 mod minimax;
-mod relief;
 mod robustness;
-mod spread;
 
 pub use bound::lower_bound;
-pub use design::{Design, End, Judged, Kind, Start, Way, design};
-pub use robustness::{Errors, trials};
+pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
+pub use robustness::{ExecutionErrors, trials};
 
+use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
-use spread::Spread;
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::profile::Profile;
-use super::range::short;
+use super::range::{Quantity, short};
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;
 
 /// The linearly falling amplitude of Kraft & Pohrt (2016), eq. 20: the displacements
-/// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is nought.
+/// u(k) = A (N + 1 - k)/N (-1)^(k+1) for k = 1 to N + 1, m, the last of which is zero.
 ///
 /// `reversals` is N, `amplitude` is A, m.
+///
+/// ```
+/// use stickslip_mechanics::protocol::falling_amplitude;
+///
+/// assert_eq!(falling_amplitude(4, 2.0).collect::<Vec<f64>>(), [2.0, -1.5, 1.0, -0.5, 0.0]);
+/// ```
 pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item = f64> {
     (0..=reversals).map(move |index| {
         let left = (reversals - index) as f64;
@@ -40,12 +47,12 @@ pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item
     })
 }
 
-/// The outermost radius inside `edge`, m, at which the stress is infinite whatever is done, if there is one.
+/// The outermost radius inside `edge`, m, at which the stress is infinite under every path, if there is one.
 fn outermost_singular(profile: &Profile, edge: f64) -> Option<f64> {
     profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max)
 }
 
-/// The radius, m, from which on the stress is judged.
+/// The radius, m, from which on the stress is evaluated.
 fn cutoff_of(singular: Option<f64>, edge: f64) -> f64 {
     singular.map_or(0.0, |least| least + DEFAULT_CUTOFF * (edge - least))
 }
@@ -58,20 +65,30 @@ fn alternating(index: usize, size: f64) -> f64 {
 /// A path of equal peaks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EqualPeaks {
-    /// The displacements, m: `reversals` + 1 of them, the last nought.
+    /// The displacements, m: `reversals` + 1 of them, the last zero.
     pub displacements: Vec<f64>,
-    /// The radius, m, from which on the peaks are equal; nought if all are.
+    /// The radius, m, from which on the peaks are equal; zero if all are.
     pub cutoff_radius: f64,
 }
 
 /// The law of equal peaks for the profile and the present load of `contact`, from gross slip to rest.
 ///
-/// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made equal
-/// from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge. Profiles that
-/// need none have none unless it is given.
+/// Where f' jumps or is infinite (the tip of a cone, the rim of a truncated profile) s diverges, and the peaks are made
+/// equal from `cutoff_radius`, m, on: as given or, left out, [`DEFAULT_CUTOFF`] of the way from there to the edge.
+/// Other profiles have no cut-off unless it is given.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for a cut-off radius inside the one where s diverges, or beyond the edge.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::equal_peaks;
+///
+/// // On a parabola the law is the linear fall.
+/// let path = equal_peaks(&contact, 2, None)?.displacements;
+/// assert!((path[1] / path[0] + 0.5).abs() < 1e-12 && path[2] == 0.0);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
     let (edge, indentation) = (contact.contact_radius(), contact.indentation());
     let singular = outermost_singular(&contact.profile, edge);
@@ -79,18 +96,19 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     let cutoff = match cutoff_radius {
         Some(given) if !(least..=edge).contains(&given) => {
             let allowed = format!("{} to {} m, the contact radius", short(least), short(edge));
-            return Err(Error::OutOfRange { quantity: "cutoff_radius", value: given, allowed });
+            return Err(Error::OutOfRange { quantity: Quantity::CutoffRadius, value: given, allowed });
         }
         Some(given) => given,
         None => cutoff_of(singular, edge),
     };
-    // At the very radius where s diverges there is no law.
-    let spread = (singular.is_none() || cutoff > least).then(|| Spread::new(&contact.profile, cutoff, edge)).flatten();
+    // StressRadius the very radius where s diverges there is no law.
+    let spread =
+        (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.profile, cutoff, edge)).flatten();
     let full = contact.gross_slip_displacement();
     let size = |index: usize| {
         let part = index as f64 / reversals.max(1) as f64;
         match &spread {
-            // The first stroke slips as a whole, so that nothing before it matters.
+            // The first stroke is gross slip, which wipes out the history.
             _ if index == 0 => full,
             _ if index == reversals => 0.0,
             Some(spread) => full * (1.0 - contact.profile.level(spread.radius(part)) / indentation).max(0.0),
@@ -104,41 +122,57 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
 /// A path with equal alternating extrema.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimax {
-    /// The displacements, m: that of gross slip, and one a reversal; the last is not nought.
+    /// The displacements, m: that of gross slip, and one a reversal; the last is not zero.
     pub displacements: Vec<f64>,
-    /// The radius, m, from which on the stress is minimised; nought if it is over the whole contact.
+    /// The radius, m, from which on the stress is minimised; zero if it is over the whole contact.
     pub cutoff_radius: f64,
-    /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: nought where all are
-    /// equal.
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to that: zero where all
+    /// are equal.
     pub gap: f64,
 }
 
-/// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end left free.
+/// The path from gross slip whose largest remaining shear stress is smallest, by equal alternating extrema, the end
+/// left free.
 ///
-/// Where the stress is infinite whatever is done (the tip of a cone, the rim of a truncated profile) it is minimised from
-/// [`DEFAULT_CUTOFF`] of the way from there to the edge on. `go_on` is asked before each kink that is sought.
+/// Where the stress is infinite under every path (the tip of a cone, the rim of a truncated profile) it is minimised
+/// from [`DEFAULT_CUTOFF`] of the way from there to the edge on. `keep_going` is asked before each kink that is sought.
 ///
-/// `None` if `go_on` said no, and where there is nothing to minimise: without reversals, friction or contact, and at a
-/// vertical edge, where the stress stays infinite.
-pub fn minimax(contact: &Contact, reversals: usize, go_on: &dyn Fn() -> bool) -> Option<Minimax> {
-    minimax_to(contact, reversals, contact.gross_slip_displacement(), End::Free, go_on).pop()
+/// `None` if `keep_going` returned false, and where there is nothing to minimise: without reversals, friction or
+/// contact, and at a vertical edge, where the stress stays infinite.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::minimax;
+///
+/// let path = minimax(&contact, 3, &|| true).unwrap();
+/// assert!(path.displacements.len() == 4 && path.gap < 1e-9);
+/// # Ok::<(), Error>(())
+/// ```
+pub fn minimax(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<Minimax> {
+    minimax_to(contact, reversals, contact.gross_slip_displacement(), PathEnd::Free, keep_going).pop()
 }
 
-/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is smaller then,
-/// and there is a path for each that may be. None without an answer.
-fn minimax_to(contact: &Contact, reversals: usize, first: f64, end: End, go_on: &dyn Fn() -> bool) -> Vec<Minimax> {
-    let edge = *contact.memory.edge();
+/// The same from a displacement beyond gross slip, m, forwards, and with a prescribed end: one of the extrema is
+/// smaller then, and there is a path for each that may be. None without an answer.
+fn minimax_to(
+    contact: &Contact,
+    reversals: usize,
+    first: f64,
+    end: PathEnd,
+    keep_going: &dyn Fn() -> bool,
+) -> Vec<Minimax> {
+    let edge = *contact.history.edge();
     let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return Vec::new();
     }
     let cutoff_radius = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
     let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
-    let Some(equal) = problem.solve(go_on) else { return Vec::new() };
-    let levels: Vec<Vec<f64>> = if end == End::Free {
+    let Some(equal) = problem.solve(keep_going) else { return Vec::new() };
+    let levels: Vec<Vec<f64>> = if end == PathEnd::Free {
         vec![equal.levels]
     } else {
-        let found = ending::kinks(&problem, equal.limit, first / contact.scale(), end, go_on);
+        let found = end_constraint::kinks(&problem, equal.limit, first / contact.scale(), end, keep_going);
         found.iter().map(|kinks| kinks.iter().map(|kink| kink.level.value()).collect()).collect()
     };
     let path = |levels: Vec<f64>| {

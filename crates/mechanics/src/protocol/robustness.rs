@@ -1,47 +1,58 @@
-//! What remains if a path is not followed exactly: the same again and again, each time with errors of its own.
+//! The stress that remains if a path is not followed exactly: repeated trials with random errors.
 
 use super::super::contact::Contact;
 use super::super::error::Error;
 use super::super::state::{Move, Tangential};
-use super::design::Judged;
+use super::design::EvaluationRange;
 
-/// What may be off.
+/// The random errors of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
+pub struct ExecutionErrors {
     /// Standard deviation of each displacement, relative to itself; normally distributed.
     pub amplitude: f64,
-    /// The part that the coefficient of friction may be off either way, the same all along a path; evenly distributed.
+    /// Largest relative error of the coefficient of friction, the same all along a path; evenly distributed.
     pub friction: f64,
-    /// Where the sequence of random numbers begins.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
 /// The largest shear stress, Pa, that a path of displacements, m, leaves in each of so many trials, the smallest first.
-/// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the same
-/// errors, whatever the path.
+/// `make` gives the contact for a coefficient of friction that is so many times the usual one. The same seed gives the
+/// same errors, whatever the path.
 ///
 /// # Errors
-/// What `make` and the moves refuse, and [`Error::BrokenOff`] if `go_on` said no.
+/// Those of `make` and of the moves, and [`Error::Interrupted`] if `keep_going` returned false.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::protocol::{ExecutionErrors, trials};
+///
+/// let exact = ExecutionErrors { amplitude: 0.0, friction: 0.0, seed: 1 };
+/// let make = |factor: f64| Contact::new(Setup { friction: factor * setup.friction, ..setup.clone() });
+/// let found = trials(&make, &[1.0, -0.005], &exact, 3, &|| true)?;
+/// assert_eq!(found[0], found[2]);
+/// # Ok::<(), Error>(())
+/// ```
 pub fn trials(
     make: &dyn Fn(f64) -> Result<Contact, Error>,
     path: &[f64],
-    errors: &Errors,
+    errors: &ExecutionErrors,
     samples: usize,
-    go_on: &dyn Fn() -> bool,
+    keep_going: &dyn Fn() -> bool,
 ) -> Result<Vec<f64>, Error> {
     let mut random = fastrand::Rng::with_seed(errors.seed);
     let mut found = Vec::with_capacity(samples);
     for _ in 0..samples {
-        if !go_on() {
-            return Err(Error::BrokenOff);
+        if !keep_going() {
+            return Err(Error::Interrupted);
         }
         let mut contact = make(1.0 + errors.friction * (2.0 * random.f64() - 1.0))?;
         for target in path {
             let target = target * (1.0 + errors.amplitude * normal(&mut random));
             contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         }
-        let residual = contact.residual_while(go_on).ok_or(Error::BrokenOff)?;
-        found.push(Judged::of(&contact).largest(&contact, &residual));
+        let residual = contact.residual_while(keep_going).ok_or(Error::Interrupted)?;
+        found.push(EvaluationRange::of(&contact).largest(&contact, &residual));
     }
     found.sort_by(f64::total_cmp);
     Ok(found)

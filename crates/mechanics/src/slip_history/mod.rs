@@ -1,12 +1,12 @@
-//! The memory of the contact: a stack of straight pieces instead of springs.
+//! The slip history of a contact: a stack of straight pieces.
 //!
-//! Let y = g(x) run from 0 at the centre to the indentation d at the edge, w = u_x/m be the tangential displacement of the
-//! surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches d - y. For
-//! every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes within [-1, 1], and the
-//! slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole pieces beyond the
-//! bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed. Stuck pieces are
-//! stored relative to the indenter, so what rides along is not touched. The rule is Masing's with wiping-out at constant
-//! load, and that of the memory diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
+//! Let y = g(x) run from 0 at the centre to the indentation d at the edge, w = u_x/m be the tangential displacement of
+//! the surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches d -
+//! y. For every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes within [-1,
+//! 1], and the slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole
+//! pieces beyond the bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed.
+//! Stuck pieces are stored relative to the indenter, so that a move does not change them. The rule is Masing's with
+//! wiping-out at constant load, and that of the memory diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
 //!
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
@@ -14,18 +14,18 @@
 mod packed;
 
 use super::double_double::DoubleDouble;
+use super::friction_work::{self, SlipRing};
 use super::profile::{Moments, Point, Profile, Ring};
-use super::release::{self, Slipping};
 
-/// A stuck core thinner than this, relative to the indentation, is gross slip: the displacement of gross slip is itself rounded.
-/// So is w at the edge.
-pub(super) const SAME: f64 = 2.0 * f64::EPSILON;
-/// Two turning points closer than this, relative to their distance from the edge, are one: met again, a level differs in
-/// its last digits.
-pub(super) const MET_AGAIN: f64 = 1e-28;
+/// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
+/// is itself rounded. w at the edge is rounded by as much.
+pub(super) const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+/// Two turning points closer than this, relative to their distance from the edge, are one: a level that is reached
+/// again differs in its last digits.
+pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
 
-/// The largest part of a change of load that may be its rounding.
-const ROUNDED: f64 = 1e-6;
+/// The largest share of a change of the load that may be rounding.
+const ROUNDED_SHARE: f64 = 1e-6;
 
 /// A straight part of w - W over y: `offset + slope * y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Line {
     }
 }
 
-/// `slope * level`. At constant load every slope is -1, 0 or 1, and the product is spared.
+/// `slope * level`, without a product for the slopes -1, 0 and 1 of all moves at constant load.
 fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
     let (whole, rest) = slope.parts();
     if rest.abs() > 0.0 {
@@ -52,9 +52,9 @@ fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
     }
 }
 
-/// What force and elastic energy need of the pieces, summed from the centre outward:
-/// `force` = sum of slope * int X dy, `energy` = sum of slope * int (w - W) X dy, and `size`, the magnitudes that `force` is
-/// the sum of: what rounding errors scale with.
+/// Sums over the pieces for force and elastic energy, from the centre outward: `force` = sum of slope * int X dy,
+/// `energy` = sum of slope * int (w - W) X dy, and `size`, the sum of the magnitudes in `force`, with which rounding
+/// errors scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sums {
     force: DoubleDouble,
@@ -72,10 +72,10 @@ pub(super) struct Piece {
 
 /// The state of the tangential problem in scaled units: lengths in m, integrals of X over y in m^2.
 #[derive(Clone, Debug)]
-pub(super) struct Memory {
+pub(super) struct SlipHistory {
     /// From the centre outward; empty without contact.
     pieces: Vec<Piece>,
-    /// Level d and radius a of the edge; a level below nought is a gap.
+    /// Level d and radius a of the edge; a level below zero is a gap.
     edge: Point,
     total: Sums,
     /// W, and the value it had when the stack was last begun: pieces are relative to the latter.
@@ -85,17 +85,17 @@ pub(super) struct Memory {
     slip_from: Option<Point>,
 }
 
-/// What a move did to the contact beyond its new state.
+/// The result of a move beyond the new state.
 #[must_use]
-pub(super) struct Passage {
+pub(super) struct MoveResult {
     /// Friction work over 2 G* m^2, m^3.
     pub(super) work: f64,
 }
 
-impl Memory {
+impl SlipHistory {
     /// A virgin contact at indentation d, m.
-    pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> Memory {
-        let mut memory = Memory {
+    pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> SlipHistory {
+        let mut history = SlipHistory {
             pieces: Vec::new(),
             edge: edge_at(profile, indentation),
             total: Sums::default(),
@@ -103,10 +103,10 @@ impl Memory {
             reference: DoubleDouble::ZERO,
             slip_from: None,
         };
-        if memory.in_contact() {
-            memory.lay_core(profile);
+        if history.in_contact() {
+            history.push_core(profile);
         }
-        memory
+        history
     }
 
     pub(super) fn pieces(&self) -> &[Piece] {
@@ -140,7 +140,7 @@ impl Memory {
         -self.total.force.value()
     }
 
-    /// The sum of the magnitudes of what adds up to [`Memory::force`], m^2.
+    /// The sum of the magnitudes of what adds up to [`SlipHistory::force`], m^2.
     pub(super) fn force_size(&self) -> f64 {
         self.total.size
     }
@@ -171,22 +171,22 @@ impl Memory {
         self.pieces.capacity() * size_of::<Piece>()
     }
 
-    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`. The work on the way is returned.
-    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> Passage {
+    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`.
+    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
         self.slip_from = None;
         if !self.in_contact() {
             let d0 = self.edge.level;
             if d1.value() <= 0.0 {
                 self.place(profile, d1, w1);
-                return Passage { work: 0.0 };
+                return MoveResult { work: 0.0 };
             }
             let touching = self.position + ((w1 - self.position) * (-d0)).over(d1 - d0);
             self.place(profile, DoubleDouble::ZERO, touching);
         }
         if d1.value() <= 0.0 {
-            let work = release::work(self, profile, d1, w1);
+            let work = friction_work::work(self, profile, d1, w1);
             self.place(profile, d1, w1);
-            return Passage { work };
+            return MoveResult { work };
         }
         let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
         if dd >= dw.abs() { self.grow(profile, d1, w1) } else { self.slip(profile, (d1, w1), (dd, dw)) }
@@ -201,19 +201,19 @@ impl Memory {
         self.reference = position;
     }
 
-    /// The whole contact as one piece that carries nothing.
-    fn lay_core(&mut self, profile: &Profile) {
+    /// The whole contact as one unloaded piece.
+    fn push_core(&mut self, profile: &Profile) {
         let line = Line { offset: DoubleDouble::ZERO, slope: DoubleDouble::ZERO };
         self.pieces.push(Piece { inner: profile.point(DoubleDouble::ZERO), line, below: self.total });
     }
 
     /// The load rises at least as fast as the indenter moves: nothing slips, and what is touched on the way keeps the
     /// displacement gained since its touch.
-    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> Passage {
+    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
         let d0 = self.edge.level;
         let rise = d1 - d0;
         if rise.value() <= 0.0 {
-            return Passage { work: 0.0 };
+            return MoveResult { work: 0.0 };
         }
         let slope = -(w1 - self.position).over(rise);
         let inner = self.edge;
@@ -230,7 +230,7 @@ impl Memory {
             let ring = Ring::between(inner, self.edge);
             self.push_through(&profile.moments(&ring), &ring, (slope, self.shift()), self.total);
         }
-        Passage { work: 0.0 }
+        MoveResult { work: 0.0 }
     }
 
     /// An outer ring slips on the way to (d1, w1), which is (dd, dw) from here.
@@ -239,11 +239,11 @@ impl Memory {
         profile: &Profile,
         (d1, w1): (DoubleDouble, DoubleDouble),
         (dd, dw): (DoubleDouble, DoubleDouble),
-    ) -> Passage {
+    ) -> MoveResult {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
-            work += release::work(self, profile, d1, w1);
+            work += friction_work::work(self, profile, d1, w1);
             while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
                 self.pieces.pop();
             }
@@ -251,9 +251,9 @@ impl Memory {
             self.position = w1;
             let trial = self.pieces.last().map_or(DoubleDouble::ZERO, |top| top.line.at(d1)) + self.shift();
             if trial.abs().value() <= round_off(d1, self.shift(), dd) {
-                // A rise taken back the same way.
+                // The move takes the last rise of the load back along the same line.
                 self.close(profile);
-                return Passage { work };
+                return MoveResult { work };
             }
             sign = trial.value().signum();
             excess = trial.value().abs();
@@ -268,7 +268,7 @@ impl Memory {
             lag = if rate > 0.0 { dd.value() / (2.0 * rate) } else { 0.0 };
         }
         let shift = self.shift();
-        let slipping = Slipping { sign, shift, indentation: d1, lag };
+        let slipping = SlipRing { sign, shift, indentation: d1, lag };
         if dd.value() > 0.0 {
             let touched = Ring::between(self.edge, edge_at(profile, d1));
             let core = if self.pieces.is_empty() { touched.inner.radius * touched.depth * touched.depth } else { 0.0 };
@@ -284,7 +284,7 @@ impl Memory {
                 let ring = Ring::between(cut, outer);
                 let moments = profile.moments(&ring);
                 work += slipping.work(&moments, &top.line, excess, &ring);
-                // At constant load, a slip that stays within one piece is itself the piece to be laid.
+                // StressRadius constant load, a slip that stays within one piece is itself the piece to be pushed.
                 slipped = (outer.level == d1).then_some(moments);
                 break cut;
             }
@@ -316,10 +316,11 @@ impl Memory {
             self.slip_from = None;
             self.total = below;
         }
-        Passage { work }
+        MoveResult { work }
     }
 
-    /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift` undoes.
+    /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift`
+    /// undoes.
     fn push_through(
         &mut self,
         moments: &Moments,
@@ -364,13 +365,14 @@ impl Sums {
     }
 }
 
-/// What w may be off at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far it
-/// has slid before does not count. A change of load by a few ulp is meant as it is given: there the path is taken at its word.
+/// The error of w at the edge by the rounding of a path, seen from where the contact last slid as a whole: how far
+/// it has slid before does not count. A change of the load by a few units in the last place is followed exactly as
+/// given.
 fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDouble) -> f64 {
-    (SAME * (indentation.value() + shift.value().abs())).min(ROUNDED * change.value().abs())
+    (ROUND_OFF * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change.value().abs())
 }
 
-/// The edge of a contact at `indentation`; with a gap there is none, and its radius is nought.
+/// The edge of a contact at `indentation`; with a gap there is none, and its radius is zero.
 fn edge_at(profile: &Profile, indentation: DoubleDouble) -> Point {
     if indentation.value() < 0.0 {
         Point { level: indentation, radius: 0.0, square: DoubleDouble::ZERO }

@@ -1,12 +1,13 @@
-//! The memory as bytes: edge, sums up to it, position, reference, whether and where the last slip began, then the pieces.
+//! The history as bytes: edge, sums up to it, position, reference, whether and where the last slip began, then the
+//! pieces.
 //!
-//! The pieces come last, so that their number follows from the length, and no length that is written can ask for more room
+//! The pieces come last, so that their number follows from the length, and no stored length can request more memory
 //! than there are bytes.
 
 use super::super::double_double::DoubleDouble;
 use super::super::packed::{Reader, Writer};
 use super::super::profile::Point;
-use super::{Line, Memory, Piece, Sums};
+use super::{Line, Piece, SlipHistory, Sums};
 
 /// Numbers of a level with its radius.
 const POINT: usize = 5;
@@ -17,7 +18,7 @@ const HEAD: usize = (POINT + SUMS + 2 + 2 + 1 + POINT) * size_of::<f64>();
 /// Bytes of a piece: its inner end, its line, the sums below it.
 const PIECE: usize = (POINT + 4 + SUMS) * size_of::<f64>();
 
-impl Memory {
+impl SlipHistory {
     pub(in super::super) fn packed_length(&self) -> usize {
         HEAD + PIECE * self.pieces.len()
     }
@@ -38,9 +39,9 @@ impl Memory {
         }
     }
 
-    /// `None` unless the numbers are finite, the pieces rise from the centre to the edge, and there are some if and only if
-    /// there is a contact.
-    pub(in super::super) fn unpack(reader: &mut Reader<'_>) -> Option<Memory> {
+    /// `None` unless the numbers are finite, the pieces rise from the centre to the edge, and there are some if and
+    /// only if there is a contact.
+    pub(in super::super) fn unpack(reader: &mut Reader<'_>) -> Option<SlipHistory> {
         let edge = reader.point()?;
         let total = Sums::unpack(reader)?;
         let (position, reference) = (reader.double()?, reader.double()?);
@@ -60,8 +61,8 @@ impl Memory {
             }
             pieces.push(Piece { inner, line, below: Sums::unpack(reader)? });
         }
-        let memory = Memory { pieces, edge, total, position, reference, slip_from };
-        (memory.in_contact() != memory.pieces.is_empty()).then_some(memory)
+        let history = SlipHistory { pieces, edge, total, position, reference, slip_from };
+        (history.in_contact() != history.pieces.is_empty()).then_some(history)
     }
 }
 

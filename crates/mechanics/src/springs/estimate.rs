@@ -1,12 +1,14 @@
-//! What the discretisation costs: fewer springs on the same path, the exact normal contact, and bends between the springs.
+//! Error estimates of the spring foundation: fewer springs, the exact normal contact, and second differences.
 //!
-//! Each alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in a cell dx, is off
-//! by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of 1/sqrt(x^2 - r^2): what the
-//! springs show of second differences bounds both. Where more than a bend falls into a cell, springs of another number differ.
+//! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in
+//! a cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
+//! 1/sqrt(x^2
+//! - r^2): the second differences between the springs bound both. Where more than a bend falls into a cell, springs
+//! of another number differ.
 
 use std::f64::consts::PI;
 
-use super::super::accuracy::Estimate;
+use super::super::accuracy::ErrorEstimate;
 use super::Springs;
 
 /// Radii at which stresses are compared.
@@ -15,23 +17,33 @@ const COMPARED: usize = 64;
 const NEAREST: f64 = 2.0;
 
 impl Springs {
-    /// What the discretisation has cost: the largest of several estimates. The one of the stress is for radii some cells (of
-    /// twice the largest contact radius over the number of springs) away from the kinks of the displacement, the centre, the
-    /// edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    /// The errors by the discretisation: the largest of several estimates. The one of the stress is for radii some
+    /// cells (of twice the largest contact radius over the number of springs) away from the kinks of the displacement,
+    /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
+    /// springs.apply(&slide(0.002))?;
+    /// contact.apply(&slide(0.002))?;
+    /// let off = (springs.force() - contact.force()).abs() / 2000.0;
+    /// assert!(off <= springs.accuracy().force_error);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
-    pub fn accuracy(&self) -> Estimate {
-        let figures = self.normal.figures();
+    pub fn accuracy(&self) -> ErrorEstimate {
+        let figures = self.normal.summary();
         let edge = self.contact_radius();
         let relative = |error: f64, unit: f64| if unit > 0.0 { error / unit } else { 0.0 };
         let pressure = figures.unit_pressure();
         let bends = self.bends();
         let misplaced = 2.0 * self.initial.g_star * self.misplaced;
-        let differences = self.twins.iter().map(|twin| (self.force() - twin.force()).abs());
+        let differences = self.coarser.iter().map(|coarse| (self.force() - coarse.force()).abs());
         let normal = self.friction * (self.normal_force() - figures.normal_force).abs();
         let force = differences.fold(normal.max(self.force_bound(&bends)), f64::max) + misplaced * edge;
         let stress = self.off_kinks(edge).map(|radius| self.stress_doubt(radius, &bends)).fold(0.0, f64::max);
         let stress = stress + misplaced / (PI * (2.0 * NEAREST * edge * self.spacing).sqrt());
-        Estimate {
+        ErrorEstimate {
             path_error: 0.0,
             force_error: relative(force, figures.gross_slip_force) + f64::EPSILON,
             stress_error: relative(stress, self.friction * pressure) + f64::EPSILON,
@@ -47,7 +59,8 @@ impl Springs {
             .filter(move |radius| singular.iter().all(|at| (radius - at).abs() > near))
     }
 
-    /// Magnitudes of the second differences of the displacement, m, at each spring and just outside: (radius, weight, bend).
+    /// Magnitudes of the second differences of the displacement, m, at each spring and just outside: (radius, weight,
+    /// bend).
     fn bends(&self) -> Vec<(f64, f64, f64)> {
         let springs: Vec<_> = self.in_contact().copied().collect();
         let carried = |index: usize| springs.get(index).map_or(0.0, |spring| spring.carried);
@@ -70,13 +83,13 @@ impl Springs {
             .collect()
     }
 
-    /// What the bends leave open of the force, N.
+    /// Bound on the error of the force by the second differences, N.
     fn force_bound(&self, bends: &[(f64, f64, f64)]) -> f64 {
         let sum: f64 = bends.iter().map(|(_, weight, bend)| weight * bend).sum();
         self.initial.g_star * self.spacing * sum / 8.0
     }
 
-    /// What a shear stress at a radius, m, may be off by, Pa.
+    /// Estimated error of the shear stress at a radius, m, in Pa.
     fn stress_doubt(&self, radius: f64, bends: &[(f64, f64, f64)]) -> f64 {
         let nearest = radius + NEAREST * self.spacing;
         let sum: f64 = bends
@@ -91,20 +104,20 @@ impl Springs {
         let open = self.initial.g_star / PI * self.spacing * sum / 8.0;
         let normal = self.friction * (self.pressure(radius) - self.normal.pressure(radius)).abs();
         let shear = self.shear(radius);
-        let differences = self.twins.iter().map(|twin| (shear - twin.shear(radius)).abs());
+        let differences = self.coarser.iter().map(|coarse| (shear - coarse.shear(radius)).abs());
         differences.fold(open.max(normal), f64::max)
     }
 
-    /// How far the displacement, m, of a force that is asked for may be off: as far as forces within the estimate lead.
+    /// Error of the displacement, m, under a prescribed force: the change that a force within its error bound makes.
     pub(super) fn misplacement(&self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
         let scale = self.scale();
         let mut after = self.clone();
-        after.twins.clear();
+        after.coarser.clear();
         after.advance(self.indentation, displacement);
         let error = after.force_bound(&after.bends());
         let force = after.force();
-        // At the most as far as where all of it slips.
+        // At most up to gross slip.
         let room = |sign: f64| {
             self.in_contact()
                 .map(|spring| scale * (self.indentation - spring.level) - sign * spring.carried)

@@ -1,24 +1,21 @@
-//! The paper's spring foundation: an independent second solver, and the yardstick of the first.
+//! The spring foundation of the paper: a discrete solver, independent of the exact one, to compare with.
 //!
-//! N springs at the midpoints of equal cells over twice the reach (Kraft & Pohrt 2016, section 2): normal stiffness E* dx,
-//! tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to order
-//! N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
+//! N springs at the midpoints of equal cells over twice the reach (Kraft & Pohrt 2016, section 2): normal stiffness E*
+//! dx, tangential stiffness G* dx, each clamped to its own friction bound after every straight move. Forces are good to
+//! order N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
 mod estimate;
-mod kernel;
+mod shear_evaluation;
+mod stress;
 
-pub use kernel::Kernel;
+pub use shear_evaluation::ShearEvaluation;
 
 use super::state::{Move, Normal, Regime, Setup, State, Tangential};
 
-use super::error::Error;
-use super::normal::Figures;
+use super::error::{Error, UnsupportedMove};
+use super::normal::ContactSummary;
 use super::range;
-use super::traction::{Peak, Residual};
 use super::{Contact, Profile};
-
-/// Radii at which the search for peaks looks, at the most.
-const SCAN: usize = 2000;
 
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
@@ -27,7 +24,7 @@ pub struct Springs {
     virgin: Contact,
     /// The exact normal contact along the path; it is never moved sideways.
     normal: Contact,
-    initial: Figures,
+    initial: ContactSummary,
     friction: f64,
     spacing: f64,
     springs: Vec<Spring>,
@@ -36,10 +33,10 @@ pub struct Springs {
     dissipated: f64,
     slipped: bool,
     stick_radius: f64,
-    /// How far a prescribed force may have misplaced the indenter, m.
+    /// Error of the displacement under a prescribed force, m.
     misplaced: f64,
-    /// The same on fewer springs, which shows how far the number matters.
-    twins: Vec<Springs>,
+    /// The same contact on fewer springs, for the error estimate.
+    coarser: Vec<Springs>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +52,15 @@ struct Spring {
 ///
 /// # Errors
 /// Those of [`Contact::new`].
-pub fn reach(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// let deeper = Move { normal: Some(Normal::Indentation(0.04)), ..Move::default() };
+/// let radius = stickslip_mechanics::springs::largest_contact_radius(&setup, [deeper])?;
+/// assert!((radius - 0.2).abs() < 1e-15);
+/// # Ok::<(), Error>(())
+/// ```
+pub fn largest_contact_radius(setup: &Setup, moves: impl IntoIterator<Item = Move>) -> Result<f64, Error> {
     let mut contact = Contact::new(setup.clone())?;
     let mut reach = contact.contact_radius();
     for step in moves.into_iter().filter(|step| step.normal.is_some()) {
@@ -72,21 +77,28 @@ impl Springs {
     ///
     /// # Errors
     /// Those of [`Contact::new`], and [`Error::OutOfRange`] by [`range::SPRING_COUNT`].
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let springs = Springs::new(setup, 1000, 0.1)?;
+    /// assert!((springs.normal_force() / contact.normal_force() - 1.0).abs() < 1e-5);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        let mut fine = Springs::alone(setup.clone(), count, reach)?;
-        // Kinks fall elsewhere between the springs of each: one twin has a spring at the centre if the other has none.
+        let mut fine = Springs::one_row(setup.clone(), count, reach)?;
+        // Kinks fall elsewhere between the springs of each: one of them has a spring at the centre, the other has none.
         let half = count.div_ceil(2).max(2);
         let more = (2 * count).div_ceil(3).max(3);
         for fewer in [half, if more % 2 == half % 2 { more + 1 } else { more }] {
-            fine.twins.push(Springs::alone(setup.clone(), fewer, reach)?);
+            fine.coarser.push(Springs::one_row(setup.clone(), fewer, reach)?);
         }
         Ok(fine)
     }
 
-    fn alone(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    fn one_row(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         let contact = Contact::new(setup.clone())?;
-        let initial = contact.initial_figures();
+        let initial = contact.initial_summary();
         let Setup { profile, friction, .. } = setup;
         let spacing = 2.0 * reach / count as f64;
         let first = if count.is_multiple_of(2) { 0.5 } else { 0.0 };
@@ -111,13 +123,13 @@ impl Springs {
             slipped: false,
             stick_radius: initial.contact_radius,
             misplaced: 0.0,
-            twins: Vec::new(),
+            coarser: Vec::new(),
         })
     }
 
-    /// Figures of the definition, from the exact normal contact.
+    /// The summary of the definition, from the exact normal contact.
     #[must_use]
-    pub fn initial_figures(&self) -> Figures {
+    pub fn initial_summary(&self) -> ContactSummary {
         self.initial
     }
 
@@ -136,15 +148,25 @@ impl Springs {
     ///
     /// # Errors
     /// As [`Contact::apply`].
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let mut springs = Springs::new(setup, 1000, 0.1)?;
+    /// springs.apply(&slide(0.00375))?;
+    /// contact.apply(&slide(0.00375))?;
+    /// assert!((springs.force() / contact.force() - 1.0).abs() < 1e-5);
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
         if let (Some(normal), Some(tangential)) = (step.normal, step.tangential) {
-            let what = match (normal, tangential) {
-                (Normal::NormalForce(_), _) => Some("springs follow a normal force only without a tangential target"),
-                (_, Tangential::Force(_)) => Some("springs follow a tangential force only at constant indentation"),
-                _ => None,
-            };
-            if let Some(what) = what {
-                return Err(Error::Unsupported { what });
+            match (normal, tangential) {
+                (Normal::NormalForce(_), _) => {
+                    return Err(Error::Unsupported(UnsupportedMove::NormalForceWithTangentialTarget));
+                }
+                (_, Tangential::Force(_)) => {
+                    return Err(Error::Unsupported(UnsupportedMove::TangentialForceWithNormalTarget));
+                }
+                (Normal::Indentation(_), Tangential::Displacement(_)) => {}
             }
         }
         let mut normal = self.normal.clone();
@@ -157,10 +179,10 @@ impl Springs {
         }
         self.normal = normal;
         let indentation = self.normal.indentation();
-        for twin in &mut self.twins {
-            // Near the limit of friction a twin may hold less than the force.
-            let displacement = twin.target(step).unwrap_or(displacement);
-            twin.advance(indentation, displacement);
+        for coarse in &mut self.coarser {
+            // Near the limit of friction a coarser row may hold less than the force.
+            let displacement = coarse.target(step).unwrap_or(displacement);
+            coarse.advance(indentation, displacement);
         }
         self.advance(indentation, displacement);
         Ok(())
@@ -222,7 +244,7 @@ impl Springs {
         let limit = self.friction * self.normal_force();
         if target.abs() >= limit {
             let way = (target - self.force()).abs();
-            // Without friction even to stay is too much, and there is no way to be a part of.
+            // Without friction no force can be held, and the move has no length.
             let part = if way > 0.0 { (limit - target.signum() * self.force()) / way } else { 0.0 };
             return Err(Error::ForceExceedsFriction { target, limit, part: part.clamp(0.0, 1.0) });
         }
@@ -298,93 +320,5 @@ impl Springs {
             elastic_energy: energy,
             memory_depth: self.in_contact().count(),
         }
-    }
-
-    /// Pressure, Pa, at a radius, m.
-    #[must_use]
-    pub fn pressure(&self, radius: f64) -> f64 {
-        self.initial.e_star * self.stress(radius, self.rim_depth(), |spring| self.indentation - spring.level)
-    }
-
-    /// Shear stress, Pa, at a radius, m.
-    #[must_use]
-    pub fn shear(&self, radius: f64) -> f64 {
-        let room = self.scale() * self.rim_depth();
-        let last = self.in_contact().last().map_or(0.0, |spring| spring.carried);
-        self.initial.g_star * self.stress(radius, last.clamp(-room, room), |spring| spring.carried)
-    }
-
-    /// How deep a vertical edge is pressed in, m; nought for a profile without one, but for rounding.
-    fn rim_depth(&self) -> f64 {
-        // Elsewhere rounding would make an infinite stress of what is left over.
-        if self.profile.rim_radius().is_none_or(|rim| self.contact_radius() < rim) {
-            return 0.0;
-        }
-        (self.indentation - self.profile.level(self.contact_radius())).max(0.0)
-    }
-
-    /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring
-    /// to spring and on to `at_edge`; level from the centre to the first spring beyond it.
-    fn stress(&self, radius: f64, at_edge: f64, displacement: impl Fn(&Spring) -> f64) -> f64 {
-        let edge = self.contact_radius();
-        if radius > edge || self.indentation <= 0.0 {
-            return 0.0;
-        }
-        let root = |x: f64| ((x - radius) * (x + radius)).max(0.0).sqrt();
-        let mut sum = if at_edge.abs() > 0.0 { at_edge / root(edge) } else { 0.0 };
-        let mut inner: Option<(f64, f64)> = None;
-        let nodes = self.in_contact().map(|spring| (spring.radius, displacement(spring))).chain([(edge, at_edge)]);
-        for (x, u) in nodes {
-            if let Some((x0, u0)) = inner
-                && x > radius
-                && x > x0
-                && x0 > 0.0
-            {
-                let from = x0.max(radius);
-                sum -= (u - u0) / (x - x0) * ((x + root(x)) / (from + root(from))).ln();
-            }
-            inner = Some((x, u));
-        }
-        sum / std::f64::consts::PI
-    }
-
-    /// Tangential displacement of the surface, m, at a radius, m: each spring moves its own cell.
-    #[must_use]
-    pub fn surface_displacement(&self, radius: f64) -> f64 {
-        let half = 0.5 * self.spacing;
-        let Some(centre) = self.in_contact().next() else { return 0.0 };
-        if radius <= half {
-            return centre.carried;
-        }
-        let angle = |x: f64| (x / radius).clamp(0.0, 1.0).asin();
-        let edge = self.contact_radius();
-        let share = |spring: &Spring| angle((spring.radius + half).min(edge)) - angle(spring.radius - half);
-        let sum: f64 = self.in_contact().map(|spring| spring.carried * share(spring)).sum();
-        std::f64::consts::FRAC_2_PI * sum
-    }
-
-    /// Slip under the indenter, m, at a radius, m; none outside the contact.
-    #[must_use]
-    pub fn slip(&self, radius: f64) -> Option<f64> {
-        let touched = self.indentation > 0.0 && radius <= self.contact_radius();
-        touched.then(|| self.displacement - self.surface_displacement(radius))
-    }
-
-    /// The extrema of the shear stress, as far as the springs resolve them.
-    #[must_use]
-    pub fn residual(&self) -> Residual {
-        let count = self.in_contact().count();
-        let stride = count.div_ceil(SCAN).max(1);
-        let samples: Vec<Peak> = self
-            .in_contact()
-            .step_by(stride)
-            .map(|spring| Peak { radius: spring.radius, shear: self.shear(spring.radius) })
-            .collect();
-        let peaks: Vec<Peak> = samples
-            .windows(3)
-            .filter(|near| (near[1].shear - near[0].shear) * (near[2].shear - near[1].shear) < 0.0)
-            .map(|near| near[1])
-            .collect();
-        Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).is_finite())
     }
 }

@@ -1,7 +1,7 @@
 //! The honesty of `accuracy()`: over a thousand random scenes the estimate is never below a third of the true error.
 
-use crate::reference::{found, scenes};
 use crate::support::Random;
+use crate::support::reference::{found, scenes};
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated, TruncatedSphere,
 };
@@ -84,7 +84,7 @@ fn random_contact(random: &mut Random) -> Contact {
         preload: Preload::ContactRadius(random.within(0.62, 1.0)),
     };
     let mut contact = Contact::new(setup).unwrap();
-    let figures = contact.figures();
+    let figures = contact.summary();
     for _ in 0..random.bits() % 5 {
         let normal = Normal::Indentation(figures.indentation * random.within(0.7, 1.3));
         let tangential = Tangential::Displacement(figures.gross_slip_displacement * random.within(-0.8, 0.8));
@@ -98,7 +98,7 @@ fn random_contact(random: &mut Random) -> Contact {
 /// A move that is straight in a force, which friction can hold.
 fn random_curve(random: &mut Random, contact: &Contact) -> Move {
     let state = contact.state();
-    let figures = contact.figures();
+    let figures = contact.summary();
     let by_load = random.bits().is_multiple_of(2);
     let normal = if by_load {
         Normal::NormalForce(state.normal_force * random.within(0.5, 2.5))
@@ -129,7 +129,7 @@ fn estimates_of_paths_straight_in_a_force_are_honest() {
             continue;
         }
         fine.apply_within(&curve, 1e-3 * tolerance).unwrap();
-        let (figures, estimate, rest) = (fine.figures(), coarse.accuracy(), fine.accuracy());
+        let (figures, estimate, rest) = (fine.summary(), coarse.accuracy(), fine.accuracy());
         let name = format!("scene {index}, {curve:?} within {tolerance:.0e}");
         let error = (coarse.force() - fine.force()).abs() / figures.gross_slip_force;
         forces.compare(&name, error, estimate.force_error + rest.force_error);
@@ -205,7 +205,7 @@ fn estimates_of_what_tables_leave_open_are_honest() {
         let contact =
             |profile: &Profile| Contact::new(Setup { profile: profile.clone(), elasticity, friction, preload });
         let (Ok(mut exact), Ok(mut found)) = (contact(&body), contact(&table)) else { continue };
-        let figures = exact.figures();
+        let figures = exact.summary();
         for _ in 0..1 + random.bits() % 4 {
             let target = figures.gross_slip_displacement * random.within(-0.9, 0.9);
             let tangential = Some(Tangential::Displacement(target));

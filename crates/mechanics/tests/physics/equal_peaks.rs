@@ -1,21 +1,16 @@
 //! The law of equal peaks: what it gains over the linearly falling amplitude, profile by profile.
 
-use crate::support::pressed;
 use crate::support::quadrature::integral;
-use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, RoundedCone, Tabulated, TruncatedSphere};
+use crate::support::{follow, power, pressed};
+use stickslip_mechanics::profile::{Cone, ExactSphere, RoundedCone, Tabulated, TruncatedSphere};
 use stickslip_mechanics::protocol::{equal_peaks, falling_amplitude};
-use stickslip_mechanics::{Move, Profile, Sphere, Tangential};
+use stickslip_mechanics::{Profile, Sphere};
 
-fn power(exponent: f64) -> Profile {
-    Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
-}
-
-/// Largest peak, and its ratio to the smallest, beyond a radius; the outermost peak apart, which the edge makes smaller.
+/// Largest peak, and its ratio to the smallest, beyond a radius; the outermost peak apart, which the edge makes
+/// smaller.
 fn peaks(profile: &Profile, path: &[f64], beyond: f64) -> (f64, f64) {
     let mut contact = pressed(profile.clone());
-    for &target in path {
-        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
-    }
+    follow(&mut contact, path);
     let found = contact.residual().peaks;
     let sizes: Vec<f64> =
         found[..found.len() - 1].iter().filter(|peak| peak.radius > beyond).map(|peak| peak.shear.abs()).collect();
@@ -29,7 +24,7 @@ fn compared(profile: &Profile, reversals: usize) -> ((f64, f64), (f64, f64), f64
     let linear: Vec<f64> = falling_amplitude(reversals, contact.gross_slip_displacement()).collect();
     let equal = equal_peaks(&contact, reversals, None).unwrap();
     assert_eq!(equal.displacements.len(), reversals + 1);
-    assert!(equal.displacements[reversals].abs() <= 0.0, "the path ends at nought");
+    assert!(equal.displacements[reversals].abs() <= 0.0, "the path ends at zero");
     assert!((equal.displacements[0] - contact.gross_slip_displacement()).abs() <= 0.0, "and starts with gross slip");
     let cutoff = equal.cutoff_radius;
     (peaks(profile, &linear, cutoff), peaks(profile, &equal.displacements, cutoff), cutoff)

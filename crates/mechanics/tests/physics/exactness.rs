@@ -260,7 +260,7 @@ fn force_control_after_any_history_meets_the_force() {
             masing.go(slide);
             contact.apply(&displace(slide * PLAIN.full_slip())).unwrap();
         }
-        let limit = contact.figures().gross_slip_force;
+        let limit = contact.summary().gross_slip_force;
         contact.apply(&push(target * limit)).unwrap();
         forces.close(contact.force(), target * limit, limit);
         masing.go(contact.state().displacement / PLAIN.full_slip());
@@ -275,7 +275,7 @@ fn a_force_from_the_limit_on_is_refused_and_changes_nothing() {
     contact.apply(&displace(-0.1 * PLAIN.full_slip())).unwrap();
     let (before, stress) = (contact.state(), contact.shear(0.7 * PLAIN.radius));
     let named_limits = Worst::new("limit named by a refused force, relative", 1e-13);
-    let limit = contact.figures().gross_slip_force;
+    let limit = contact.summary().gross_slip_force;
     for size in [limit, limit.next_up(), 2.0 * limit, 1e20] {
         for target in [size, -size] {
             let refused = contact.apply(&push(target)).unwrap_err();
@@ -300,7 +300,7 @@ fn the_three_preloads_are_one_contact() {
         for preload in
             [Preload::NormalForce(force), Preload::Indentation(ball.indentation()), Preload::ContactRadius(ball.radius)]
         {
-            let figures = Contact::new(ball.loaded(preload)).unwrap().figures();
+            let figures = Contact::new(ball.loaded(preload)).unwrap().summary();
             same.relative(figures.contact_radius, ball.radius);
             same.relative(figures.indentation, ball.indentation());
             same.relative(figures.normal_force, force);
@@ -312,9 +312,9 @@ fn the_three_preloads_are_one_contact() {
 }
 
 #[test]
-fn loading_along_a_line_from_nought_carries_its_share_of_friction() {
-    // Touched on the way, a point keeps what came after: w = ratio (d - y), so that tau = ratio mu p everywhere, or mu p
-    // where the ratio exceeds one and all of it slips (Mindlin & Deresiewicz 1953).
+fn loading_along_a_line_from_zero_carries_its_share_of_friction() {
+    // Touched on the way, a point keeps what came after: w = ratio (d - y), so that tau = ratio mu p everywhere, or mu
+    // p where the ratio exceeds one and all of it slips (Mindlin & Deresiewicz 1953).
     let shares = Worst::new("force and stress of oblique loading, relative", 1e-13);
     let mut random = Random(3);
     for preload in [Preload::NormalForce(0.0), Preload::Indentation(0.0), Preload::ContactRadius(0.0)] {
@@ -329,8 +329,8 @@ fn loading_along_a_line_from_nought_carries_its_share_of_friction() {
                 let depth = depth * PLAIN.indentation();
                 contact.apply(&oblique(depth, start + ratio * PLAIN.scale() * depth)).unwrap();
                 let share = ratio.clamp(-1.0, 1.0);
-                shares.relative(contact.force(), share * contact.figures().gross_slip_force);
-                let r = random.within(0.0, 0.999) * contact.figures().contact_radius;
+                shares.relative(contact.force(), share * contact.summary().gross_slip_force);
+                let r = random.within(0.0, 0.999) * contact.summary().contact_radius;
                 shares.relative(contact.shear(r), share * PLAIN.friction * contact.pressure(r));
             }
         }

@@ -2,13 +2,13 @@
 
 use std::cell::Cell;
 
-use crate::support::{forall, standing_out};
+use crate::support::{displace, forall, sphere, standing_out};
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Residual, Setup, Sphere, Tangential};
+use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Residual, Setup, Tangential};
 
 /// E* = G* = 1000 Pa and mu = 0.3: u_max is 0.3 times the indentation.
 fn pressed(profile: Profile, preload: Preload) -> Contact {
@@ -23,10 +23,7 @@ fn moved(profile: Profile, radius: f64, path: &[f64]) -> Contact {
 
 fn displaced(mut contact: Contact, path: &[f64]) -> Contact {
     let full = contact.gross_slip_displacement();
-    for share in path {
-        let target = Some(Tangential::Displacement(share * full));
-        contact.apply(&Move { tangential: target, ..Move::default() }).unwrap();
-    }
+    path.iter().for_each(|share| contact.apply(&displace(share * full)).unwrap());
     contact
 }
 
@@ -35,10 +32,6 @@ fn moved_to(profile: Profile, radius: f64, path: &[f64]) -> Contact {
     let contact = pressed(profile, Preload::ContactRadius(radius));
     let full = contact.gross_slip_displacement();
     displaced(contact, &path.iter().map(|target| target / full).collect::<Vec<f64>>())
-}
-
-fn sphere(radius: f64) -> Profile {
-    Profile::Sphere(Sphere::new(radius).unwrap())
 }
 
 fn cone(slope: f64) -> Profile {
@@ -174,7 +167,7 @@ fn check(contact: &Contact, notes: &[f64]) -> usize {
         assert!(!contact.profile().singular_radii().contains(&peak.radius) || contact.shear(peak.radius).is_finite());
         let before = index.checked_sub(1).map_or(0.0, |index| peaks[index].radius);
         let after = peaks.get(index + 1).map_or(edge, |peak| peak.radius);
-        // As far as the stress can be told from it, it is the same kind of extremum on either side.
+        // As far as the stress shows it, it is the same kind of extremum on either side.
         let near = |from: f64, to: f64| {
             let within = radii.iter().zip(&finite).filter(|(r, _)| **r > from && **r < to);
             within.map(|(_, tau)| tau - peak.shear).filter(|rise| rise.abs() > 1e-12 * unit).collect::<Vec<f64>>()

@@ -46,7 +46,7 @@ fn shear_stress_never_exceeds_friction() {
             let beyond = contact.shear(r).abs() - PLAIN.friction * contact.pressure(r);
             excess.close(beyond.max(0.0), 0.0, unit);
         }
-        assert!(contact.force().abs() <= contact.figures().gross_slip_force * (1.0 + 1e-14));
+        assert!(contact.force().abs() <= contact.summary().gross_slip_force * (1.0 + 1e-14));
     });
 }
 
@@ -123,7 +123,8 @@ fn the_mirror_image_of_a_path_gives_the_mirror_image_of_its_state() {
 
 #[test]
 fn how_far_it_has_slid_before_changes_nothing() {
-    // Once all of it has slipped, a contact a million u_max further on is the same contact. Both are exact on this grid.
+    // Once all of it has slipped, a contact a million u_max further on is the same contact. Both are exact on this
+    // grid.
     const FAR: f64 = 1_048_576.0;
     let forces = Worst::new("force a million u_max further on / mu F_N", 1e-14);
     let stresses = Worst::new("shear stress a million u_max further on / mu p_max", 1e-12);
@@ -188,8 +189,8 @@ fn splitting_a_straight_move_changes_nothing() {
     let stresses = Worst::new("shear stress of split moves / mu p_max", 1e-10);
     forall(300, (paths::oblique_steps(25), 0..5_u32), |(steps, halvings)| {
         let parts = 1 << halvings;
-        // On the unit contact and on a grid every part of the move ends exactly on the straight line; elsewhere the parts
-        // are rounded, and a load that rises along them may leave their corners behind.
+        // On the unit contact and on a grid every part of the move ends exactly on the straight line; elsewhere the
+        // parts are rounded, and a load that rises along them may leave their corners behind.
         let exact = paths::on_grid(&paths::waypoints(&steps), 20);
         for (ball, path, parts) in [(UNIT, exact, parts), (PLAIN, paths::waypoints(&steps), 2 * halvings + 1)] {
             let contact = walk(&ball, &path);
@@ -285,7 +286,7 @@ fn dense(special: &[f64], edge: f64) -> Vec<f64> {
 
 #[test]
 fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
-    let (found, told) = (Cell::new(0), Cell::new(0));
+    let (found, reported) = (Cell::new(0), Cell::new(0));
     // Between the kinks of arbitrary slopes that rises leave, there may be two extrema.
     let of_all_kinds = prop_oneof![
         2 => paths::slides(30).boxed(),
@@ -320,7 +321,7 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
             // Kinks closer than radii can tell share one.
             assert!(before <= peak.radius && peak.radius <= after, "peaks are in order");
             assert!(Some(peak.shear.abs()) <= residual.max);
-            told.set(told.get() + 1);
+            reported.set(reported.get() + 1);
             if (peak.radius - before).min(after - peak.radius) < 1e-9 * edge {
                 // Too thin a ring to look into.
                 continue;
@@ -336,7 +337,7 @@ fn no_extremum_of_the_shear_stress_is_missed_or_made_up() {
         assert!(largest <= max + 1e-14 * unit, "{largest:e} exceeds {max:e}");
         assert!(largest >= max - 1e-6 * unit, "{max:e} is nowhere: {largest:e}");
     });
-    assert!(found.get() > 200 && told.get() > 200, "{} found, {} told", found.get(), told.get());
+    assert!(found.get() > 200 && reported.get() > 200, "{} found, {} reported", found.get(), reported.get());
 }
 
 #[test]

@@ -1,6 +1,7 @@
-//! The physics: each file states facts that must hold, against something independent of the solver.
+//! The physics tests, one program: each module holds the solver against closed forms, laws or an independent reference.
 
 mod accuracy;
+mod curved_moves;
 mod equal_peaks;
 mod exactness;
 mod extrema;
@@ -11,9 +12,7 @@ mod packed;
 mod paper;
 mod profiles;
 mod protocols;
-mod reference;
 mod relative_moves;
-mod routes;
 mod slip_history;
 mod springs;
 mod springs_estimate;

@@ -1,22 +1,21 @@
-//! The minimax protocol: its largest stress against known values, and against the other protocols on every finite profile.
+//! The minimax protocol: its largest stress against known values, and against the other protocols on every finite
+//! profile.
 
-use crate::support::pressed;
+use crate::support::{follow, pressed, sphere};
 use stickslip_mechanics::profile::{ExactSphere, PowerLaw, RoundedCone};
 use stickslip_mechanics::protocol::{equal_peaks, falling_amplitude, minimax};
-use stickslip_mechanics::{Move, Profile, Residual, Sphere, Tangential};
+use stickslip_mechanics::{Profile, Residual};
 
 fn left(profile: &Profile, path: &[f64]) -> Residual {
     let mut contact = pressed(profile.clone());
-    for &target in path {
-        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
-    }
+    follow(&mut contact, path);
     contact.residual()
 }
 
 #[test]
 fn on_a_sphere_all_extrema_are_equal_and_as_small_as_they_can_be() {
-    let profile = Profile::Sphere(Sphere::new(10.0).unwrap());
-    let unit = 0.3 * pressed(profile.clone()).figures().max_pressure.unwrap();
+    let profile = sphere(10.0);
+    let unit = 0.3 * pressed(profile.clone()).summary().max_pressure.unwrap();
     for (reversals, known) in [(1, 0.600_000), (2, 0.471_894), (3, 0.400_606), (20, 0.167_500), (100, 0.075_794)] {
         let found = minimax(&pressed(profile.clone()), reversals, &|| true).unwrap();
         assert_eq!(found.displacements.len(), reversals + 1);
@@ -43,7 +42,7 @@ fn it_is_never_above_the_other_protocols() {
         power(1.5),
         power(3.0),
         power(4.0),
-        Profile::Sphere(Sphere::new(10.0).unwrap()),
+        sphere(10.0),
         Profile::ExactSphere(ExactSphere::new(2.0).unwrap()),
         Profile::RoundedCone(RoundedCone::new(0.05, 0.15).unwrap()),
     ];
@@ -61,7 +60,7 @@ fn it_is_never_above_the_other_protocols() {
 }
 
 #[test]
-fn it_ends_when_told_to() {
-    let contact = pressed(Profile::Sphere(Sphere::new(10.0).unwrap()));
+fn it_ends_when_it_is_stopped() {
+    let contact = pressed(sphere(10.0));
     assert_eq!(minimax(&contact, 20, &|| false), None);
 }

@@ -48,7 +48,7 @@ fn virgin_at(shape: usize, indentation: f64) -> Contact {
 
 /// A move to anywhere: straight or curved, into the contact, out of it, sliding or not.
 fn any_move(virgin: &Contact, random: &mut Random) -> (Move, f64) {
-    let figures = virgin.initial_figures();
+    let figures = virgin.initial_summary();
     let (slide, load) = (figures.gross_slip_displacement, figures.normal_force);
     let depth = DEPTH * random.within(-0.1, 1.5);
     let tangential = match random.within(0.0, 4.0) as usize {
@@ -74,7 +74,7 @@ fn wander(contact: &mut Contact, virgin: &Contact, count: usize, random: &mut Ra
 }
 
 /// All that there is to know, digit by digit: every field, and what is computed from them.
-fn told(contact: &Contact) -> String {
+fn digest_of(contact: &Contact) -> String {
     let radius = contact.contact_radius();
     let shear: Vec<u64> = (0..20).map(|part| contact.shear(radius * f64::from(part) / 19.0).to_bits()).collect();
     format!("{contact:?} {:?} {:?} {shear:?}", contact.state(), contact.accuracy())
@@ -89,12 +89,12 @@ fn what_is_read_back_is_the_same_to_the_last_bit_and_stays_so() {
         let bytes = contact.pack();
         assert_eq!(bytes.len(), contact.packed_length());
         let mut read = virgin.unpack(&bytes).expect("it was packed a moment ago");
-        assert_eq!(told(&read), told(&contact));
+        assert_eq!(digest_of(&read), digest_of(&contact));
         // And from there on, whichever of the two is moved.
         let mut twin = Random(random.0);
         wander(&mut contact, &virgin, 20, &mut random);
         wander(&mut read, &virgin, 20, &mut twin);
-        assert_eq!(told(&read), told(&contact));
+        assert_eq!(digest_of(&read), digest_of(&contact));
     });
 }
 
@@ -156,13 +156,13 @@ fn another_contact_and_another_version_are_refused() {
     }
 }
 
-/// Results of the engine, mixed into one number (FNV-1a): of a sphere and a flat punch, by displacement, indentation and
-/// force. They need no function beyond the square root, so that the digits are the same on every machine.
+/// Results of the engine, mixed into one number (FNV-1a): of a sphere and a flat punch, by displacement, indentation
+/// and force. They need no function beyond the square root, so that the digits are the same on every machine.
 fn digest() -> u64 {
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     for shape in [0, 4] {
         let virgin = virgin(shape);
-        let figures = virgin.initial_figures();
+        let figures = virgin.initial_summary();
         let (mut contact, mut random) = (virgin.clone(), Random(1 + shape as u64));
         for index in 0..300 {
             let slide = random.within(-1.1, 1.1);

@@ -1,11 +1,12 @@
 //! The results of Kraft & Pohrt (2016), as corrected: falling amplitude on a sphere.
 
+use crate::support::displace;
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup, Sphere};
 
 const FRICTION: f64 = 0.3;
 
-fn sphere() -> Contact {
+fn sphere_contact() -> Contact {
     Contact::new(Setup {
         profile: Profile::Sphere(Sphere::new(10.0).unwrap()),
         elasticity: Elasticity::effective(1000.0, 800.0).unwrap(),
@@ -15,16 +16,12 @@ fn sphere() -> Contact {
     .unwrap()
 }
 
-fn displace(contact: &mut Contact, target: f64) {
-    contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
-}
-
 /// The contact after the first `moves` positions of eq. 20.
 fn after(reversals: usize, moves: usize) -> Contact {
-    let mut contact = sphere();
-    let amplitude = contact.figures().gross_slip_displacement;
+    let mut contact = sphere_contact();
+    let amplitude = contact.summary().gross_slip_displacement;
     for target in falling_amplitude(reversals, amplitude).take(moves) {
-        displace(&mut contact, target);
+        contact.apply(&displace(target)).unwrap();
     }
     contact
 }
@@ -34,7 +31,7 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn eq_20_alternates_falls_and_ends_at_nought() {
+fn eq_20_alternates_falls_and_ends_at_zero() {
     let path: Vec<f64> = falling_amplitude(4, 2.0).collect();
     let expected = [2.0, -1.5, 1.0, -0.5, 0.0];
     assert_eq!(path.len(), expected.len());
@@ -44,14 +41,14 @@ fn eq_20_alternates_falls_and_ends_at_nought() {
 }
 
 #[test]
-fn force_at_the_end_is_not_nought() {
+fn force_at_the_end_is_not_zero() {
     // F/(mu F_N) at U = 0 after a full stroke and back, by Masing's rule: 1 - 2 (1 - (1 - 1/2)^(3/2)).
     let by_hand = 1.0 - 2.0 * (1.0 - 0.5_f64.powf(1.5));
     for (reversals, expected, tolerance) in
         [(1, by_hand, 1e-14), (1, -0.2929, 5e-5), (2, -0.04904, 5e-6), (20, -0.002045, 5e-7)]
     {
         let contact = after(reversals, reversals + 1);
-        let limit = contact.figures().gross_slip_force;
+        let limit = contact.summary().gross_slip_force;
         close(contact.state().force / limit, expected, tolerance);
     }
 }
@@ -60,7 +57,7 @@ fn force_at_the_end_is_not_nought() {
 fn largest_shear_stress_falls_with_the_root_of_the_reversals() {
     for reversals in (1..=40).chain([100, 1000]) {
         let contact = after(reversals, reversals + 1);
-        let unit = FRICTION * contact.figures().max_pressure.unwrap();
+        let unit = FRICTION * contact.summary().max_pressure.unwrap();
         let expected = if reversals == 1 { 0.5_f64.sqrt() } else { (2.0 - 1.5_f64.sqrt()) / (reversals as f64).sqrt() };
         let residual = contact.residual();
         close(residual.max.unwrap() / unit, expected, 1e-12);
@@ -78,12 +75,12 @@ fn stick_radii_of_figure_3() {
     // Point A is the sixth reversal of twenty, point B the way back from it to U = 0.
     let mut contact = after(20, 6);
     let state = contact.state();
-    let scale = contact.figures().gross_slip_displacement;
+    let scale = contact.summary().gross_slip_displacement;
     close(state.displacement / scale, -0.75, 1e-15);
     // The last stroke went from 0.8 to -0.75 u_max, and half of it slipped: c^2 = a^2 (1 - 1.55/2).
     close(state.stick_radius / state.contact_radius, 0.225_f64.sqrt(), 1e-13);
     close(state.stick_radius / state.contact_radius, 0.474, 5e-4);
-    displace(&mut contact, 0.0);
+    contact.apply(&displace(0.0)).unwrap();
     let state = contact.state();
     close(state.stick_radius / state.contact_radius, 0.625_f64.sqrt(), 1e-13);
     close(state.stick_radius / state.contact_radius, 0.791, 5e-4);
@@ -98,15 +95,15 @@ fn friction_work_of_the_reference_contact() {
         preload: Preload::ContactRadius(0.5),
     })
     .unwrap();
-    let full = contact.figures().gross_slip_displacement;
+    let full = contact.summary().gross_slip_displacement;
     let fresh = contact.clone();
-    displace(&mut contact, 0.5 * full);
+    contact.apply(&displace(0.5 * full)).unwrap();
     close(contact.state().dissipated_energy, 0.000_682_427, 5e-10);
-    displace(&mut contact, -0.25 * full);
+    contact.apply(&displace(-0.25 * full)).unwrap();
     close(contact.state().dissipated_energy, 0.001_233_126, 5e-10);
     let mut contact = fresh;
     for target in falling_amplitude(20, full) {
-        displace(&mut contact, target);
+        contact.apply(&displace(target)).unwrap();
     }
     close(contact.state().dissipated_energy, 0.071_643_3, 5e-8);
 }

@@ -2,19 +2,14 @@
 
 use std::f64::consts::PI;
 
-use crate::support::pressed;
+use crate::support::{config, follow, power, pressed, sphere};
 use proptest::prelude::*;
-use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated};
-use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
-use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Sphere, Tangential};
-
-fn sphere() -> Profile {
-    Profile::Sphere(Sphere::new(10.0).unwrap())
-}
-
-fn power(exponent: f64) -> Profile {
-    Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
-}
+use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, RoundedCone, RoundedPunch, Sum, Tabulated};
+use stickslip_mechanics::protocol::{
+    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
+};
+use stickslip_mechanics::range::Quantity;
+use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Tangential};
 
 fn table() -> Profile {
     let radii: Vec<f64> = (0..=20).map(|index| 0.9 * f64::from(index) / 20.0).collect();
@@ -23,32 +18,30 @@ fn table() -> Profile {
 }
 
 fn sum() -> Profile {
-    Profile::Sum(Sum::new(vec![sphere(), power(4.0)]).unwrap())
+    Profile::Sum(Sum::new(vec![sphere(10.0), power(4.0)]).unwrap())
 }
 
 /// The law from gross slip at its full amplitude.
-fn of(contact: &Contact, kind: Kind, reversals: usize, end: End) -> Design {
-    design(contact, Start::Displacement(contact.gross_slip_displacement()), kind, reversals, end, &|| true).unwrap()
+fn of(contact: &Contact, kind: AmplitudeLaw, reversals: usize, end: PathEnd) -> Design {
+    design(contact, PathStart::Displacement(contact.gross_slip_displacement()), kind, reversals, end, &|| true).unwrap()
 }
 
 fn unit(contact: &Contact) -> f64 {
-    0.3 * contact.figures().max_pressure.unwrap()
+    0.3 * contact.summary().max_pressure.unwrap()
 }
 
 fn moved(contact: &Contact, path: &[f64]) -> Contact {
     let mut contact = contact.clone();
-    for &target in path {
-        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
-    }
+    follow(&mut contact, path);
     contact
 }
 
 #[test]
 fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     let largest = 2.0 - 1.5_f64.sqrt();
     for reversals in [2_usize, 20, 200] {
-        let found = of(&contact, Kind::Linear, reversals, End::DisplacementZero);
+        let found = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero);
         let scaled = (reversals as f64).sqrt() / unit(&contact);
         assert!((found.largest * scaled - largest).abs() < 1e-12, "{reversals}");
         if reversals == 200 {
@@ -59,9 +52,9 @@ fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
     }
 }
 
-/// Far from the edge and the centre the memory is a square wave over (r/a)^2, and the stress its half-integral. With a distance
-/// of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) / n^(3/2) over the
-/// odd n.
+/// Far from the edge and the centre the memory is a square wave over (r/a)^2, and the stress its half-integral. With a
+/// distance of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) /
+/// n^(3/2) over the odd n.
 #[test]
 fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_square_wave() {
     const SAMPLES: usize = 2_000;
@@ -73,10 +66,11 @@ fn the_mean_over_the_contact_after_a_linear_fall_is_that_of_a_half_integrated_sq
     let expected = phases.map(|phase| wave(phase).abs()).sum::<f64>() / SAMPLES as f64;
     assert!((expected - 0.40).abs() < 0.01, "{expected}");
 
-    let contact = pressed(sphere());
-    let radius = contact.figures().contact_radius;
+    let contact = pressed(sphere(10.0));
+    let radius = contact.summary().contact_radius;
     let reversals = 400;
-    let found = moved(&contact, &of(&contact, Kind::Linear, reversals, End::DisplacementZero).displacements);
+    let found =
+        moved(&contact, &of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero).displacements);
     // Equal shares of the area, which no reversal falls in step with.
     let points = 40_009;
     let radii: Vec<f64> = (0..points).map(|index| radius * ((index as f64 + 0.5) / f64::from(points)).sqrt()).collect();
@@ -90,8 +84,8 @@ fn equal_peaks_beat_the_linear_fall_on_other_powers() {
     for exponent in [1.5, 3.0, 4.0] {
         let contact = pressed(power(exponent));
         for reversals in [10, 15, 30] {
-            let linear = of(&contact, Kind::Linear, reversals, End::DisplacementZero).largest;
-            let equal = of(&contact, Kind::EqualPeaks, reversals, End::DisplacementZero).largest;
+            let linear = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::DisplacementZero).largest;
+            let equal = of(&contact, AmplitudeLaw::EqualPeaks, reversals, PathEnd::DisplacementZero).largest;
             assert!(equal < linear, "{exponent} {reversals}: {equal} {linear}");
         }
     }
@@ -99,28 +93,28 @@ fn equal_peaks_beat_the_linear_fall_on_other_powers() {
 
 #[test]
 fn minimax_is_what_is_known_of_the_sphere() {
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     for (reversals, end, known) in [
-        (1, End::Free, 0.600_000),
-        (2, End::Free, 0.471_894),
-        (3, End::Free, 0.400_606),
-        (20, End::Free, 0.167_500),
-        (100, End::Free, 0.075_794),
-        // At displacement nought, where one extremum has to stay below.
-        (1, End::DisplacementZero, 0.5_f64.sqrt()),
-        (2, End::DisplacementZero, 0.530_330),
-        (5, End::DisplacementZero, 0.335_707),
-        (20, End::DisplacementZero, 0.169_632),
+        (1, PathEnd::Free, 0.600_000),
+        (2, PathEnd::Free, 0.471_894),
+        (3, PathEnd::Free, 0.400_606),
+        (20, PathEnd::Free, 0.167_500),
+        (100, PathEnd::Free, 0.075_794),
+        // At displacement zero, where one extremum has to stay below.
+        (1, PathEnd::DisplacementZero, 0.5_f64.sqrt()),
+        (2, PathEnd::DisplacementZero, 0.530_330),
+        (5, PathEnd::DisplacementZero, 0.335_707),
+        (20, PathEnd::DisplacementZero, 0.169_632),
     ] {
-        let found = of(&contact, Kind::Minimax, reversals, end).largest / unit(&contact);
+        let found = of(&contact, AmplitudeLaw::Minimax, reversals, end).largest / unit(&contact);
         assert!((found - known).abs() < 2e-6, "{reversals} {end:?}: {found}");
     }
 }
 
 #[test]
-fn minimax_ends_where_it_is_told_to_and_is_never_above_the_others() {
+fn minimax_ends_where_it_is_to_end_and_is_never_above_the_others() {
     let shapes = [
-        sphere(),
+        sphere(10.0),
         power(1.5),
         power(3.0),
         power(4.0),
@@ -134,22 +128,22 @@ fn minimax_ends_where_it_is_told_to_and_is_never_above_the_others() {
     for shape in shapes {
         let contact = pressed(shape.clone());
         for reversals in [1, 2, 7] {
-            let free = of(&contact, Kind::Minimax, reversals, End::Free).largest;
+            let free = of(&contact, AmplitudeLaw::Minimax, reversals, PathEnd::Free).largest;
             let bound = lower_bound(&contact, reversals);
             assert!(bound > 0.3 * free && bound < free, "{shape:?} {reversals}: {bound} {free}");
-            for end in [End::DisplacementZero, End::ForceZero, End::Free] {
-                let best = of(&contact, Kind::Minimax, reversals, end);
+            for end in [PathEnd::DisplacementZero, PathEnd::ForceZero, PathEnd::Free] {
+                let best = of(&contact, AmplitudeLaw::Minimax, reversals, end);
                 assert_eq!(best.displacements.len(), reversals + 1);
                 let state = best.contact.state();
                 match end {
-                    End::DisplacementZero => assert!(state.displacement.abs() <= 0.0, "{shape:?}"),
-                    End::ForceZero => {
-                        assert!(state.force.abs() < 1e-12 * contact.figures().gross_slip_force, "{shape:?}");
+                    PathEnd::DisplacementZero => assert!(state.displacement.abs() <= 0.0, "{shape:?}"),
+                    PathEnd::ForceZero => {
+                        assert!(state.force.abs() < 1e-12 * contact.summary().gross_slip_force, "{shape:?}");
                     }
-                    End::Free => {}
+                    PathEnd::Free => {}
                 }
                 assert!(best.largest >= free * (1.0 - 1e-6), "{shape:?} {reversals} {end:?}: the free end is the best");
-                for kind in [Kind::Linear, Kind::EqualPeaks] {
+                for kind in [AmplitudeLaw::Linear, AmplitudeLaw::EqualPeaks] {
                     let other = of(&contact, kind, reversals, end).largest;
                     assert!(best.largest <= other * (1.0 + 1e-8), "{shape:?} {reversals} {end:?}: {kind:?}");
                 }
@@ -158,7 +152,8 @@ fn minimax_ends_where_it_is_told_to_and_is_never_above_the_others() {
     }
 }
 
-/// The largest stress after gross slip and strokes that slip from these parts of the indentation on, the innermost first.
+/// The largest stress after gross slip and strokes that slip from these parts of the indentation on, the innermost
+/// first.
 fn left(contact: &Contact, levels: &[f64]) -> f64 {
     let full = contact.gross_slip_displacement();
     let mut path = vec![full];
@@ -168,16 +163,16 @@ fn left(contact: &Contact, levels: &[f64]) -> f64 {
         path.push(if index % 2 == 0 { here - stroke } else { here + stroke });
     }
     let after = moved(contact, &path);
-    Judged::of(contact).largest(&after, &after.residual())
+    EvaluationRange::of(contact).largest(&after, &after.residual())
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(12))]
 
     /// The study with restarts: a search from anywhere, by steps along each level, finds nothing better.
     #[test]
     fn no_search_from_anywhere_finds_less(
-        shape in prop::sample::select(vec![sphere(), power(1.5), power(3.0), table(), sum()]),
+        shape in prop::sample::select(vec![sphere(10.0), power(1.5), power(3.0), table(), sum()]),
         mut levels in prop::collection::vec(0.0..1.0_f64, 1..=4),
     ) {
         let contact = pressed(shape);
@@ -201,7 +196,7 @@ proptest! {
                 step *= 0.5;
             }
         }
-        let known = of(&contact, Kind::Minimax, levels.len(), End::Free);
+        let known = of(&contact, AmplitudeLaw::Minimax, levels.len(), PathEnd::Free);
         prop_assert!(best >= known.largest * (1.0 - 1e-6), "{levels:?}: {best} {}", known.largest);
         prop_assert!(best >= lower_bound(&contact, levels.len()));
     }
@@ -209,10 +204,10 @@ proptest! {
     /// From any history the path leaves what it says, ends where it is to, and leaves no more than from gross slip.
     #[test]
     fn any_history_is_relaxed(
-        shape in prop::sample::select(vec![sphere(), power(1.5), table(), sum()]),
+        shape in prop::sample::select(vec![sphere(10.0), power(1.5), table(), sum()]),
         moves in prop::collection::vec((-2.0..2.0_f64, 0.8..1.2_f64, any::<bool>()), 0..12),
         reversals in 1..6_usize,
-        end in prop::sample::select(vec![End::DisplacementZero, End::ForceZero, End::Free]),
+        end in prop::sample::select(vec![PathEnd::DisplacementZero, PathEnd::ForceZero, PathEnd::Free]),
     ) {
         let mut contact = pressed(shape);
         let full = contact.gross_slip_displacement();
@@ -221,44 +216,47 @@ proptest! {
             let step = Move { tangential: Some(Tangential::Displacement(full * turn)), normal, ..Move::default() };
             contact.apply(&step).unwrap();
         }
-        let found = design(&contact, Start::Here, Kind::Minimax, reversals, end, &|| true).unwrap();
+        let found = design(&contact, PathStart::Here, AmplitudeLaw::Minimax, reversals, end, &|| true).unwrap();
         prop_assert!(found.displacements.len() <= reversals + 2);
         let after = moved(&contact, &found.displacements);
         prop_assert_eq!(after.residual(), found.residual);
         let state = after.state();
         match end {
-            End::DisplacementZero => prop_assert!(state.displacement.abs() <= 0.0),
-            End::ForceZero => prop_assert!(state.force.abs() <= 1e-9 * contact.figures().gross_slip_force),
-            End::Free => {}
+            PathEnd::DisplacementZero => prop_assert!(state.displacement.abs() <= 0.0),
+            PathEnd::ForceZero => prop_assert!(state.force.abs() <= 1e-9 * contact.summary().gross_slip_force),
+            PathEnd::Free => {}
         }
         let mut fresh = pressed(contact.profile().clone());
         fresh.apply(&Move { normal: Some(Normal::Indentation(contact.indentation())), ..Move::default() }).unwrap();
-        let usual = of(&fresh, Kind::Minimax, reversals, end);
-        prop_assert!(found.largest <= usual.largest * (1.0 + 1e-7), "{} {} {:?}", found.largest, usual.largest, found.way);
+        let usual = of(&fresh, AmplitudeLaw::Minimax, reversals, end);
+        let (least, known) = (found.largest, usual.largest);
+        prop_assert!(least <= known * (1.0 + 1e-7), "{least} {known} {:?}", found.first_move);
     }
 }
 
 #[test]
 fn a_small_past_is_relaxed_without_stirring_what_lies_inside() {
     // A tenth of gross slip has slipped a thin ring alone: what any stroke to gross slip leaves is far more.
-    let contact = moved(&pressed(sphere()), &[0.1 * pressed(sphere()).gross_slip_displacement()]);
-    let found = design(&contact, Start::Here, Kind::Minimax, 3, End::DisplacementZero, &|| true).unwrap();
-    assert_eq!(found.way, Way::Partial);
-    let gross = of(&pressed(sphere()), Kind::Minimax, 3, End::DisplacementZero);
+    let contact = moved(&pressed(sphere(10.0)), &[0.1 * pressed(sphere(10.0)).gross_slip_displacement()]);
+    let found =
+        design(&contact, PathStart::Here, AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero, &|| true).unwrap();
+    assert_eq!(found.first_move, FirstMove::Partial);
+    let gross = of(&pressed(sphere(10.0)), AmplitudeLaw::Minimax, 3, PathEnd::DisplacementZero);
     assert!(found.largest < 0.5 * gross.largest, "{} {}", found.largest, gross.largest);
     assert!(found.contact.state().stick_radius > 0.0);
 }
 
 #[test]
 fn a_smaller_start_leaves_less() {
-    let contact = pressed(sphere());
+    let contact = pressed(sphere(10.0));
     let full = contact.gross_slip_displacement();
-    for kind in [Kind::Linear, Kind::EqualPeaks, Kind::Minimax] {
+    for kind in [AmplitudeLaw::Linear, AmplitudeLaw::EqualPeaks, AmplitudeLaw::Minimax] {
         let from = |start: f64| {
-            let found = design(&contact, Start::Displacement(start * full), kind, 5, End::DisplacementZero, &|| true);
+            let found =
+                design(&contact, PathStart::Displacement(start * full), kind, 5, PathEnd::DisplacementZero, &|| true);
             let found = found.unwrap();
             assert!((found.displacements[0] - start * full).abs() <= 0.0);
-            assert_eq!(found.way, Way::Given);
+            assert_eq!(found.first_move, FirstMove::Given);
             found.largest
         };
         assert!(from(0.3) < 0.8 * from(1.0), "{kind:?}");
@@ -269,32 +267,32 @@ fn a_smaller_start_leaves_less() {
 #[test]
 fn at_a_vertical_edge_the_path_ends_with_no_load_there() {
     let punch = Profile::FlatPunch(FlatPunch::new(0.3).unwrap());
-    let crowned = Profile::Sum(Sum::new(vec![sphere(), punch.clone()]).unwrap());
+    let crowned = Profile::Sum(Sum::new(vec![sphere(10.0), punch.clone()]).unwrap());
     for shape in [punch, crowned] {
         let contact = pressed(shape);
-        assert!(Judged::of(&contact).vertical);
-        let mean = 0.3 * contact.figures().normal_force / (std::f64::consts::PI * 0.09);
+        assert!(EvaluationRange::of(&contact).vertical);
+        let mean = 0.3 * contact.summary().normal_force / (std::f64::consts::PI * 0.09);
         for reversals in [2, 5] {
-            let found = of(&contact, Kind::Minimax, reversals, End::Free);
+            let found = of(&contact, AmplitudeLaw::Minimax, reversals, PathEnd::Free);
             // Just inside the edge there would be a hundred times more with any load on it.
             let near = found.contact.shear(0.3 * (1.0 - 1e-8)).abs();
             assert!(near < 1.0 * mean, "{near} {mean}");
-            let linear = of(&contact, Kind::Linear, reversals, End::Free);
+            let linear = of(&contact, AmplitudeLaw::Linear, reversals, PathEnd::Free);
             assert!(found.largest <= linear.largest * (1.0 + 1e-9));
         }
     }
 }
 
 #[test]
-fn what_cannot_be_moved_against_is_refused_and_the_search_ends_when_told_to() {
-    let contact = pressed(sphere());
-    let start = Start::Displacement(contact.gross_slip_displacement());
-    let stopped = design(&contact, start, Kind::Minimax, 20, End::Free, &|| false);
-    assert_eq!(stopped.unwrap_err(), Error::BrokenOff);
+fn what_cannot_be_moved_against_is_refused_and_the_search_ends_when_it_is_stopped() {
+    let contact = pressed(sphere(10.0));
+    let start = PathStart::Displacement(contact.gross_slip_displacement());
+    let stopped = design(&contact, start, AmplitudeLaw::Minimax, 20, PathEnd::Free, &|| false);
+    assert_eq!(stopped.unwrap_err(), Error::Interrupted);
     let mut apart = contact.clone();
     apart.apply(&Move { normal: Some(Normal::Indentation(-1.0)), ..Move::default() }).unwrap();
     assert!(matches!(
-        design(&apart, Start::Here, Kind::Linear, 3, End::Free, &|| true),
-        Err(Error::OutOfRange { quantity: "indentation", .. })
+        design(&apart, PathStart::Here, AmplitudeLaw::Linear, 3, PathEnd::Free, &|| true),
+        Err(Error::OutOfRange { quantity: Quantity::Indentation, .. })
     ));
 }

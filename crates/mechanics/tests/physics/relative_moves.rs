@@ -1,7 +1,7 @@
 //! A relative move leads where the absolute one does whose targets are worked out by hand.
 
 use crate::support::{PLAIN, displace, push};
-use stickslip_mechanics::springs::reach;
+use stickslip_mechanics::springs::largest_contact_radius;
 use stickslip_mechanics::{Contact, Error, Move, Normal, Preload, Springs, State, Tangential};
 
 /// Kinds of a target, of which a move may leave one out.
@@ -62,7 +62,8 @@ fn springs_follow_what_they_can_by_increments_too() {
         for normal in KINDS.into_iter().filter(|normal| normal.is_some() || tangential.is_some()) {
             let setup = PLAIN.setup();
             let far = Move { normal: Some(Normal::Indentation(1.5 * PLAIN.indentation())), ..Move::default() };
-            let mut springs = Springs::new(setup.clone(), 4001, reach(&setup, [far]).unwrap()).unwrap();
+            let mut springs =
+                Springs::new(setup.clone(), 4001, largest_contact_radius(&setup, [far]).unwrap()).unwrap();
             springs.apply(&displace(0.6 * PLAIN.full_slip())).unwrap();
             let (increments, targets) = pair(tangential, normal, &springs.state());
             let mut other = springs.clone();
@@ -91,7 +92,7 @@ fn all_of_a_load_can_be_taken_away_by_an_increment() {
     contact.apply(&away).unwrap();
     assert!(contact.normal_force().abs() <= 0.0);
     for count in [10, 11, 1000, 1001] {
-        let mut springs = Springs::new(setup.clone(), count, contact.initial_figures().contact_radius).unwrap();
+        let mut springs = Springs::new(setup.clone(), count, contact.initial_summary().contact_radius).unwrap();
         springs.apply(&away).unwrap();
         assert!(springs.normal_force().abs() <= 0.0, "{count}");
         let refused = springs.apply(&away).unwrap_err();

@@ -1,4 +1,4 @@
-//! The memory: what a million moves leave behind is what their surviving turning points would leave, and no more.
+//! The slip history: what a million moves leave behind is what their surviving turning points would leave, and no more.
 
 use crate::support::masing::{Masing, first_force};
 use crate::support::{PLAIN, Random, UNIT, Worst, displace, forall, paths};
@@ -35,7 +35,7 @@ impl Alike {
     }
 
     fn check(&self, found: &Contact, expected: &Contact) {
-        let a = expected.figures().contact_radius;
+        let a = expected.summary().contact_radius;
         self.forces.close(found.force(), expected.force(), UNIT.force_limit(a));
         let energies = (found.state().elastic_energy, expected.state().elastic_energy);
         self.energies.close(energies.0, energies.1, UNIT.energy_unit() * a.powi(5));
@@ -55,7 +55,7 @@ fn a_million_moves_leave_what_their_surviving_turning_points_leave() {
     let mut masing = Masing::new(1.0);
     let mut deepest = 0;
     for count in 1..=MILLION {
-        // Mostly within the last stroke, so that memory has a reason to pile up; sometimes far beyond it.
+        // Mostly within the last stroke, so that the slip history grows deep; sometimes far beyond it.
         let target = match random.bits() % 64 {
             0 => random.within(-2.5, 2.5),
             1..8 => random.within(-1.0, 1.0),
@@ -75,7 +75,7 @@ fn a_million_moves_leave_what_their_surviving_turning_points_leave() {
             alike.check(&contact, &along_survivors(&masing, 1.0));
         }
     }
-    assert!(deepest >= 10, "memory was never deep: {deepest}");
+    assert!(deepest >= 10, "the slip history was never deep: {deepest}");
     let fresh = UNIT.contact().memory_bytes();
     assert!(contact.memory_bytes() <= fresh + 1024 * (deepest + 2), "{} bytes", contact.memory_bytes());
 }
@@ -198,8 +198,8 @@ fn moves_of_one_unit_in_the_last_place() {
 
 #[test]
 fn a_load_that_creeps_up_by_single_ulps_is_one_rise() {
-    // Three up, two down: nothing below the present load survives, so that nothing of it may be remembered. Joining what
-    // differs by the rounding of d and W may cost as much as that rounding, some 1e-15.
+    // Three up, two down: nothing below the present load survives, so that nothing of it may be remembered. Joining
+    // what differs by the rounding of d and W may cost as much as that rounding, some 1e-15.
     let forces = Worst::new("force while the load creeps / mu F_N", 3e-15);
     for slide in [0.0, 0.3, -0.9] {
         let mut contact = UNIT.contact();

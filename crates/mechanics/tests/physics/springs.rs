@@ -2,7 +2,7 @@
 
 use crate::support::{PLAIN, Worst, displace, forall, paths, push};
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::springs::reach;
+use stickslip_mechanics::springs::largest_contact_radius;
 use stickslip_mechanics::{Contact, Error, Move, Springs};
 
 /// Falling amplitude with twenty reversals, as in the paper.
@@ -28,7 +28,8 @@ fn slanted() -> Vec<Move> {
     path.iter().map(|&waypoint| PLAIN.towards(waypoint)).collect()
 }
 
-/// The largest errors over a path, each over its unit: forces (tangential and normal), shear stress at the end, friction work.
+/// The largest errors over a path, each over its unit: forces (tangential and normal), shear stress at the end,
+/// friction work.
 #[derive(Clone, Copy, Debug)]
 struct Errors {
     force: f64,
@@ -39,7 +40,8 @@ struct Errors {
 fn errors(moves: &[Move], count: usize) -> Errors {
     let setup = PLAIN.setup();
     let mut exact = Contact::new(setup.clone()).unwrap();
-    let mut springs = Springs::new(setup.clone(), count, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
+    let mut springs =
+        Springs::new(setup.clone(), count, largest_contact_radius(&setup, moves.iter().copied()).unwrap()).unwrap();
     let (limit, unit) = (PLAIN.force_limit(PLAIN.radius), PLAIN.stress_limit(PLAIN.radius));
     let mut errors = Errors { force: 0.0, stress: 0.0, work: 0.0 };
     for step in moves {
@@ -60,8 +62,8 @@ fn errors(moves: &[Move], count: usize) -> Errors {
     errors
 }
 
-/// The slope of a straight line through the logarithms, over numbers of springs that double. Where kinks fall between the
-/// springs is a matter of chance: several numbers near each other share their mean square.
+/// The slope of a straight line through the logarithms, over numbers of springs that double. Where kinks fall between
+/// the springs is a matter of chance: several numbers near each other share their mean square.
 fn orders(moves: &[Move], first: usize, doublings: u32) -> [f64; 3] {
     let points: Vec<(f64, [f64; 3])> = (0..=doublings)
         .map(|power| {
@@ -108,7 +110,8 @@ fn random_oblique_paths_agree_with_springs() {
         let moves: Vec<Move> = paths::waypoints(&steps).iter().map(|&waypoint| PLAIN.towards(waypoint)).collect();
         let setup = PLAIN.setup();
         let mut exact = Contact::new(setup.clone()).unwrap();
-        let mut springs = Springs::new(setup.clone(), 2000, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
+        let mut springs =
+            Springs::new(setup.clone(), 2000, largest_contact_radius(&setup, moves.iter().copied()).unwrap()).unwrap();
         for step in &moves {
             exact.apply(step).unwrap();
             springs.apply(step).unwrap();

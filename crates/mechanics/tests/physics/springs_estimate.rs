@@ -1,12 +1,12 @@
 //! What springs say of their own error, held against the exact solver over random scenes of every kind of profile.
 
-use crate::support::Random;
+use crate::support::{Random, cases, displace};
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
-use stickslip_mechanics::springs::reach;
+use stickslip_mechanics::springs::largest_contact_radius;
 use stickslip_mechanics::{
-    Contact, Elasticity, Error, Estimate, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential,
+    Contact, Elasticity, Error, ErrorEstimate, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential,
 };
 
 /// How far from a kink, in cells, stresses are compared.
@@ -59,7 +59,7 @@ fn step(random: &mut Random, contact: &Contact, depth: f64, slip: f64) -> Move {
             Move { tangential: displacement, normal: indentation, ..Move::default() }
         }
         2 => {
-            let force = contact.figures().gross_slip_force * random.within(-0.98, 0.98);
+            let force = contact.summary().gross_slip_force * random.within(-0.98, 0.98);
             Move { tangential: Some(Tangential::Force(force)), ..Move::default() }
         }
         _ => Move { tangential: displacement, ..Move::default() },
@@ -103,7 +103,7 @@ fn play(random: &mut Random, kind: u64) -> Option<Outcome> {
         }
     }
     let count = 10.0 * 300.0_f64.powf(random.within(0.0, 1.0));
-    let reach = reach(&setup, moves.iter().copied()).unwrap();
+    let reach = largest_contact_radius(&setup, moves.iter().copied()).unwrap();
     let mut springs = Springs::new(setup.clone(), count as usize, reach).unwrap();
     for step in &moves {
         match springs.apply(step) {
@@ -112,7 +112,7 @@ fn play(random: &mut Random, kind: u64) -> Option<Outcome> {
             other => other.unwrap(),
         }
     }
-    let (figures, estimate) = (exact.figures(), springs.accuracy());
+    let (figures, estimate) = (exact.summary(), springs.accuracy());
     let edge = figures.contact_radius;
     let mean = figures.normal_force / (std::f64::consts::PI * edge * edge);
     let unit = setup.friction * figures.max_pressure.unwrap_or(mean);
@@ -125,7 +125,7 @@ fn play(random: &mut Random, kind: u64) -> Option<Outcome> {
         .map(|radius| (exact.shear(radius) - springs.shear(radius)).abs() / unit)
         .fold(0.0, f64::max);
     let force = (exact.force() - springs.force()).abs() / figures.gross_slip_force;
-    let Estimate { force_error, stress_error, .. } = estimate;
+    let ErrorEstimate { force_error, stress_error, .. } = estimate;
     Some(Outcome { force, stress, force_error, stress_error })
 }
 
@@ -135,7 +135,7 @@ fn no_estimate_is_below_a_third_of_the_truth() {
     let (mut compared, mut liars) = (0, Vec::new());
     let mut worst = [0.0_f64; 2];
     let mut generous = [Vec::new(), Vec::new()];
-    for scene in 0..scenes() {
+    for scene in 0..u64::from(cases(500)) {
         let kind = scene % 11;
         let Some(Outcome { force, stress, force_error, stress_error }) = play(&mut random, kind) else { continue };
         compared += 1;
@@ -158,13 +158,8 @@ fn no_estimate_is_below_a_third_of_the_truth() {
         all[all.len() / 2]
     });
     println!("{compared} scenes: worst error over estimate {worst:.2?}, median estimate over error {median:.1?}");
-    assert!(compared > 9 * scenes() / 10, "only {compared} scenes");
+    assert!(compared > 9 * u64::from(cases(500)) / 10, "only {compared} scenes");
     assert!(liars.is_empty(), "{} of {compared}:\n{}", liars.len(), liars.join("\n"));
-}
-
-/// `SCENES` asks for more.
-fn scenes() -> u64 {
-    std::env::var("SCENES").map_or(500, |scenes| scenes.parse().unwrap())
 }
 
 /// Force and stress of springs at the end of a path, over their units, with the true errors.
@@ -172,15 +167,16 @@ fn scene(profile: Profile, preload: Preload, moves: &[Move], count: usize) -> Ou
     let elasticity = Elasticity::effective(1000.0, 800.0).unwrap();
     let setup = Setup { profile, elasticity, friction: 0.3, preload };
     let mut exact = Contact::new(setup.clone()).unwrap();
-    let mut springs = Springs::new(setup.clone(), count, reach(&setup, moves.iter().copied()).unwrap()).unwrap();
+    let mut springs =
+        Springs::new(setup.clone(), count, largest_contact_radius(&setup, moves.iter().copied()).unwrap()).unwrap();
     for step in moves {
         exact.apply(step).unwrap();
         springs.apply(step).unwrap();
     }
-    let (figures, half) = (exact.figures(), 0.5 * exact.contact_radius());
+    let (figures, half) = (exact.summary(), 0.5 * exact.contact_radius());
     let mean = figures.normal_force / (std::f64::consts::PI * 4.0 * half * half);
     let unit = 0.3 * figures.max_pressure.unwrap_or(mean);
-    let Estimate { force_error, stress_error, .. } = springs.accuracy();
+    let ErrorEstimate { force_error, stress_error, .. } = springs.accuracy();
     Outcome {
         force: (exact.force() - springs.force()).abs() / figures.gross_slip_force,
         stress: (exact.shear(half) - springs.shear(half)).abs() / unit,
@@ -217,7 +213,7 @@ fn a_contact_that_starts_without_load_has_an_estimate_too() {
 #[test]
 fn estimates_fall_with_the_number_of_springs() {
     let turns = [0.9, -0.5, 0.3].map(|part| 0.3 * 1000.0 / 800.0 * 0.02 * part);
-    let moves = turns.map(|target| Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() });
+    let moves = turns.map(displace);
     let at = |count| scene(Profile::Sphere(Sphere::new(0.5).unwrap()), Preload::Indentation(0.02), &moves, count);
     for count in [100, 1000] {
         let (few, many) = (at(count), at(10 * count));

@@ -56,7 +56,7 @@ fn estimates_of_sums_with_tables_are_honest() {
         };
         let contact = |profile| Contact::new(Setup { profile, elasticity, friction, preload });
         let (Ok(mut exact), Ok(mut found)) = (contact(body), contact(table)) else { continue };
-        let figures = exact.figures();
+        let figures = exact.summary();
         for _ in 0..1 + random.bits() % 4 {
             let step = displace(figures.gross_slip_displacement * random.within(-0.9, 0.9));
             exact.apply(&step).unwrap();
@@ -115,7 +115,7 @@ fn a_ball_less_a_paraboloid_is_a_blunter_ball() {
     ] {
         let mut found = made_of(vec![ball(1.0), part(30, |r| -0.5 * taken * r * r)], preload).unwrap();
         let mut exact = made_of(vec![ball(1.0 / (1.0 - taken))], preload).unwrap();
-        let (estimate, figures) = (found.accuracy(), exact.figures());
+        let (estimate, figures) = (found.accuracy(), exact.summary());
         for share in [0.7, -0.5, 0.2] {
             let step = displace(share * figures.gross_slip_displacement);
             found.apply(&step).unwrap();
@@ -151,7 +151,7 @@ fn a_sum_ends_where_its_own_slope_falls() {
         assert!(
             matches!(pressed, Err(Error::NotConvexEnough { .. })),
             "{:?}",
-            pressed.map(|contact| contact.figures())
+            pressed.map(|contact| contact.summary())
         );
     }
     let hollow = Sum::new(vec![ball(1.0), part(50, |r| -r * r)]);
@@ -166,10 +166,10 @@ fn two_tables_may_make_up_for_each_other() {
     let parts = vec![ball(1.0), part(600, wave), part(600, |r| -wave(r))];
     let mut found = made_of(parts, Preload::ContactRadius(0.7)).unwrap();
     let mut exact = made_of(vec![ball(1.0)], Preload::ContactRadius(0.7)).unwrap();
-    let full = exact.figures().gross_slip_displacement;
+    let full = exact.summary().gross_slip_displacement;
     for share in [0.6, -0.1] {
         found.apply(&displace(share * full)).unwrap();
         exact.apply(&displace(share * full)).unwrap();
-        assert!((found.force() - exact.force()).abs() < 1e-10 * exact.figures().gross_slip_force);
+        assert!((found.force() - exact.force()).abs() < 1e-10 * exact.summary().gross_slip_force);
     }
 }

@@ -9,7 +9,7 @@ fn moved(profile: Profile) -> Contact {
     let elasticity = Elasticity::effective(1.0, 0.8).unwrap();
     let mut contact =
         Contact::new(Setup { profile, elasticity, friction: 0.5, preload: Preload::ContactRadius(0.5) }).unwrap();
-    let full = contact.figures().gross_slip_displacement;
+    let full = contact.summary().gross_slip_displacement;
     contact.apply(&displace(0.5 * full)).unwrap();
     contact.apply(&displace(0.25 * full)).unwrap();
     contact
@@ -21,7 +21,7 @@ fn errors(count: u32) -> [f64; 4] {
     let heights: Vec<f64> = radii.iter().map(|r| r * r / (1.0 + (1.0 - r * r).sqrt())).collect();
     let table = moved(Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()));
     let exact = moved(Profile::ExactSphere(ExactSphere::new(1.0).unwrap()));
-    let figures = exact.figures();
+    let figures = exact.summary();
     let limit = figures.gross_slip_force / figures.normal_force * figures.max_pressure.unwrap();
     let off_the_kinks = |i: &u32| ![0.27, 0.37, 0.5].iter().any(|kink| (0.0025 * f64::from(*i) - kink).abs() < 0.03);
     let stresses = (0..200)

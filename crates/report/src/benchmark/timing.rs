@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use rustix::time::{ClockId, clock_gettime};
 
-use stickslip_mechanics::springs::{self, Kernel};
+use stickslip_mechanics::springs::{self, ShearEvaluation};
 use stickslip_mechanics::{Contact, Error, Springs};
 
 use super::external_solver::Peer;
@@ -23,8 +23,11 @@ const GROWTH: f64 = 11.0;
 /// Springs of the smallest foundation.
 const FEWEST: usize = 10;
 
-const KERNELS: [(&str, Kernel); 3] =
-    [("springs_arcosh", Kernel::Arcosh), ("springs_level", Kernel::Level), ("recipe", Kernel::Differences)];
+const KERNELS: [(&str, ShearEvaluation); 3] = [
+    ("springs_arcosh", ShearEvaluation::Arcosh),
+    ("springs_level", ShearEvaluation::Level),
+    ("recipe", ShearEvaluation::Differences),
+];
 
 /// Forces after each move, N, shear stresses at the end, Pa, and the processor time for both, s.
 pub(super) struct Timed {
@@ -72,10 +75,10 @@ fn exact(scene: &Scene, radii: &[f64]) -> io::Result<Timed> {
     })
 }
 
-fn sprung(scene: &Scene, count: usize, kernel: Kernel, radii: &[f64]) -> io::Result<Timed> {
+fn sprung(scene: &Scene, count: usize, kernel: ShearEvaluation, radii: &[f64]) -> io::Result<Timed> {
     timed(|| {
-        let reach = springs::reach(&scene.setup, scene.moves())?;
-        let mut row = Springs::bare(scene.setup.clone(), count, reach)?;
+        let reach = springs::largest_contact_radius(&scene.setup, scene.moves())?;
+        let mut row = Springs::without_error_estimate(scene.setup.clone(), count, reach)?;
         let forces: Result<_, Error> = scene.moves().map(|step| row.apply(&step).map(|()| row.force())).collect();
         Ok((forces?, row.shears_by(kernel, radii)))
     })

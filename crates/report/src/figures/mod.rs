@@ -56,7 +56,7 @@ impl Normalised {
             preload: Preload::NormalForce(10.0),
         })?;
         let mut history = Normalised { contact, states: Vec::new() };
-        let amplitude = history.contact.figures().gross_slip_displacement;
+        let amplitude = history.contact.summary().gross_slip_displacement;
         for target in falling_amplitude(reversals, amplitude).take(moves) {
             history.displace(target)?;
         }
@@ -70,24 +70,24 @@ impl Normalised {
     }
 
     fn displacements(&self) -> Vec<f64> {
-        let unit = self.contact.figures().gross_slip_displacement;
+        let unit = self.contact.summary().gross_slip_displacement;
         self.states.iter().map(|state| state.displacement / unit).collect()
     }
 
     fn forces(&self) -> Vec<f64> {
-        let unit = self.contact.figures().gross_slip_force;
+        let unit = self.contact.summary().gross_slip_force;
         self.states.iter().map(|state| state.force / unit).collect()
     }
 
     fn stress_unit(&self) -> f64 {
-        let figures = self.contact.figures();
+        let figures = self.contact.summary();
         // mu p_max with the largest pressure of the sphere, that at its centre.
         figures.gross_slip_force / figures.normal_force * self.contact.pressure(0.0)
     }
 
     /// tau/(mu p_max) over r/a, through every extremum.
     fn shear(&self) -> Vec<(f64, f64)> {
-        let radius = self.contact.figures().contact_radius;
+        let radius = self.contact.summary().contact_radius;
         let mut radii: Vec<f64> = (0..=POINTS).map(|index| radius * index as f64 / POINTS as f64).collect();
         radii.extend(self.contact.residual().peaks.iter().map(|peak| peak.radius));
         radii.sort_by(f64::total_cmp);
@@ -96,7 +96,7 @@ impl Normalised {
 
     /// The friction bound mu p/(mu p_max) over r/a.
     fn bound(&self) -> Vec<(f64, f64)> {
-        let figures = self.contact.figures();
+        let figures = self.contact.summary();
         (0..=POINTS)
             .map(|index| index as f64 / POINTS as f64)
             .map(|r| (r, self.contact.pressure(r * figures.contact_radius) / self.contact.pressure(0.0)))

@@ -2,11 +2,11 @@
 
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::profile::PowerLaw;
-use stickslip_mechanics::protocol::{Design, End, Errors, Kind, Start, design, trials};
+use stickslip_mechanics::protocol::{AmplitudeLaw, Design, ExecutionErrors, PathEnd, PathStart, design, trials};
 use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup, Sphere};
 
-const KINDS: [(Kind, &str); 3] =
-    [(Kind::Linear, "linear"), (Kind::EqualPeaks, "equal peaks"), (Kind::Minimax, "minimax")];
+const KINDS: [(AmplitudeLaw, &str); 3] =
+    [(AmplitudeLaw::Linear, "linear"), (AmplitudeLaw::EqualPeaks, "equal peaks"), (AmplitudeLaw::Minimax, "minimax")];
 /// The numbers of reversals that are shown.
 const NUMBERS: [usize; 9] = [1, 2, 3, 4, 6, 8, 11, 15, 20];
 /// Reversals where one number is shown.
@@ -37,13 +37,13 @@ fn power(exponent: f64) -> Result<Profile, Error> {
 
 /// mu p_max, Pa.
 fn unit(contact: &Contact) -> f64 {
-    let figures = contact.figures();
+    let figures = contact.summary();
     figures.gross_slip_force / figures.normal_force * figures.unit_pressure()
 }
 
-fn found(contact: &Contact, kind: Kind, reversals: usize) -> Result<Design, Error> {
-    let start = Start::Displacement(contact.gross_slip_displacement());
-    design(contact, start, kind, reversals, End::DisplacementZero, &|| true)
+fn found(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<Design, Error> {
+    let start = PathStart::Displacement(contact.gross_slip_displacement());
+    design(contact, start, kind, reversals, PathEnd::DisplacementZero, &|| true)
 }
 
 fn reduction() -> Result<Chart, Error> {
@@ -85,8 +85,8 @@ fn shapes() -> Result<Chart, Error> {
     let series = shapes.into_iter().map(|(name, shape)| {
         let contact = of(shape, 0.3)?;
         let point = |reversals| {
-            let linear = found(&contact, Kind::Linear, reversals)?.largest;
-            Ok((reversals as f64, found(&contact, Kind::Minimax, reversals)?.largest / linear))
+            let linear = found(&contact, AmplitudeLaw::Linear, reversals)?.largest;
+            Ok((reversals as f64, found(&contact, AmplitudeLaw::Minimax, reversals)?.largest / linear))
         };
         Ok(Series::dots(name, NUMBERS.into_iter().map(point).collect::<Result<_, Error>>()?))
     });
@@ -104,7 +104,7 @@ fn robustness() -> Result<Chart, Error> {
         let path = found(&contact, kind, REVERSALS)?.displacements;
         let point = |step: u32| {
             let amplitude = 0.01 * f64::from(step);
-            let errors = Errors { amplitude, friction: 0.0, seed: SEED };
+            let errors = ExecutionErrors { amplitude, friction: 0.0, seed: SEED };
             let tried = trials(&|_| Ok(contact.clone()), &path, &errors, SAMPLES, &|| true)?;
             Ok((100.0 * amplitude, tried.iter().sum::<f64>() / SAMPLES as f64 / unit(&contact)))
         };

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use stickslip_mechanics::protocol::{End, Kind};
+use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd};
 use stickslip_mechanics::{Setup, range};
 
 use super::check::{At, Faults};
@@ -289,22 +289,22 @@ impl Robustness {
     }
 }
 
-impl From<ProtocolKind> for Kind {
-    fn from(kind: ProtocolKind) -> Kind {
+impl From<ProtocolKind> for AmplitudeLaw {
+    fn from(kind: ProtocolKind) -> AmplitudeLaw {
         match kind {
-            ProtocolKind::Linear => Kind::Linear,
-            ProtocolKind::EqualPeaks => Kind::EqualPeaks,
-            ProtocolKind::Minimax => Kind::Minimax,
+            ProtocolKind::Linear => AmplitudeLaw::Linear,
+            ProtocolKind::EqualPeaks => AmplitudeLaw::EqualPeaks,
+            ProtocolKind::Minimax => AmplitudeLaw::Minimax,
         }
     }
 }
 
-impl From<ProtocolEnd> for End {
-    fn from(end: ProtocolEnd) -> End {
+impl From<ProtocolEnd> for PathEnd {
+    fn from(end: ProtocolEnd) -> PathEnd {
         match end {
-            ProtocolEnd::DisplacementZero => End::DisplacementZero,
-            ProtocolEnd::ForceZero => End::ForceZero,
-            ProtocolEnd::Free => End::Free,
+            ProtocolEnd::DisplacementZero => PathEnd::DisplacementZero,
+            ProtocolEnd::ForceZero => PathEnd::ForceZero,
+            ProtocolEnd::Free => PathEnd::Free,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The sphere at constant load in closed form: Cattaneo's first loading, Masing's doubling, Madelung's wiping-out.
 //!
-//! In units of u_max, mu F_N and mu p_max, with s = r^2/a^2: first loading to u leaves the stick radius c^2/a^2 = 1 - u,
-//! F = 1 - (1 - u)^(3/2) and tau = sqrt(1 - s) - sqrt(1 - u - s). Every later stroke adds twice that of half its length.
+//! In units of u_max, mu F_N and mu p_max, with s = r^2/a^2: first loading to u leaves the stick radius c^2/a^2 = 1 -
+//! u, F = 1 - (1 - u)^(3/2) and tau = sqrt(1 - s) - sqrt(1 - u - s). Every later stroke adds twice that of half its
+//! length.
 
 /// A contact at constant load known by its surviving turning points, in the units of the displacement given.
 #[derive(Clone, Debug)]
@@ -44,7 +45,8 @@ impl Masing {
             self.turns.push(self.now);
         }
         self.direction = direction;
-        // A branch ends where the turn before its own start is met again; the first one where it meets the virgin curve.
+        // A branch ends where the turn before its own start is met again; the first one where it meets the virgin
+        // curve.
         while let Some(&start) = self.turns.last() {
             let before = self.turns.len().checked_sub(2).map(|index| self.turns[index]);
             let end = before.unwrap_or(2.0 * self.origin - start);

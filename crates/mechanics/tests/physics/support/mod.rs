@@ -1,15 +1,15 @@
 //! What the physics tests share: references that know nothing of the solver, random paths, and bookkeeping of errors.
-// Each test binary uses a part of it.
-#![allow(dead_code)]
 
 pub mod masing;
 pub mod paths;
 pub mod points;
 pub mod quadrature;
+pub mod reference;
 
 use std::cell::Cell;
 
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestCaseError, TestRng, TestRunner};
+use stickslip_mechanics::profile::PowerLaw;
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
 /// A sphere pressed against a plane, by the numbers that define it.
@@ -88,6 +88,21 @@ pub fn pressed(profile: Profile) -> Contact {
     Contact::new(Setup { profile, elasticity, friction: 0.3, preload: Preload::Indentation(0.025) }).unwrap()
 }
 
+/// A parabola of this curvature radius, m.
+pub fn sphere(radius: f64) -> Profile {
+    Profile::Sphere(Sphere::new(radius).unwrap())
+}
+
+/// 0.1 r^exponent.
+pub fn power(exponent: f64) -> Profile {
+    Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
+}
+
+/// Moves a contact to one displacement, m, after the other.
+pub fn follow(contact: &mut Contact, displacements: &[f64]) {
+    displacements.iter().for_each(|target| contact.apply(&displace(*target)).unwrap());
+}
+
 pub fn displace(target: f64) -> Move {
     Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }
 }
@@ -143,11 +158,20 @@ impl Drop for Worst {
     }
 }
 
-/// Runs `test` on that many random values, the same at every run (`PROPTEST_CASES` asks for more), and shrinks what fails.
-pub fn forall<S: proptest::strategy::Strategy>(cases: u32, strategy: S, test: impl Fn(S::Value)) {
-    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
-    let config = Config { cases: asked.unwrap_or(cases), failure_persistence: None, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+/// The number of random cases: `usual`, unless `STICKSLIP_TEST_CASES` asks for another.
+pub fn cases(usual: u32) -> u32 {
+    std::env::var("STICKSLIP_TEST_CASES")
+        .map_or(usual, |cases| cases.parse().expect("STICKSLIP_TEST_CASES is a number"))
+}
+
+/// So many cases, the same at every run.
+pub fn config(usual: u32) -> Config {
+    Config { cases: cases(usual), failure_persistence: None, rng_seed: RngSeed::Fixed(0), ..Config::default() }
+}
+
+/// Runs `test` on so many random values, the same at every run, and shrinks what fails.
+pub fn forall<S: proptest::strategy::Strategy>(usual: u32, strategy: S, test: impl Fn(S::Value)) {
+    let mut runner = TestRunner::new_with_rng(config(usual), TestRng::deterministic_rng(RngAlgorithm::ChaCha));
     let outcome = runner.run(&strategy, |value| {
         test(value);
         Ok::<(), TestCaseError>(())
@@ -175,7 +199,8 @@ impl Random {
     }
 }
 
-/// Extrema of samples that stand out by more than `height` from those on either side, with the samples that bracket each.
+/// Extrema of samples that stand out by more than `height` from those on either side, with the samples that bracket
+/// each.
 pub fn standing_out(samples: &[f64], height: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high, mut rising) = (0, 0, None);

@@ -15,9 +15,9 @@ pub enum Step {
     Grow(f64, f64),
     /// By a small change of both.
     Nudge(f64, f64),
-    /// Part of the way back to the last waypoint: again and again, it piles up memory.
+    /// Part of the way back to the last turning point: repeated, this makes the slip history deep.
     Inward(f64),
-    /// Back to the waypoint so many moves ago.
+    /// Back to the point so many moves ago.
     Back(usize),
     /// To the mirror image of the displacement so many moves ago.
     Mirror(usize),

@@ -1,10 +1,10 @@
 //! Brute force for oblique paths on a sphere: points that know nothing of each other, each followed event by event.
 //!
-//! A point at level y carries w, is bounded by |w| <= d - y, and follows the indenter while it sticks. On a straight move
-//! bound and indenter change at constant rates, so that a point which starts to slip slips to the end: there are three
-//! events (touch, slip, lift-off), and between them nothing but addition. The function w(y) is then cut into straight parts
-//! by bisection, down to the last digits, wherever three points are out of line; no kink is known beforehand.
-//! Unit of length: d at the start. Radii: x^2 = y, which makes them units of the first contact radius.
+//! A point at level y carries w, is bounded by |w| <= d - y, and follows the indenter while it sticks. On a straight
+//! move bound and indenter change at constant rates, so that a point which starts to slip slips to the end: there are
+//! three events (touch, slip, lift-off), and between them nothing but addition. The function w(y) is then cut into
+//! straight parts by bisection, down to the last digits, wherever three points are out of line; no kink is known
+//! beforehand. Unit of length: d at the start. Radii: x^2 = y, which makes them units of the first contact radius.
 
 /// A path of waypoints (d, W), the start included.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ impl Points {
         ends.sort_by(f64::total_cmp);
         let mut nodes = vec![(0.0, self.carried(0.0))];
         if depth > 0.0 {
-            // The edge itself is out of contact by the letter; its bound is nought.
+            // The edge itself is out of contact by the letter; its bound is zero.
             let carried = ends.into_iter().map(|end| (end, self.carried(end))).chain([(depth, 0.0)]);
             for outer in carried {
                 let inner = nodes[nodes.len() - 1];

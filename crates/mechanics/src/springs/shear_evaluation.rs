@@ -1,9 +1,9 @@
-//! From the displacements of the springs to a shear stress: three readings of the same row.
+//! Three formulas for the shear stress from the displacements of the springs.
 //!
-//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx (eq. 19 of Kraft & Pohrt 2016) needs a displacement between the springs
-//! too. Drawn straight over x it gives an arcosh per cell. Drawn straight over g(x) it gives the profile's own integral per
-//! cell, and is exact but in the cells that hold a kink. Not drawn at all, with the derivative taken as a difference and the
-//! integral as a sum, it is what the formula suggests at first sight.
+//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx (eq. 19 of Kraft & Pohrt 2016) needs a displacement between the
+//! springs too. Drawn straight over x it gives an arcosh per cell. Drawn straight over g(x) it gives the profile's own
+//! integral per cell, and is exact but in the cells that hold a kink. Not drawn at all, with the derivative taken as a
+//! difference and the integral as a sum, it is the direct discretisation of the formula.
 
 use std::f64::consts::PI;
 
@@ -14,36 +14,45 @@ use super::super::range;
 use super::super::state::Setup;
 use super::Springs;
 
-/// How a shear stress is read from the springs.
+/// The formula for the shear stress between the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernel {
+pub enum ShearEvaluation {
     /// The displacement is straight over x from spring to spring, as in [`Springs::shear`].
     Arcosh,
     /// The displacement is straight over g(x) from spring to spring.
     Level,
-    /// The plain recipe: differences between neighbours over the root at their midpoint, summed at the radius of each spring;
-    /// straight between those radii.
+    /// The plain recipe: differences between neighbours over the root at their midpoint, summed at the radius of each
+    /// spring; straight between those radii.
     Differences,
 }
 
 impl Springs {
-    /// As [`Springs::new`], but for [`Springs::accuracy`], which then knows of no error beyond the bends: nothing is kept that
-    /// the answers do not need.
+    /// As [`Springs::new`], but for [`Springs::accuracy`], which then estimates the error from second differences
+    /// alone: no coarser rows are kept.
     ///
     /// # Errors
     /// As [`Springs::new`].
-    pub fn bare(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
+    pub fn without_error_estimate(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        Springs::alone(setup, count, reach)
+        Springs::one_row(setup, count, reach)
     }
 
     /// Shear stress, Pa, at each of `radii`, m.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::springs::ShearEvaluation;
+    ///
+    /// let springs = Springs::new(setup, 1000, 0.1)?;
+    /// assert_eq!(springs.shears_by(ShearEvaluation::Level, &[0.05]), [0.0]);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
-    pub fn shears_by(&self, kernel: Kernel, radii: &[f64]) -> Vec<f64> {
+    pub fn shears_by(&self, kernel: ShearEvaluation, radii: &[f64]) -> Vec<f64> {
         match kernel {
-            Kernel::Arcosh => radii.iter().map(|&radius| self.shear(radius)).collect(),
-            Kernel::Level => self.shears_over_levels(radii),
-            Kernel::Differences => {
+            ShearEvaluation::Arcosh => radii.iter().map(|&radius| self.shear(radius)).collect(),
+            ShearEvaluation::Level => self.shears_over_levels(radii),
+            ShearEvaluation::Differences => {
                 let nodes: Vec<(f64, f64)> = self.in_contact().map(|spring| (spring.radius, spring.carried)).collect();
                 radii.iter().map(|&radius| self.shear_by_differences(&nodes, radius)).collect()
             }
@@ -51,7 +60,7 @@ impl Springs {
     }
 
     fn shears_over_levels(&self, radii: &[f64]) -> Vec<f64> {
-        // At the level of the indentation nothing is carried, whatever the profile.
+        // StressRadius the level of the indentation nothing is carried, whatever the profile.
         let edge = (self.indentation, 0.0);
         let nodes = self.in_contact().map(|spring| (spring.level, spring.carried)).chain([edge]);
         let nodes: Vec<_> =
@@ -78,7 +87,8 @@ impl Springs {
         (1.0 - part) * self.difference_sum(nodes, inner) + part * self.difference_sum(nodes, outer)
     }
 
-    /// The sum at the radius of spring `index`, over all differences outside it; beyond the last spring nothing is carried.
+    /// The sum at the radius of spring `index`, over all differences outside it; beyond the last spring nothing is
+    /// carried.
     fn difference_sum(&self, nodes: &[(f64, f64)], index: usize) -> f64 {
         let Some(&(radius, _)) = nodes.get(index) else { return 0.0 };
         let next = nodes[index + 1..].iter().map(|(_, carried)| *carried).chain([0.0]);

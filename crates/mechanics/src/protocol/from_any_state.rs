@@ -1,72 +1,72 @@
-//! The best strokes from any state: alternating extrema outside, and inside what the history has left.
+//! The best strokes from any state: alternating extrema outside a cut, the stress of the slip history inside it.
 //!
-//! The first stroke slips down to a cut, and the strokes after it to kinks ever nearer to the edge. For a largest stress E the
-//! kinks follow from the edge inwards as in `minimax`; they do not depend on what lies inside the cut. The cut is then
-//! where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is lowered until the
-//! inside would be above it.
+//! The first stroke slips down to a cut, and the strokes after it to kinks ever nearer to the edge. For a largest
+//! stress E the kinks follow from the edge inwards as in `minimax`; they do not depend on what lies inside the cut. The
+//! cut is then where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is
+//! lowered until the inside would be above it.
 //!
-//! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and a last
-//! stroke, during which nothing slips but the edge itself, takes the load off it.
+//! StressRadius a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
+//! a last stroke, during which nothing slips but the edge itself, unloads it.
 
 use super::super::contact::Contact;
 use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
 use super::minimax::Problem;
-use super::{DoubleDouble, End, cutoff_of, outermost_singular};
+use super::{DoubleDouble, PathEnd, cutoff_of, outermost_singular};
 
-/// More pieces than this inside are not looked at one by one for every E.
-const DEEPEST: usize = 256;
-/// Radii that are looked at beside the kinks of the history, and cuts that are tried.
+/// A slip history of more pieces is refused, because each piece is evaluated for every E.
+const MAX_DEPTH: usize = 256;
+/// Number of sampled radii besides the kinks of the history, and of cuts that are tried.
 const GRID: usize = 64;
 const CUTS: usize = 16;
-/// Among the cuts tried none is this much above the best there is.
+/// The best of the cuts tried is within this factor of the best of all.
 const COARSE: f64 = 1.1;
 /// Halvings of a bracket.
 const HALVINGS: usize = 60;
-/// Looks at E, and how it is changed until it is bracketed.
-const LOOKS: usize = 48;
+/// The largest number of evaluations of E, and the factors that bracket it.
+const MAX_EVALUATIONS: usize = 48;
 const STRIDE: f64 = 1.6;
 const PACE: f64 = 1.06;
-/// What E may be off, relative to itself.
+/// Relative tolerance of E.
 const TOLERANCE: f64 = 1e-8;
-/// An E below this part of the first guess is as good as none.
+/// An E below this share of the first guess counts as zero.
 const LEAST: f64 = 1e-4;
 
 /// Strokes from the state of a contact.
-pub(super) struct Relief<'a> {
+pub(super) struct FromAnyState<'a> {
     problem: Problem<'a>,
-    /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else nought.
+    /// The level of the edge, and of what a last stroke takes off a vertical one: its height, else zero.
     edge: DoubleDouble,
     rim: f64,
     /// The history from the centre outward, and what turns a line into w - W.
     history: Vec<(Ring, Line)>,
-    /// Where the inside is looked at, from the centre outward.
-    looks: Vec<Look>,
+    /// The sampled radii, from the centre outward.
+    samples: Vec<SampleRadius>,
     reference: DoubleDouble,
     /// The direction of the last stroke that slips inside, and of the first.
     last: f64,
     first: f64,
-    end: End,
+    end: PathEnd,
 }
 
-/// What the strokes of one E come to, all scaled by m and for a last stroke forwards.
+/// The strokes of one E, scaled by m, for a last stroke forwards.
 struct Strokes {
     kinks: Vec<Point>,
     /// Where the first stroke leads to.
     first: f64,
 }
 
-impl<'a> Relief<'a> {
-    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or where
-    /// the memory is too deep.
-    pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: End) -> Option<Relief<'a>> {
-        let (profile, memory) = (&*contact.profile, &contact.memory);
-        let edge = *memory.edge();
-        if memory.pieces().len() > DEEPEST {
+impl<'a> FromAnyState<'a> {
+    /// StressRadius most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or
+    /// where the history is too deep.
+    pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: PathEnd) -> Option<FromAnyState<'a>> {
+        let (profile, history) = (&*contact.profile, &contact.history);
+        let edge = *history.edge();
+        if history.pieces().len() > MAX_DEPTH {
             return None;
         }
-        let mut history: Vec<_> = memory.rings().map(|(ring, line)| (ring, *line)).collect();
-        history.reverse();
+        let mut rings: Vec<_> = history.rings().map(|(ring, line)| (ring, *line)).collect();
+        rings.reverse();
         let rim = profile.rim_radius().filter(|rim| edge.radius >= *rim).map(|rim| profile.level(rim));
         let outer = rim.map_or(edge, |level| profile.point(DoubleDouble::from(level)));
         let inner_strokes = strokes.checked_sub(usize::from(rim.is_some()))?;
@@ -78,9 +78,19 @@ impl<'a> Relief<'a> {
         let last = if rim.is_some() { -last } else { last };
         let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
         let height = rim.map_or(0.0, |level| (edge.level - DoubleDouble::from(level)).value());
-        let reference = memory.position() - memory.shift();
-        let looks = looks(&problem, &history, last);
-        Some(Relief { problem, edge: edge.level, rim: height, history, looks, reference, last, first, end })
+        let reference = history.position() - history.shift();
+        let samples = samples(&problem, &rings, last);
+        Some(FromAnyState {
+            problem,
+            edge: edge.level,
+            rim: height,
+            history: rings,
+            samples,
+            reference,
+            last,
+            first,
+            end,
+        })
     }
 
     /// w - W of the history at a level, for a last stroke forwards.
@@ -123,17 +133,19 @@ impl<'a> Relief<'a> {
         })
     }
 
-    /// What the end misses with a cut at a level, in the direction of the first stroke: it falls as the cut goes outwards.
+    /// The residual of the end with a cut at a level, in the direction of the first stroke: it falls as the cut goes
+    /// outwards.
     fn miss(&self, kinks: &[Point], level: DoubleDouble) -> f64 {
         let value = match self.end {
-            End::Free => 0.0,
-            End::DisplacementZero => self.first_to(level) + self.way(kinks),
-            End::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
+            PathEnd::Free => 0.0,
+            PathEnd::DisplacementZero => self.first_to(level) + self.way(kinks),
+            PathEnd::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
         };
         self.first * value
     }
 
-    /// The largest stress inside the last kink, for a cut; `outside` is that of the rings beyond the kink, look by look.
+    /// The largest stress inside the last kink, for a cut; `outside` is that of the rings beyond the kink, sample by
+    /// sample.
     fn worst(&self, outside: &[f64], kinks: &[Point], cut: &Point) -> f64 {
         let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
         let ring = Ring::between(*cut, *kinks.last().unwrap_or(&self.problem.edge));
@@ -142,11 +154,11 @@ impl<'a> Relief<'a> {
         let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
         let kept = kept.map(|(ring, line)| (Ring::between(ring.inner, *cut), -self.last * line.slope.value()));
         let mut worst = 0.0_f64;
-        for (look, outside) in self.looks.iter().zip(outside) {
-            let mut stress = outside + sign * profile.kernel(&look.at, &ring);
-            if look.at.radius <= cut.radius {
-                let part = kept.map_or(0.0, |(ring, slope)| slope * profile.kernel(&look.at, &ring));
-                stress += look.below[whole] + part;
+        for (sample, outside) in self.samples.iter().zip(outside) {
+            let mut stress = outside + sign * profile.kernel(&sample.at, &ring);
+            if sample.at.radius <= cut.radius {
+                let part = kept.map_or(0.0, |(ring, slope)| slope * profile.kernel(&sample.at, &ring));
+                stress += sample.below[whole] + part;
             }
             worst = worst.max(stress.abs());
         }
@@ -157,27 +169,27 @@ impl<'a> Relief<'a> {
         worst
     }
 
-    /// The stress, at each look inside the last kink, of the rings beyond it.
+    /// The stress, at each sample inside the last kink, of the rings beyond it.
     fn outside(&self, kinks: &[Point]) -> Vec<f64> {
         let Some((last, beyond)) = kinks.split_last() else {
-            return vec![0.0; self.looks.len()];
+            return vec![0.0; self.samples.len()];
         };
-        let inside = self.looks.iter().take_while(|look| look.at.radius < last.radius);
-        inside.map(|look| self.problem.shear_down_to(*last, beyond, &look.at)).collect()
+        let inside = self.samples.iter().take_while(|sample| sample.at.radius < last.radius);
+        inside.map(|sample| self.problem.shear_down_to(*last, beyond, &sample.at)).collect()
     }
 
-    /// The strokes of a largest stress E, if there are any; `Err` if `go_on` said no.
-    fn strokes(&self, limit: f64, go_on: &dyn Fn() -> bool) -> Result<Tried, ()> {
-        let marched = self.problem.march(limit, go_on).ok_or(())?;
+    /// The strokes of a largest stress E, if there are any; `Err` if `keep_going` returned false.
+    fn strokes(&self, limit: f64, keep_going: &dyn Fn() -> bool) -> Result<StrokeOutcome, ()> {
+        let marched = self.problem.march(limit, keep_going).ok_or(())?;
         if marched.kinks.len() < self.problem.reversals {
-            return Ok(Tried::Loose);
+            return Ok(StrokeOutcome::Loose);
         }
         let kinks = marched.kinks;
         let profile = self.problem.profile;
         let outside = self.outside(&kinks);
         let last = kinks.last().unwrap_or(&self.problem.edge).level;
         let fits = |cut: &Point| self.worst(&outside, &kinks, cut) <= limit * (1.0 + 1e-12);
-        if self.end == End::Free {
+        if self.end == PathEnd::Free {
             let outermost = kinks.last().unwrap_or(&self.problem.edge).radius;
             let cut = |part: f64| profile.point(DoubleDouble::from(profile.level(part * outermost).min(last.value())));
             let worst = |part: f64| self.worst(&outside, &kinks, &cut(part));
@@ -185,7 +197,7 @@ impl<'a> Relief<'a> {
             let (mut best, mut least) = tried.fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
             // Ever smaller steps to both sides of the best.
             let mut step = 0.5 / CUTS as f64;
-            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && go_on() {
+            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && keep_going() {
                 let sides = [best - step, best + step].map(|part| part.clamp(0.0, 1.0)).map(|part| (part, worst(part)));
                 match sides.into_iter().find(|(_, value)| *value < least) {
                     Some(side) => (best, least) = side,
@@ -194,18 +206,22 @@ impl<'a> Relief<'a> {
             }
             let cut = cut(best);
             let first = self.first_to(cut.level);
-            return Ok(if least <= limit { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight });
+            return Ok(if least <= limit {
+                StrokeOutcome::Fits(Strokes { kinks, first })
+            } else {
+                StrokeOutcome::Tight
+            });
         }
         let (mut low, mut high) = (DoubleDouble::ZERO, last);
         if self.miss(&kinks, high) > 0.0 {
-            return Ok(Tried::Tight);
+            return Ok(StrokeOutcome::Tight);
         }
         let over = self.miss(&kinks, low);
         if over < 0.0 {
             // Sliding on as a whole changes nothing but where it ends.
             let first = self.first_to(low) - self.first * over;
-            let slides = self.end == End::DisplacementZero && fits(&profile.point(low));
-            return Ok(if slides { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight });
+            let slides = self.end == PathEnd::DisplacementZero && fits(&profile.point(low));
+            return Ok(if slides { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight });
         }
         for _ in 0..HALVINGS {
             let middle = low + (high - low) * 0.5;
@@ -213,11 +229,12 @@ impl<'a> Relief<'a> {
         }
         let cut = profile.point(high);
         let first = self.first_to(cut.level);
-        Ok(if fits(&cut) { Tried::Fits(Strokes { kinks, first }) } else { Tried::Tight })
+        Ok(if fits(&cut) { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight })
     }
 
-    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `go_on` said no.
-    pub(super) fn solve(&self, go_on: &dyn Fn() -> bool) -> Option<Vec<f64>> {
+    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `keep_going`
+    /// returned false.
+    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<Vec<f64>> {
         let problem = &self.problem;
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
@@ -228,18 +245,18 @@ impl<'a> Relief<'a> {
         let (mut low, mut high);
         let mut best = None;
         let mut step = |limit: f64| -> Option<bool> {
-            Some(match self.strokes(limit, go_on).ok()? {
-                Tried::Fits(strokes) => {
+            Some(match self.strokes(limit, keep_going).ok()? {
+                StrokeOutcome::Fits(strokes) => {
                     best = Some(strokes);
                     true
                 }
-                Tried::Loose => true,
-                Tried::Tight => false,
+                StrokeOutcome::Loose => true,
+                StrokeOutcome::Tight => false,
             })
         };
         if step(guess)? {
             (low, high) = (guess / STRIDE, guess);
-            for _ in 0..LOOKS {
+            for _ in 0..MAX_EVALUATIONS {
                 if !step(low)? {
                     break;
                 }
@@ -249,9 +266,10 @@ impl<'a> Relief<'a> {
                 }
             }
         } else {
-            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in small steps.
-            let found = (1..=LOOKS).flat_map(|look| [look as i32, -(look as i32)]).find_map(|look| {
-                let limit = guess * PACE.powi(look);
+            // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in
+            // small steps.
+            let found = (1..=MAX_EVALUATIONS).flat_map(|power| [power as i32, -(power as i32)]).find_map(|power| {
+                let limit = guess * PACE.powi(power);
                 match step(limit) {
                     Some(false) => None,
                     Some(true) => Some(Some(limit)),
@@ -260,14 +278,14 @@ impl<'a> Relief<'a> {
             });
             high = found??;
             low = high / PACE;
-            for _ in 0..LOOKS {
+            for _ in 0..MAX_EVALUATIONS {
                 if !step(low)? {
                     break;
                 }
                 (high, low) = (low, low / PACE);
             }
         }
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if high - low <= TOLERANCE * high {
                 break;
             }
@@ -292,21 +310,21 @@ impl<'a> Relief<'a> {
     }
 }
 
-/// A radius where the inside is looked at.
-struct Look {
+/// A sampled radius inside the last kink.
+struct SampleRadius {
     at: StressRadius,
     /// The stress there of so many rings of the history, from the centre outward, over G* m/pi.
     below: Vec<f64>,
 }
 
 /// Even radii, and the kinks of the history.
-fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Look> {
+fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<SampleRadius> {
     let (least, most) = (problem.cutoff, problem.edge.radius);
     let even = (0..GRID).map(|index| StressRadius::new(least + (most - least) * index as f64 / GRID as f64));
     let bends = history.iter().map(|(ring, _)| ring.inner).filter(|bend| bend.radius > least && bend.radius < most);
     let mut all: Vec<StressRadius> = even.chain(bends.map(|bend| StressRadius::of_point(&bend))).collect();
     all.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-    let look = |at: StressRadius| {
+    let sample = |at: StressRadius| {
         let mut below = Vec::with_capacity(history.len() + 1);
         let mut sum = 0.0;
         for (ring, line) in history {
@@ -317,13 +335,13 @@ fn looks(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Look
             }
         }
         below.push(sum);
-        Look { at, below }
+        SampleRadius { at, below }
     };
-    all.into_iter().map(look).collect()
+    all.into_iter().map(sample).collect()
 }
 
-/// What an E comes to.
-enum Tried {
+/// Whether there are strokes with a largest stress E.
+enum StrokeOutcome {
     /// It is enough, and these are the strokes.
     Fits(Strokes),
     /// It is more than enough: fewer strokes would do.

@@ -1,5 +1,6 @@
 //! Paths that are straight in a force, against closed forms for the sphere.
 
+use crate::support::{displace, push};
 use stickslip_mechanics::{
     Contact, Elasticity, Error, Move, Normal, Preload, Profile, Regime, Setup, Sphere, Tangential,
 };
@@ -38,15 +39,11 @@ fn forces(force: f64, normal_force: f64) -> Move {
 }
 
 fn slide_and_press(displacement: f64, normal_force: f64) -> Move {
-    Move {
-        tangential: Some(Tangential::Displacement(displacement)),
-        normal: Some(Normal::NormalForce(normal_force)),
-        ..Move::default()
-    }
+    Move { normal: Some(Normal::NormalForce(normal_force)), ..displace(displacement) }
 }
 
 fn push_and_sink(force: f64, depth: f64) -> Move {
-    Move { tangential: Some(Tangential::Force(force)), normal: Some(Normal::Indentation(depth)), ..Move::default() }
+    Move { normal: Some(Normal::Indentation(depth)), ..push(force) }
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {
@@ -55,19 +52,18 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn a_move_broken_off_has_changed_nothing() {
+fn an_interrupted_move_has_changed_nothing() {
     let mut contact = ball(LOAD);
     let full = contact.gross_slip_displacement();
-    let slide = |target: f64| Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
-    contact.apply(&slide(0.3 * full)).unwrap();
+    contact.apply(&displace(0.3 * full)).unwrap();
     let before = contact.state();
-    let curve = Move { normal: Some(Normal::NormalForce(2.0 * LOAD)), ..slide(0.9 * full) };
+    let curve = Move { normal: Some(Normal::NormalForce(2.0 * LOAD)), ..displace(0.9 * full) };
     let chords = std::cell::Cell::new(0);
-    let go_on = || {
+    let keep_going = || {
         chords.set(chords.get() + 1);
         chords.get() < 20
     };
-    assert_eq!(contact.apply_while(&curve, 1e-10, &go_on), Err(Error::BrokenOff));
+    assert_eq!(contact.apply_while(&curve, 1e-10, &keep_going), Err(Error::Interrupted));
     assert_eq!((contact.state(), chords.get()), (before, 20));
     contact.apply(&curve).unwrap();
     assert!(contact.normal_force() > 1.99 * LOAD);
@@ -126,8 +122,8 @@ fn lowering_the_load_under_a_steady_pull_shrinks_the_stick_circle() {
     assert!(part < 1e-9, "the limit is met at once, not {part}");
 }
 
-/// Tangential force after (U, F_N) has gone straight from (0, `from`) to (`shift`, `to`) without slip: each ring carries
-/// what was moved since its touch, 2 G* int (U_1 - U(x)) dx with U(x) from F_N(x) = 4 E* x^3/(3 R).
+/// Tangential force after (U, F_N) has gone straight from (0, `from`) to (`shift`, `to`) without slip: each ring
+/// carries what was moved since its touch, 2 G* int (U_1 - U(x)) dx with U(x) from F_N(x) = 4 E* x^3/(3 R).
 fn pressed_while_moving(from: f64, to: f64, shift: f64) -> f64 {
     let (inner, outer) = (contact_radius(from), contact_radius(to));
     let ring = outer.powi(3) * (outer - inner) - (outer.powi(4) - inner.powi(4)) / 4.0;
@@ -254,12 +250,11 @@ fn a_gap_closes_before_the_normal_force_rises() {
 fn the_default_tolerance_is_met_from_no_load_on() {
     // Straight from no load: the contact radius grows like the cube root of the force, steepest at first.
     let touching = || ball(0.0);
-    let slide = |target: f64| Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
     let load = Some(Normal::NormalForce(LOAD));
     let mut contact = touching();
-    contact.apply(&Move { normal: load, ..slide(1e-9) }).unwrap();
-    // A displacement that grows with the force keeps U/F, and dU/dd falls with d: nothing slips where U is this small beside d,
-    // and F = 2 G* int a dU = 2 G* (3/2 a) U - G* U a: with a ~ F^(1/3) and U ~ F, int a dU = (3/4) a U.
+    contact.apply(&Move { normal: load, ..displace(1e-9) }).unwrap();
+    // A displacement that grows with the force keeps U/F, and dU/dd falls with d: nothing slips where U is this small
+    // beside d, and F = 2 G* int a dU = 2 G* (3/2 a) U - G* U a: with a ~ F^(1/3) and U ~ F, int a dU = (3/4) a U.
     let expected = 2.0 * G_STAR * 0.75 * contact_radius(LOAD) * 1e-9;
     assert!((contact.force() - expected).abs() < 1e-10 * FRICTION * LOAD, "{:e}", contact.force() - expected);
     let error = contact.accuracy().path_error;
@@ -267,7 +262,7 @@ fn the_default_tolerance_is_met_from_no_load_on() {
 
     let mut sliding = touching();
     let far = 10.0 * FRICTION * E_STAR / G_STAR * indentation(LOAD);
-    sliding.apply(&Move { normal: load, ..slide(far) }).unwrap();
+    sliding.apply(&Move { normal: load, ..displace(far) }).unwrap();
     // All of it slips: the force is at its limit, whatever the way.
     assert_eq!(sliding.state().regime, Regime::GrossSlip);
     assert!((sliding.force() / (FRICTION * LOAD) - 1.0).abs() < 1e-14);

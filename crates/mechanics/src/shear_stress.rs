@@ -15,7 +15,7 @@ pub struct Peak {
     pub shear: f64,
 }
 
-/// The shear stress that a history has left, in brief.
+/// The extrema of the shear stress in the present state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
     /// Shear stress at r = 0, Pa; `None` where it is infinite.
@@ -31,7 +31,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Sums up the shear stress at the centre and the local extrema; `bounded` if it is finite everywhere else.
+    /// From the shear stress at the centre and the local extrema; `bounded` if it is finite everywhere else.
     pub(super) fn of(centre: f64, peaks: Vec<Peak>, bounded: bool) -> Residual {
         let sizes = || peaks.iter().map(|peak| peak.shear.abs());
         let max = (bounded && centre.is_finite()).then(|| sizes().fold(centre.abs(), f64::max));
@@ -45,16 +45,31 @@ impl Residual {
 }
 
 impl Contact {
-    /// Shear stress, Pa, at a radius (m) of at least nought; nought outside the contact.
+    /// Shear stress, Pa, at a radius (m) of at least zero; zero outside the contact.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(1.0))?;
+    /// // Gross slip forwards: mu times the pressure, positive.
+    /// assert!((contact.shear(0.03) / (0.5 * contact.pressure(0.03)) - 1.0).abs() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
         self.shear_at(&StressRadius::new(radius))
     }
 
-    /// [`Contact::shear`] at each of `radii`, m: quicker than one by one.
+    /// [`Contact::shear`] at each of `radii`, m: faster than one by one.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// assert_eq!(contact.shears(&[0.05, 0.2]), [contact.shear(0.05), 0.0]);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        let mut rings: Vec<_> = self.memory.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
+        let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
         rings.reverse();
         let unit = self.shear_unit();
         self.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
@@ -67,7 +82,7 @@ impl Contact {
 
     pub(super) fn shear_at(&self, at: &StressRadius) -> f64 {
         let mut sum = 0.0;
-        for (ring, line) in self.memory.rings() {
+        for (ring, line) in self.history.rings() {
             if ring.outer.radius < at.radius {
                 break;
             }
@@ -79,19 +94,34 @@ impl Contact {
         self.shear_unit() * sum
     }
 
-    /// All extrema of the shear stress with their exact radii, and what they amount to.
+    /// All extrema of the shear stress with their exact radii, and their largest, smallest and mean magnitude.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(1.0))?;
+    /// contact.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
+    /// // Without a force the core is still loaded forwards, and a ring outside it backwards.
+    /// let residual = contact.residual();
+    /// assert!(residual.centre.unwrap() > 0.0 && residual.peaks[0].shear < 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[must_use]
     pub fn residual(&self) -> Residual {
         self.residual_while(|| true).unwrap_or_else(|| Residual::of(self.shear(0.0), Vec::new(), false))
     }
 
-    /// As [`Contact::residual`], for as long as `go_on` says so, which is asked at every kink of the memory and knot
-    /// of the profile: a deep memory costs its square.
-    /// `None` if it said no.
-    pub fn residual_while(&self, go_on: impl Fn() -> bool) -> Option<Residual> {
-        let edge = self.memory.edge().radius;
+    /// As [`Contact::residual`], while `keep_going` returns true, which is asked at every kink of the slip history and
+    /// knot of the profile: the cost grows with the square of its depth. `None` if it returned false.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// assert!(contact.residual_while(|| false).is_none());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
+        let edge = self.history.edge().radius;
         let spikes = self.profile.singular_radii().into_iter().chain([edge]);
         let bounded = spikes.filter(|&radius| radius <= edge).all(|radius| self.shear(radius).is_finite());
-        Some(Residual::of(self.shear(0.0), self.peaks(go_on)?, bounded))
+        Some(Residual::of(self.shear(0.0), self.peaks(keep_going)?, bounded))
     }
 }

@@ -1,19 +1,19 @@
-//! Equal alternating extrema with a prescribed end.
+//! Equal alternating extrema with a prescribed end of the path.
 //!
-//! The kinks of the smallest E lead somewhere. To lead elsewhere one extremum must stay below the others. If it is one of
-//! the kinks, its share and E are the two unknowns of two equations, the end and the stress of the core, solved by Broyden's
-//! method from the free optimum. If it is the core, E alone is sought. Among few kinks each is tried, else the outermost: of
-//! many extrema it matters little which one stays below.
+//! The kinks of the smallest E determine where the path ends. For another end, one extremum must be smaller than the
+//! others. If it is one of the kinks, its share and E are the two unknowns of two equations, the end and the stress of
+//! the core, solved by Broyden's method from the free optimum. If it is the core, E alone is sought. Among few kinks
+//! each is tried, else the outermost: of many extrema it matters little which one stays below.
 
 use super::super::profile::{Point, Ring};
-use super::minimax::{Marched, Problem};
-use super::{DoubleDouble, End};
+use super::minimax::{KinkSequence, Problem};
+use super::{DoubleDouble, PathEnd};
 
-/// So many kinks are tried one by one.
+/// Up to this many kinks each is tried.
 pub(super) const FEW: usize = 8;
-/// Looks at the kinks, at the most.
-const LOOKS: usize = 40;
-/// What the two equations may miss, relative to the indentation and to E.
+/// The largest number of evaluations of the kinks.
+const MAX_EVALUATIONS: usize = 40;
+/// Tolerance of the residuals of the two equations, relative to the indentation and to E.
 const TOLERANCE: f64 = 1e-11;
 /// The first steps, relative, and, over the number of kinks, those by which E is raised.
 const PROBE: f64 = 1e-4;
@@ -22,46 +22,47 @@ const PACE: f64 = 0.1;
 const LEAST: f64 = 1e-3;
 const RETRIES: usize = 8;
 
-/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence for
-/// each extremum that may stay below the others.
+/// The kinks that lead to `end`, the outermost first, for a first stroke forwards to `first`, scaled by m: one sequence
+/// for each extremum that may stay below the others.
 pub(super) fn kinks(
     problem: &Problem<'_>,
     limit: f64,
     first: f64,
-    end: End,
-    go_on: &dyn Fn() -> bool,
+    end: PathEnd,
+    keep_going: &dyn Fn() -> bool,
 ) -> Vec<Vec<Point>> {
     let tried = if problem.reversals <= FEW { problem.reversals } else { 1 };
-    let equations = Equations { problem, limit, first, end, go_on };
+    let equations = Equations { problem, limit, first, end, keep_going };
     (0..tried).filter_map(|index| equations.by_share(index)).chain(equations.by_core()).collect()
 }
 
-/// What is to be solved.
+/// The equations to be solved.
 struct Equations<'a> {
     problem: &'a Problem<'a>,
     limit: f64,
     first: f64,
-    end: End,
-    go_on: &'a dyn Fn() -> bool,
+    end: PathEnd,
+    keep_going: &'a dyn Fn() -> bool,
 }
 
 impl Equations<'_> {
-    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with what they miss.
-    fn look(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], Marched)> {
-        let marched = self.problem.march_with(self.limit * stress, (index, share), self.go_on)?;
+    /// The kinks of an E, relative to the free optimum, and of a share for the extremum of this index, with the
+    /// residuals.
+    fn evaluate(&self, index: usize, [stress, share]: [f64; 2]) -> Option<([f64; 2], KinkSequence)> {
+        let marched = self.problem.march_with(self.limit * stress, (index, share), self.keep_going)?;
         Some(([miss(self.problem, &marched.kinks, self.first, self.end), marched.excess?], marched))
     }
 
     /// The kinks if the extremum of this index stays below the others.
     fn by_share(&self, index: usize) -> Option<Vec<Point>> {
         let mut at = [1.0, 1.0];
-        let (mut missed, mut marched) = self.look(index, at)?;
-        // The Jacobian by differences once, then kept up.
-        let (by_stress, _) = self.look(index, [1.0 + PROBE, 1.0])?;
-        let (by_share, _) = self.look(index, [1.0, 1.0 - PROBE])?;
+        let (mut missed, mut marched) = self.evaluate(index, at)?;
+        // The Jacobian by differences once, then updated.
+        let (by_stress, _) = self.evaluate(index, [1.0 + PROBE, 1.0])?;
+        let (by_share, _) = self.evaluate(index, [1.0, 1.0 - PROBE])?;
         let row = |row: usize| [(by_stress[row] - missed[row]) / PROBE, (missed[row] - by_share[row]) / PROBE];
         let mut jacobian = [row(0), row(1)];
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             if missed.iter().all(|miss| miss.abs() <= TOLERANCE) {
                 return (at[1] <= 1.0 + TOLERANCE).then_some(marched.kinks);
             }
@@ -69,7 +70,7 @@ impl Equations<'_> {
             let determinant = a * d - b * c;
             let mut step =
                 [(b * missed[1] - d * missed[0]) / determinant, (c * missed[0] - a * missed[1]) / determinant];
-            // Not so far that the kinks get lost.
+            // Limited, so that no kink is lost.
             let far = (step[0].abs() / 0.1).max(step[1].abs() / 0.25);
             if !far.is_finite() {
                 return None;
@@ -80,7 +81,7 @@ impl Equations<'_> {
             step[1] = step[1].max(LEAST - at[1]);
             let mut found = None;
             for _ in 0..RETRIES {
-                found = self.look(index, [at[0] + step[0], at[1] + step[1]]);
+                found = self.evaluate(index, [at[0] + step[0], at[1] + step[1]]);
                 if found.is_some() {
                     break;
                 }
@@ -105,13 +106,14 @@ impl Equations<'_> {
 
     /// The kinks of the smallest E above the free optimum that leads to the end by itself.
     fn by_core(&self) -> Option<Vec<Point>> {
-        let look = |stress: f64| self.look(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
-        // At about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
+        let evaluate =
+            |stress: f64| self.evaluate(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
+        // StressRadius about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
         let mut step = PACE / self.problem.reversals as f64;
-        let (mut low, mut at_low) = (1.0, look(1.0)?.0);
+        let (mut low, mut at_low) = (1.0, evaluate(1.0)?.0);
         let (mut high, mut at_high) = (low, at_low);
-        for _ in 0..LOOKS {
-            match look(low + step) {
+        for _ in 0..MAX_EVALUATIONS {
+            match evaluate(low + step) {
                 Some((value, _)) => {
                     (high, at_high) = (low + step, value);
                     if at_high * at_low <= 0.0 {
@@ -126,9 +128,9 @@ impl Equations<'_> {
             return None;
         }
         // False position with the weight of an end halved that stays (Illinois).
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             let middle = (low * at_high - high * at_low) / (at_high - at_low);
-            let (value, kinks) = look(middle)?;
+            let (value, kinks) = evaluate(middle)?;
             if value.abs() <= TOLERANCE || high - low <= TOLERANCE {
                 return Some(kinks);
             }
@@ -142,18 +144,18 @@ impl Equations<'_> {
     }
 }
 
-/// What the end misses: of the displacement over the indentation, of the force over that of gross slip.
-fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: End) -> f64 {
+/// The residual at the end: of the displacement over the indentation, or of the force over that of gross slip.
+fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
     let profile = problem.profile;
     let alternating = |index: usize, size: f64| if index.is_multiple_of(2) { size } else { -size };
     match end {
-        End::Free => 0.0,
-        End::DisplacementZero => {
+        PathEnd::Free => 0.0,
+        PathEnd::DisplacementZero => {
             let strokes = kinks.iter().rev().enumerate();
             let way = strokes.map(|(index, kink)| alternating(index, 2.0 * (problem.edge.level - kink.level).value()));
             (first - way.sum::<f64>()) / problem.edge.level.value()
         }
-        End::ForceZero => {
+        PathEnd::ForceZero => {
             let load = |ring: &Ring| ring.inner.radius * ring.depth + profile.moments(ring).first;
             let zero = profile.point(DoubleDouble::ZERO);
             let whole = load(&Ring::between(zero, problem.edge));

@@ -1,26 +1,26 @@
 //! s(x) = int g'(t)^2/t dt from a cut-off radius to the edge of the contact, and its inverse.
 //!
-//! Between two kinks k of the profile, g' is analytic in t = sqrt(x^2 - k^2), so that bisected panels of eight Gauss points
-//! reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n with n near one,
-//! s comes from all of them.
+//! Between two kinks k of the profile, g' is analytic in t = sqrt(x^2 - k^2), so that bisected panels of eight Gauss
+//! points reach round-off. Down to the tip the variable is ln x, octave by octave until nothing is added: for g ~ x^n
+//! with n near one, s comes from all of them.
 
 use super::super::profile::{Profile, gauss::Panel};
 
-/// What halving a panel may change, relative to the whole so far; the halves are then good to round-off.
+/// Tolerance of halving a panel, relative to the sum so far; the halves are then good to round-off.
 const TOLERANCE: f64 = 1e-12;
 /// How often a panel may be halved.
 const HALVINGS: u32 = 60;
-/// Where the way down to the tip ends, m: g is a power of x there.
+/// Below this radius, m, g is a power of x.
 const TIP: f64 = 1e-290;
 
 /// s between two radii.
-pub(super) struct Spread<'a> {
+pub(super) struct EqualPeakMeasure<'a> {
     profile: &'a Profile,
     /// From the edge inwards.
     leaves: Vec<Leaf>,
     /// The integral over all leaves.
     sum: f64,
-    /// What is left of it down to the tip.
+    /// The rest of the integral, down to the tip.
     rest: f64,
 }
 
@@ -52,10 +52,10 @@ impl Along {
     }
 }
 
-impl<'a> Spread<'a> {
-    /// `None` if s is not finite, or nought: a flat has no peaks.
-    pub(super) fn new(profile: &'a Profile, inner: f64, outer: f64) -> Option<Spread<'a>> {
-        let mut spread = Spread { profile, leaves: Vec::new(), sum: 0.0, rest: 0.0 };
+impl<'a> EqualPeakMeasure<'a> {
+    /// `None` if s is not finite, or zero: a flat has no peaks.
+    pub(super) fn new(profile: &'a Profile, inner: f64, outer: f64) -> Option<EqualPeakMeasure<'a>> {
+        let mut spread = EqualPeakMeasure { profile, leaves: Vec::new(), sum: 0.0, rest: 0.0 };
         let mut top = outer;
         while top > inner {
             let kink = profile.kink_below(top);
@@ -119,7 +119,7 @@ impl<'a> Spread<'a> {
         let middle = 0.5 * (low + high);
         let (lower, upper) = (self.area(along, low, middle), self.area(along, middle, high));
         let both = lower + upper;
-        // Written so that what is not a number ends it too.
+        // Written so that a NaN ends it too.
         let coarse = (both - whole).abs() > TOLERANCE * (self.sum + both);
         if coarse && left > 0 && both.is_finite() {
             self.halve(along, (middle, high), upper, left - 1);
@@ -132,7 +132,7 @@ impl<'a> Spread<'a> {
         }
     }
 
-    /// The radius, m, at a fraction of s from the inner end; nought in what is left at the tip, where the level is too.
+    /// The radius, m, at a fraction of s from the inner end; zero in what is left at the tip, where the level is too.
     pub(super) fn radius(&self, fraction: f64) -> f64 {
         let wanted = (1.0 - fraction) * (self.sum + self.rest);
         if wanted >= self.sum && self.rest > 0.0 {

@@ -1,9 +1,10 @@
 //! Force control: the displacement that gives a tangential force at a given indentation.
 //!
-//! While nothing slips the force is linear in the displacement. From there it grows as the slip ring eats its way through
-//! the pieces, outermost first: a piece of slope beta that slips towards s gains (1 + s beta) int X dy. So the piece in which
-//! the wanted force is met is found by adding, and the radius within it by the inverse of int X dy: measured from the nearer
-//! end, so that neither a tiny change of force nor the last 1e-15 before the limit mu F_N loses its digits.
+//! While nothing slips the force is linear in the displacement. From there it grows as the slip ring spreads inward
+//! through the pieces, outermost first: a piece of slope beta that slips towards s gains (1 + s beta) int X dy. So the
+//! piece in which the wanted force is met is found by adding, and the radius within it by the inverse of int X dy:
+//! measured from the nearer end, so that neither a tiny change of force nor the last 1e-15 before the limit mu F_N
+//! loses its digits.
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
@@ -18,37 +19,38 @@ struct Corner {
     held: usize,
     /// int w dx that is still to be gained, m^2.
     missing: f64,
-    /// What friction could hold beyond the wanted magnitude, m^2.
+    /// Distance of the wanted magnitude from the friction limit, m^2.
     room: f64,
 }
 
 impl Contact {
     /// The scaled displacement W, m, at which the contact carries the tangential force `target`, N, once it has moved
-    /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the target.
+    /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the
+    /// target.
     pub(super) fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
         let wanted = target / self.force_unit();
-        // The product has digits that decide how little sticks just below the limit.
+        // Just below the limit the low digits of the product decide how much still sticks.
         let room = (DoubleDouble::from(normal_force) * self.friction - DoubleDouble::from(target.abs())).value()
             / self.force_unit();
         let edge = self.profile.point(indentation);
-        let memory = &self.memory;
-        let position = memory.position();
-        if !memory.in_contact() || indentation > memory.edge().level {
-            let from = if memory.in_contact() { *memory.edge() } else { self.profile.point(DoubleDouble::ZERO) };
+        let history = &self.history;
+        let position = history.position();
+        if !history.in_contact() || indentation > history.edge().level {
+            let from = if history.in_contact() { *history.edge() } else { self.profile.point(DoubleDouble::ZERO) };
             let touched = Ring::between(from, edge);
             let stiffness = from.radius + self.profile.moments(&touched).first / touched.depth;
-            let change = (wanted - memory.force()) / stiffness;
+            let change = (wanted - history.force()) / stiffness;
             if change.abs() <= touched.depth {
                 return position + DoubleDouble::from(change);
             }
             let sign = change.signum();
             let missing = (change.abs() - touched.depth) * stiffness;
-            self.slip_to(&Corner { edge, sign, held: memory.pieces().len(), missing, room }, wanted)
+            self.slip_to(&Corner { edge, sign, held: history.pieces().len(), missing, room }, wanted)
         } else {
-            let held = memory.pieces().partition_point(|piece| piece.inner.level < indentation);
+            let held = history.pieces().partition_point(|piece| piece.inner.level < indentation);
             let neutral = held.checked_sub(1).map_or(DoubleDouble::ZERO, |top| {
-                let line = &memory.pieces()[top].line;
-                memory.force_below(top) - line.slope * load(&self.profile, &self.cut(top, held, &edge))
+                let line = &history.pieces()[top].line;
+                history.force_below(top) - line.slope * load(&self.profile, &self.cut(top, held, &edge))
             });
             let change = (DoubleDouble::from(wanted) - neutral).value();
             let corner = Corner { edge, sign: change.signum(), held, missing: change.abs(), room };
@@ -63,17 +65,17 @@ impl Contact {
 
     /// The ring of piece `index` of the first `held`, of which the outermost may end at a new edge.
     fn cut(&self, index: usize, held: usize, edge: &Point) -> Ring {
-        let ring = self.memory.ring(index);
+        let ring = self.history.ring(index);
         if index + 1 == held && edge.level < ring.outer.level { Ring::between(ring.inner, *edge) } else { ring }
     }
 
     fn slip_to(&self, corner: &Corner, wanted: f64) -> DoubleDouble {
-        let memory = &self.memory;
+        let history = &self.history;
         let &Corner { edge, sign, held, mut missing, room } = corner;
-        let reference = memory.position() - memory.shift();
+        let reference = history.position() - history.shift();
         for index in (0..held).rev() {
             let ring = self.cut(index, held, &edge);
-            let line = &memory.pieces()[index].line;
+            let line = &history.pieces()[index].line;
             let closing = 1.0 + sign * line.slope.value();
             let gain = closing * load(&self.profile, &ring);
             if gain < missing && index > 0 {
@@ -83,7 +85,8 @@ impl Contact {
             let level = if missing <= 0.5 * gain {
                 ring.outer.level - DoubleDouble::from(depth_for(&self.profile, &ring, false, missing / closing))
             } else {
-                // Towards the far limit slip reaches the centre at mu F_N; nearer pieces know their own force.
+                // Towards the far limit slip reaches the centre at mu F_N; for pieces further out the force inside them
+                // is summed.
                 let spare =
                     if index == 0 && sign * wanted > 0.0 { room } else { self.spare_below(index, &edge, sign, wanted) };
                 ring.inner.level + DoubleDouble::from(depth_for(&self.profile, &ring, true, spare / closing))
@@ -92,13 +95,13 @@ impl Contact {
             return reference + (edge.level - level) * sign - line.at(level);
         }
         // Nothing was held before: all that has been touched slips.
-        reference + memory.shift() + edge.level * sign
+        reference + history.shift() + edge.level * sign
     }
 
     /// By how much int w dx would pass `wanted` if slip reached the inner end of piece `index`, m^2.
     fn spare_below(&self, index: usize, edge: &Point, sign: f64, wanted: f64) -> f64 {
-        let beyond = Ring::between(self.memory.pieces()[index].inner, *edge);
-        let full = self.memory.force_below(index) * sign + DoubleDouble::from(load(&self.profile, &beyond));
+        let beyond = Ring::between(self.history.pieces()[index].inner, *edge);
+        let full = self.history.force_below(index) * sign + DoubleDouble::from(load(&self.profile, &beyond));
         (full - DoubleDouble::from(sign * wanted)).value()
     }
 }

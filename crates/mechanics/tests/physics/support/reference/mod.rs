@@ -1,6 +1,4 @@
 //! The reference data of `tests/data`: scenes, solved in 60 digits by scripts that share nothing with the crate.
-// Each test binary uses a part of it.
-#![allow(dead_code)]
 
 use std::fmt;
 
@@ -50,7 +48,8 @@ pub struct Asked {
 pub struct Outcome {
     pub asked: Asked,
     pub value: f64,
-    /// Values at radii not more than eight units in the last place away, the kink's own included; otherwise the value twice.
+    /// Values at radii not more than eight units in the last place away, the kink's own included; otherwise the value
+    /// twice.
     pub range: (f64, f64),
     /// To be compared relative to itself.
     pub own: bool,

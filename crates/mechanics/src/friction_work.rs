@@ -1,32 +1,33 @@
 //! Friction work of one straight move: slip distance times friction bound, in closed form ring by ring.
 //!
-//! A point at level y that slips towards `sign` does so at a constant rate from some instant until the end of the move, or
-//! until it leaves the contact, while its bound d - y changes at a constant rate. So its work is its slip times the mean of
-//! the bound at both ends, a quadratic in y; no instant is simulated. Every term is positive: nothing cancels however small
-//! the move. Works here are over 2 G* m^2, in m^3.
+//! A point at level y that slips towards `sign` does so at a constant rate from some instant until the end of the move,
+//! or until it leaves the contact, while its bound d - y changes at a constant rate. So its work is its slip times the
+//! mean of the bound at both ends, a quadratic in y; no instant is simulated. Every term is positive: nothing cancels
+//! however small the move. Works here are over 2 G* m^2, in m^3.
 
 use super::double_double::DoubleDouble;
 use super::profile::{Moments, Point, Profile, Ring};
-use super::slip_history::{Line, MET_AGAIN, Memory, Piece, SAME};
+use super::slip_history::{Line, Piece, ROUND_OFF, SAME_TURNING_POINT, SlipHistory};
 
-/// The slip that a move ends in: towards `sign`, with w = sign (indentation - y).
-pub(super) struct Slipping {
+/// The ring that slips at the end of a move: towards `sign`, with w = sign (indentation - y).
+pub(super) struct SlipRing {
     pub(super) sign: f64,
     /// Turns a stored w - W into w at the end of the move.
     pub(super) shift: DoubleDouble,
     /// Indentation at the end of the move, m.
     pub(super) indentation: DoubleDouble,
-    /// How far the bound changes in the time in which a point slips by twice the unit.
+    /// Change of the bound while a point slips by two units of length.
     pub(super) lag: f64,
 }
 
-impl Slipping {
+impl SlipRing {
     /// How far the stuck value at `level` would exceed the bound; it never falls towards the edge.
     pub(super) fn excess(&self, line: &Line, level: DoubleDouble) -> DoubleDouble {
         (line.at(level) + self.shift).signed(self.sign) + (level - self.indentation)
     }
 
-    /// The level within the piece at which slip begins, from the excess at its inner end; `None` if the whole piece slips.
+    /// The level within the piece at which slip begins, from the excess at its inner end; `None` if the whole piece
+    /// slips.
     pub(super) fn crossing(&self, piece: &Piece, inner_excess: DoubleDouble, outer: &Point) -> Option<DoubleDouble> {
         if inner_excess.value() >= 0.0 {
             return None;
@@ -44,7 +45,7 @@ impl Slipping {
             }
         };
         let core = piece.inner.level.value() <= 0.0;
-        let same = if core { SAME } else { MET_AGAIN };
+        let same = if core { ROUND_OFF } else { SAME_TURNING_POINT };
         if stuck.value() <= same * (self.indentation - piece.inner.level).value() {
             return None;
         }
@@ -66,22 +67,22 @@ impl Slipping {
         work.max(0.0)
     }
 
-    /// Work on a flat core of `radius`, all of it at level nought, where the excess is `slip`.
+    /// Work on a flat core of `radius`, all of it at level zero, where the excess is `slip`.
     pub(super) fn core_work(&self, slip: f64, radius: f64) -> f64 {
         let slip = slip.max(0.0);
         radius * slip * (self.indentation.value() - self.lag * slip)
     }
 }
 
-/// Work on what leaves the contact when the indentation falls to `d1` while the indenter moves to `w1`: each point slips
-/// back to rest by the time it lifts off, to whichever side it was carried.
-pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
-    let d0 = memory.edge().level;
-    let (fall, advance) = (d0 - d1, w1 - memory.position());
+/// Work on the ring that leaves the contact when the indentation falls to `d1` while the indenter moves to `w1`: each
+/// point slips back to w = 0 before it lifts off, whatever the sign of its displacement.
+pub(super) fn work(history: &SlipHistory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+    let d0 = history.edge().level;
+    let (fall, advance) = (d0 - d1, w1 - history.position());
     let lowest = if d1.value() > 0.0 { d1 } else { DoubleDouble::ZERO };
     // What a point at y would carry at its lift-off: w - W, and where the indenter is by then.
     let drift = advance.over(fall);
-    let shift = memory.shift();
+    let shift = history.shift();
     let carried = |line: &Line, level: DoubleDouble| line.at(level) + shift + drift * (d0 - level);
     let (drift, fall) = (drift.value(), fall.value());
     // The bound falls by `fall` while the slip gains `rate`: slip^2 fall/(2 rate) a point.
@@ -91,7 +92,7 @@ pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: Dou
     };
     debug_assert!(fall > 0.0);
     let mut work = 0.0;
-    for (ring, line) in memory.rings() {
+    for (ring, line) in history.rings() {
         if ring.outer.level <= lowest {
             break;
         }
@@ -118,7 +119,7 @@ pub(super) fn work(memory: &Memory, profile: &Profile, d1: DoubleDouble, w1: Dou
         }
     }
     if d1.value() <= 0.0
-        && let Some(core) = memory.pieces().first()
+        && let Some(core) = history.pieces().first()
     {
         let held = carried(&core.line, DoubleDouble::ZERO).value();
         work += core.inner.radius * share(held.signum()) * held * held;

@@ -1,0 +1,151 @@
+//! The moves of a contact: straight ones in one step, curved ones through `curved_move`.
+
+use super::contact::Contact;
+use super::curved_move::{CurvedMove, DEFAULT_TOLERANCE, NormalPath, PathPoint, TangentialPath};
+use super::double_double::DoubleDouble;
+use super::error::Error;
+use super::range;
+use super::state::{Move, Normal, Tangential};
+
+impl Contact {
+    /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
+    ///
+    /// # Errors
+    /// As [`Contact::apply_within`].
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.00375))?;
+    /// // Half-way to gross slip (Cattaneo 1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
+    /// assert!((contact.force() - 2000.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-9);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
+        self.apply_within(step, DEFAULT_TOLERANCE)
+    }
+
+    /// Moves along a line that is straight in the quantities named. A line in displacement and indentation is exact;
+    /// one in a force, while the other quantity changes, is followed to `tolerance`, relative to mu F_N. An error
+    /// leaves the contact as it was.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a target outside [`range`](mod@range); [`Error::ForceExceedsFriction`] for a
+    /// tangential force that friction cannot hold all the way.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let force = Some(Tangential::Force(1000.0));
+    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
+    /// contact.apply_within(&oblique, 1e-6)?;
+    /// assert!((contact.force() - 1000.0).abs() < 1e-9 && contact.path_error() <= 1e-6);
+    /// // Friction holds no more than mu F_N = 4 kN.
+    /// let much = Move { tangential: Some(Tangential::Force(4001.0)), ..Move::default() };
+    /// assert!(matches!(contact.apply(&much), Err(Error::ForceExceedsFriction { .. })));
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn apply_within(&mut self, step: &Move, tolerance: f64) -> Result<(), Error> {
+        self.apply_while(step, tolerance, &|| true)
+    }
+
+    /// As [`Contact::apply_within`], while `keep_going` returns true: a curved move can take seconds.
+    ///
+    /// # Errors
+    /// As [`Contact::apply_within`], and [`Error::Interrupted`].
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let force = Some(Tangential::Force(1000.0));
+    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
+    /// assert_eq!(contact.apply_while(&oblique, 1e-6, &|| false), Err(Error::Interrupted));
+    /// assert_eq!(contact.force(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn apply_while(&mut self, step: &Move, tolerance: f64, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+        let normal = self.normal_path(step)?;
+        let tangential = self.tangential_path(step)?;
+        // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
+        // state.
+        let straight = match (step.tangential, step.normal) {
+            (None, _) => true,
+            (Some(Tangential::Displacement(_)), normal) => !matches!(normal, Some(Normal::NormalForce(_))),
+            (Some(Tangential::Force(_)), _) => false,
+        };
+        if let (true, TangentialPath::Displacement { to: displacement, .. }) = (straight, tangential) {
+            let (indentation, normal_force) = match normal {
+                NormalPath::Indentation { from, to } if from == to => (to, self.normal_force),
+                NormalPath::Indentation { to, .. } => (to, self.normal_force_at(to)),
+                NormalPath::Force { to, .. } => (self.indentation_for(to), to),
+            };
+            self.advance(&PathPoint { indentation, normal_force, displacement });
+            return Ok(());
+        }
+        // A path of many chords can be interrupted half-way; the cost of a copy is negligible against it.
+        let before = self.clone();
+        let followed = self.follow(&CurvedMove { tangential, normal }, tolerance, keep_going);
+        if followed.is_err() {
+            *self = before;
+        }
+        followed
+    }
+
+    fn normal_path(&self, step: &Move) -> Result<NormalPath, Error> {
+        let here = self.history.edge().level;
+        Ok(match step.normal {
+            None => NormalPath::Indentation { from: here, to: here },
+            Some(Normal::Indentation(depth)) => {
+                let depth = DoubleDouble::from(depth);
+                let to = if step.relative { here + depth } else { depth };
+                self.check_indentation(to.value())?;
+                NormalPath::Indentation { from: here, to }
+            }
+            Some(Normal::NormalForce(force)) => {
+                let from = self.normal_force();
+                let to = range::check_normal_force(if step.relative { from + force } else { force })?;
+                self.check_indentation(self.indentation_for(to).value())?;
+                NormalPath::Force { from, to }
+            }
+        })
+    }
+
+    /// Whether the profile has a contact of this indentation, m.
+    fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
+        range::INDENTATION.check(indentation)?;
+        if indentation > 0.0 {
+            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.radius(indentation))?)?;
+        }
+        Ok(())
+    }
+
+    fn tangential_path(&self, step: &Move) -> Result<TangentialPath, Error> {
+        let here = self.displacement;
+        Ok(match step.tangential {
+            None => TangentialPath::Displacement { from: here, to: here },
+            Some(Tangential::Displacement(target)) => {
+                let target = DoubleDouble::from(target);
+                let to = if step.relative { here + target } else { target };
+                range::DISPLACEMENT.check(to.value())?;
+                TangentialPath::Displacement { from: here, to }
+            }
+            Some(Tangential::Force(target)) => {
+                let from = self.force();
+                let to = range::FORCE.check(if step.relative { from + target } else { target })?;
+                TangentialPath::Force { from, to }
+            }
+        })
+    }
+
+    /// The straight move in displacement and indentation that every other move is made of.
+    pub(super) fn advance(&mut self, point: &PathPoint) {
+        self.displacement = point.displacement;
+        self.normal_force = point.normal_force;
+        let result = self.history.advance(&self.profile, point.indentation, self.scaled(point.displacement));
+        let scale = self.scale();
+        let work = 2.0 * self.elasticity.g_star() * scale * scale * result.work;
+        self.dissipated = self.dissipated + DoubleDouble::from(work);
+        if self.history.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
+            // Gross slip wipes out the history, and its errors with it.
+            self.path_error = 0.0;
+            self.path_kernel = 0.0;
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! A contact computes nothing that its caller does not ask for: the calls of the profile's costly functions are
+//! counted.
+
+use super::profile::RoundedPunch;
+use super::profile::call_count::{Calls, during};
+use super::protocol::{equal_peaks, falling_amplitude};
+use super::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+
+/// Reversals of the path.
+const REVERSALS: usize = 9;
+/// Radii at which a field is asked for, from the centre to the edge.
+const RADII: usize = 7;
+
+/// A parabola, whose kernel is known to fall outwards, and a shape of which nothing is known in advance.
+fn virgin(parabola: bool) -> Contact {
+    let sphere = || Profile::Sphere(Sphere::new(0.01).unwrap());
+    let rounded = || Profile::RoundedPunch(RoundedPunch::new(1e-5, 0.01).unwrap());
+    Contact::new(Setup {
+        profile: if parabola { sphere() } else { rounded() },
+        elasticity: Elasticity::effective(1.2e11, 9.6e10).unwrap(),
+        friction: 0.3,
+        preload: Preload::Indentation(1e-6),
+    })
+    .unwrap()
+}
+
+fn follow(contact: &mut Contact, displacements: impl IntoIterator<Item = f64>) {
+    for target in displacements {
+        contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() }).unwrap();
+    }
+}
+
+fn oscillated(parabola: bool) -> Contact {
+    let mut contact = virgin(parabola);
+    let path = falling_amplitude(REVERSALS, contact.gross_slip_displacement());
+    follow(&mut contact, path);
+    contact
+}
+
+fn radii(contact: &Contact) -> Vec<f64> {
+    (0..RADII).map(|index| contact.contact_radius() * index as f64 / (RADII - 1) as f64).collect()
+}
+
+#[test]
+fn moves_call_for_no_stress() {
+    let path = |reversals: usize| {
+        let (calls, ()) = during(|| {
+            let mut contact = virgin(true);
+            let path = falling_amplitude(reversals, contact.gross_slip_displacement());
+            for target in path {
+                follow(&mut contact, [target]);
+                let _ = contact.state();
+            }
+            let _ = contact.accuracy();
+        });
+        calls
+    };
+    // The summary of the contact needs the largest pressure: that at the centre and at the edge.
+    let calls = path(REVERSALS);
+    assert!(calls.kernel <= 2, "{calls:?}");
+    assert_eq!((calls.kernel_slope, calls.lift, calls.states), (0, 0, REVERSALS + 1), "{calls:?}");
+    let more = path(10 * REVERSALS);
+    assert_eq!(more.kernel, calls.kernel, "ten times the moves");
+    // A straight move at constant load cuts one piece, closes another and sums two.
+    assert!(more.moments <= 16 * 10 * (REVERSALS + 1), "{more:?}");
+}
+
+#[test]
+fn each_field_costs_its_own_calls_and_no_others() {
+    for parabola in [true, false] {
+        let contact = oscillated(parabola);
+        let (pieces, radii) = (contact.memory_depth(), radii(&contact));
+        assert!(pieces > REVERSALS / 2);
+        let all = RADII * pieces;
+        let pressure = || drop(contact.pressures(&radii));
+        let shear = || drop(contact.shears(&radii));
+        let slip = || {
+            radii.iter().for_each(|&radius| {
+                let _ = contact.slip(radius);
+            })
+        };
+        let displacement = || {
+            radii.iter().for_each(|&radius| {
+                let _ = contact.surface_displacement(radius);
+            })
+        };
+        // One call a radius for the pressure, one a radius and piece for each of the others, at the most.
+        let fields: [(&str, &dyn Fn(), usize, usize); 4] = [
+            ("pressure", &pressure, RADII, 0),
+            ("shear", &shear, all, 0),
+            ("slip", &slip, 0, all),
+            ("displacement", &displacement, 0, all),
+        ];
+        for (field, compute, kernel, lift) in fields {
+            let (calls, ()) = during(compute);
+            assert!(calls.kernel <= kernel && calls.lift <= lift, "{field}: {calls:?} with {pieces} pieces");
+            assert!(calls.kernel + calls.lift > 0, "{field}: {calls:?}");
+            assert_eq!((calls.kernel_slope, calls.moments, calls.states), (0, 0, 0), "{field}");
+        }
+    }
+}
+
+#[test]
+fn extrema_are_searched_for_when_asked_for() {
+    for parabola in [true, false] {
+        let contact = oscillated(parabola);
+        let (calls, _) = during(|| contact.residual());
+        assert!(calls.kernel > 0, "{calls:?}");
+        // On a parabola the kinks tell where the extrema are.
+        assert_eq!(calls.kernel_slope > 0, !parabola, "{calls:?}");
+        assert_eq!((calls.lift, calls.moments, calls.states), (0, 0, 0), "{calls:?}");
+    }
+}
+
+#[test]
+fn the_law_of_equal_peaks_needs_the_slopes_of_the_profile_alone() {
+    let contact = virgin(true);
+    let (calls, path) = during(|| equal_peaks(&contact, REVERSALS, None).unwrap());
+    assert_eq!(calls, Calls::default());
+    assert_eq!(path.displacements.len(), REVERSALS + 1);
+}

@@ -1,0 +1,196 @@
+//! A simulation asks the solver for what its request names, and for nothing else: the calls are counted.
+//!
+//! What each call costs is counted beside the mechanics.
+
+use std::cell::Cell;
+
+use serde_json::{Value, json};
+use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, State};
+use stickslip_wire::{SimulateReply, SimulateRequest, SolverKind, read};
+
+use super::run::{Timer, contact, run};
+use super::solver::Solver;
+use crate::admission::Stop;
+
+/// Reversals of the path.
+const REVERSALS: usize = 9;
+/// Radii of a stress request, from the centre to the edge.
+const RADII: usize = 7;
+
+/// What the solver was asked for; fields are counted by radius.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Calls {
+    moves: usize,
+    states: usize,
+    pressures: usize,
+    shears: usize,
+    slips: usize,
+    displacements: usize,
+    residuals: usize,
+    /// How often the contact was asked for to work out the law of equal peaks.
+    laws: usize,
+}
+
+struct Counting<'a> {
+    contact: Contact,
+    calls: &'a Cell<Calls>,
+}
+
+impl Counting<'_> {
+    fn count(&self, which: impl Fn(&mut Calls) -> &mut usize, number: usize) {
+        let mut calls = self.calls.get();
+        *which(&mut calls) += number;
+        self.calls.set(calls);
+    }
+}
+
+impl Solver for Counting<'_> {
+    const KIND: SolverKind = SolverKind::Exact;
+
+    fn summary(&self) -> ContactSummary {
+        Solver::summary(&self.contact)
+    }
+
+    fn gross_slip_displacement(&self) -> f64 {
+        self.contact.gross_slip_displacement()
+    }
+
+    fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
+        self.count(|calls| &mut calls.moves, 1);
+        self.contact.apply_while(step, tolerance, go_on)
+    }
+
+    fn state(&self) -> State {
+        self.count(|calls| &mut calls.states, 1);
+        self.contact.state()
+    }
+
+    fn depth(&self) -> usize {
+        self.contact.memory_depth()
+    }
+
+    fn pressures(&self, radii: &[f64]) -> Vec<f64> {
+        self.count(|calls| &mut calls.pressures, radii.len());
+        self.contact.pressures(radii)
+    }
+
+    fn shears(&self, radii: &[f64]) -> Vec<f64> {
+        self.count(|calls| &mut calls.shears, radii.len());
+        self.contact.shears(radii)
+    }
+
+    fn slip(&self, radius: f64) -> Option<f64> {
+        self.count(|calls| &mut calls.slips, 1);
+        self.contact.slip(radius)
+    }
+
+    fn surface_displacement(&self, radius: f64) -> f64 {
+        self.count(|calls| &mut calls.displacements, 1);
+        self.contact.surface_displacement(radius)
+    }
+
+    fn exact(&self) -> &Contact {
+        self.count(|calls| &mut calls.laws, 1);
+        &self.contact
+    }
+
+    fn contact_radius(&self) -> f64 {
+        self.contact.contact_radius()
+    }
+
+    fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
+        self.count(|calls| &mut calls.residuals, 1);
+        self.contact.residual_while(go_on)
+    }
+
+    fn accuracy(&self) -> ErrorEstimate {
+        self.contact.accuracy()
+    }
+
+    fn path_error(&self) -> f64 {
+        self.contact.path_error()
+    }
+}
+
+/// Simulates with these members added to the request, on a parabola or, if not `parabola`, on a rounded punch.
+fn counted(parabola: bool, asked: &Value) -> (Calls, SimulateReply) {
+    let sphere = json!({"type": "sphere", "radius": 0.01});
+    let rounded = json!({"type": "rounded_punch", "flat_radius": 1e-5, "edge_radius": 0.01});
+    let mut body = json!({
+        "contact": {
+            "profile": if parabola { sphere } else { rounded },
+            "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
+            "friction": 0.3,
+            "preload": {"indentation": 1e-6}
+        },
+        "path": {"falling_amplitude": {"reversals": REVERSALS}}
+    });
+    for (name, value) in asked.as_object().unwrap() {
+        body[name] = value.clone();
+    }
+    let simulation = read::<SimulateRequest>(body.to_string().as_bytes()).unwrap();
+    let calls = Cell::default();
+    let solver = Counting { contact: contact(simulation.setup.clone(), "/contact").unwrap(), calls: &calls };
+    let reply = run(solver, &simulation, Timer::start(), "counted", &Stop::default()).unwrap();
+    (calls.get(), reply)
+}
+
+#[test]
+fn moves_call_for_no_stress() {
+    for reversals in [REVERSALS, 10 * REVERSALS] {
+        let (calls, reply) = counted(true, &json!({"path": {"falling_amplitude": {"reversals": reversals}}}));
+        assert_eq!(reply.steps.len(), reversals + 1);
+        assert_eq!(calls, Calls { moves: reversals + 1, states: reversals + 1, ..Calls::default() });
+    }
+}
+
+#[test]
+fn the_last_state_is_one_state() {
+    for (steps, states) in [("all", REVERSALS + 1), ("last", 1)] {
+        let (calls, reply) = counted(true, &json!({"steps": steps}));
+        assert_eq!((calls.states, reply.steps.len()), (states, states), "{steps}");
+    }
+}
+
+#[test]
+fn each_field_costs_its_own_calls_and_no_others() {
+    for parabola in [true, false] {
+        let (base, _) = counted(parabola, &json!({"steps": "last"}));
+        // The radii follow from one more state.
+        let base = Calls { states: base.states + 1, ..base };
+        for (field, expected) in [
+            ("pressure", Calls { pressures: RADII, ..base }),
+            ("shear", Calls { shears: RADII, ..base }),
+            ("slip", Calls { slips: RADII, ..base }),
+            ("displacement", Calls { displacements: RADII, ..base }),
+        ] {
+            let asked = json!({"steps": "last", "stress": {"points": RADII, "fields": [field]}});
+            let (calls, reply) = counted(parabola, &asked);
+            assert_eq!(calls, expected, "{field}");
+            let stress = serde_json::to_value(reply.stress).unwrap();
+            let given: Vec<&String> = stress.as_object().unwrap().keys().filter(|name| *name != "radius").collect();
+            assert_eq!(given, [field]);
+        }
+    }
+}
+
+#[test]
+fn extrema_are_searched_for_when_asked_for() {
+    for parabola in [true, false] {
+        let (base, _) = counted(parabola, &json!({"steps": "last"}));
+        let asked = json!({"steps": "last", "stress": {"points": RADII, "fields": ["shear", "slip"]}});
+        assert_eq!(counted(parabola, &asked).0.residuals, 0);
+        let (calls, reply) = counted(parabola, &json!({"steps": "last", "residual": true}));
+        assert!(reply.residual.is_some());
+        assert_eq!(calls, Calls { residuals: 1, ..base });
+    }
+}
+
+#[test]
+fn the_law_of_equal_peaks_is_worked_out_once() {
+    let (calls, reply) = counted(true, &json!({"path": {"equal_peaks": {"reversals": REVERSALS}}}));
+    assert_eq!(calls.laws, 1);
+    let listed = json!({"path": {"displacement": reply.protocol.unwrap().displacement}});
+    let (again, _) = counted(true, &listed);
+    assert_eq!(calls, Calls { laws: 1, ..again }, "the same moves and nothing else");
+}
