@@ -1,6 +1,7 @@
 //! The body of `POST /accuracy` and its reply.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::Setup;
@@ -16,6 +17,8 @@ use super::simulate::{Solver, Springs};
 use super::stress::{Field, Points, Sampling, StressRequest};
 
 /// A contact, the path it is to follow, and the solvers that are to follow it; nothing of it is kept.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -34,16 +37,10 @@ pub struct AccuracyRequest {
     pub path: Path,
     /// Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the centre to the
     /// edge. `fields`, if named, must hold `shear`; nothing else is compared.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub solvers: Option<Vec<Solver>>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of it.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
 

@@ -2,12 +2,14 @@
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::event::EndReason;
 
 /// A piece of work that the server does on its own.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JobReply {
     /// Its identifier.
@@ -19,14 +21,10 @@ pub struct JobReply {
     /// When it was asked for (ISO 8601, UTC).
     pub created_at: Timestamp,
     /// When it ended (ISO 8601, UTC).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub finished_at: Option<Timestamp>,
     /// When it goes, with its result (ISO 8601, UTC).
     pub expires_at: Timestamp,
     /// Why it failed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub detail: Option<String>,
     /// The path of its result, which is there once the state is `done`.
     #[schema(example = "/jobs/0199…/result")]

@@ -1,6 +1,7 @@
 //! Moves, and paths of moves.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, Contact, Normal, Tangential, protocol, range, range::Range};
@@ -13,25 +14,19 @@ use super::reply::Protocol;
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
 /// normal one the indentation stays.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct Move {
     /// Tangential displacement of the indenter, m.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub displacement: Option<f64>,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub force: Option<f64>,
     /// Indentation, m; below nought the bodies are apart and nothing is remembered.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub indentation: Option<f64>,
     /// Normal force, N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub normal_force: Option<f64>,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -60,6 +55,8 @@ one_key!(Path {
 });
 
 /// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement nought.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
@@ -69,12 +66,12 @@ pub struct EqualPeaks {
     /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the profile
     /// jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the way from that
     /// radius to the edge, else nought.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub cutoff_radius: Option<f64>,
 }
 
 /// A tangential oscillation that dies away; it ends at displacement nought.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
@@ -82,8 +79,6 @@ pub struct FallingAmplitude {
     /// Number of reversals N_R; the path has one move more.
     pub reversals: usize,
     /// Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub amplitude: Option<f64>,
 }
 

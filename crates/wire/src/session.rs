@@ -2,6 +2,7 @@
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -19,6 +20,8 @@ use super::simulate::Steps;
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// A contact definition, and perhaps a label to know it by.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -30,8 +33,6 @@ use super::stress::{Sampling, Stress, StressRequest};
 }))]
 pub struct CreateRequest {
     /// A label of your own.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub label: Option<String>,
     /// The shape of the indenter.
     pub profile: Profile,
@@ -44,40 +45,32 @@ pub struct CreateRequest {
 }
 
 /// A move, and perhaps a request for the stresses after it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct MoveRequest {
     /// Tangential displacement of the indenter, m.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub displacement: Option<f64>,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub force: Option<f64>,
     /// Indentation, m; below nought the bodies are apart and nothing is remembered.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub indentation: Option<f64>,
     /// Normal force, N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub normal_force: Option<f64>,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
     /// Ask for stresses after the move.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
 
 /// A path for a session, applied as a whole or not at all.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))]
@@ -85,26 +78,22 @@ pub struct PathRequest {
     /// The path.
     pub path: Path,
     /// Ask for stresses at the end of the path.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// Which states to return.
     #[serde(default)]
     pub steps: Steps,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
 
 /// What may be said about a fork; an empty body says nothing.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"label": "what if"}))]
 pub struct ForkRequest {
     /// A label for the new session; left out, that of the original.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub label: Option<String>,
 }
 
@@ -190,6 +179,7 @@ pub struct MoveReply {
 }
 
 /// What came of a path.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PathReply {
     /// The session.
@@ -199,12 +189,8 @@ pub struct PathReply {
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
     /// The stresses at the end, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub stress: Option<Stress>,
     /// The path, if it follows the law of equal peaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
@@ -215,29 +201,20 @@ pub struct PathReply {
 }
 
 /// The stresses of a session, and perhaps their extrema.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StressReply {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Normal pressure, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub pressure: Option<Vec<Option<f64>>>,
     /// Shear stress, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub shear: Option<Vec<Option<f64>>>,
     /// Slip, m; `null` outside the contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub slip: Option<Vec<Option<f64>>>,
     /// Tangential displacement of the surface, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub displacement: Option<Vec<Option<f64>>>,
     /// The extrema of the shear stress, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub residual: Option<Residual>,
 }
 

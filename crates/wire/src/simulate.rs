@@ -1,6 +1,7 @@
 //! The body of `POST /simulate` and its reply.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{Setup, range};
@@ -15,6 +16,8 @@ use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// A contact, and the path it is to follow; nothing of it is kept. Only what is asked for is computed.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -34,8 +37,6 @@ pub struct SimulateRequest {
     /// The path.
     pub path: Path,
     /// Ask for stresses at the end of the path.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// Ask for the extrema of the shear stress at the end of the path.
     #[serde(default)]
@@ -44,12 +45,8 @@ pub struct SimulateRequest {
     #[serde(default)]
     pub steps: Steps,
     /// Which solver to use; left out, the cheapest that serves the request.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub solver: Option<Solver>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
 
@@ -87,6 +84,7 @@ pub struct Springs {
 }
 
 /// What came of a simulation.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SimulateReply {
     /// The figures of the contact at its preload.
@@ -94,16 +92,10 @@ pub struct SimulateReply {
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
     /// The stresses at the end, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub stress: Option<Stress>,
     /// The extrema of the shear stress at the end, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub residual: Option<Residual>,
     /// The path, if it follows the law of equal peaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,

@@ -1,6 +1,7 @@
 //! Stress requests and their answers.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range;
@@ -10,21 +11,17 @@ use super::limits;
 use super::one_key::given;
 
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"points": 200}))]
 pub struct StressRequest {
     /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub points: Option<usize>,
     /// Radii, m; outside the contact the stresses are nought.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub radii: Option<Vec<f64>>,
     /// Which fields are computed; left out, `pressure` and `shear`.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub fields: Option<Vec<Field>>,
 }
 
@@ -59,25 +56,18 @@ impl Field {
 }
 
 /// Stresses along the radius; an array that was not asked for is left out.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Stress {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Normal pressure, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub pressure: Option<Vec<Option<f64>>>,
     /// Shear stress, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub shear: Option<Vec<Option<f64>>>,
     /// Slip, m; `null` outside the contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub slip: Option<Vec<Option<f64>>>,
     /// Tangential displacement of the surface, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub displacement: Option<Vec<Option<f64>>>,
 }
 

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Number, Value};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use super::any::{Any, Pointer};
@@ -49,6 +50,8 @@ pub struct SweepRequest {
 }
 
 /// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and `values`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
@@ -56,16 +59,10 @@ pub struct Axis {
     #[schema(example = "/contact/friction")]
     pub pointer: String,
     /// Evenly spaced values.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub linear: Option<Span>,
     /// Values with the same ratio from one to the next; both ends positive, or both negative.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub logarithmic: Option<Span>,
     /// These values.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub values: Option<Vec<f64>>,
 }
 

@@ -3,6 +3,7 @@
 mod reply;
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -23,6 +24,8 @@ pub use reply::{
 
 /// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or follows
 /// from a target.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -37,47 +40,35 @@ pub use reply::{
 }))]
 pub struct ProtocolRequest {
     /// The contact; may be left out where `start` names one that lives.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub contact: Option<ContactDefinition>,
     /// Number of reversals N_R; this or `target`.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub reversals: Option<usize>,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
     /// smallest number of reversals that reaches it is found.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub target: Option<f64>,
     /// The law of the amplitudes.
     #[serde(default)]
     pub kind: ProtocolKind,
     /// What the reversals begin from; left out, gross slip at its full amplitude.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub start: Option<ProtocolStart>,
     /// Where the path ends.
     #[serde(default)]
     pub end: ProtocolEnd,
     /// Ask what remains if the protocol is not followed exactly.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub robustness: Option<Robustness>,
 }
 
 /// How a contact that lives is to be relaxed; an empty body but for `reversals` or `target` is enough.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
 pub struct RelaxRequest {
     /// Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub reversals: Option<usize>,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
     /// smallest number of reversals that reaches it is found.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub target: Option<f64>,
     /// The law of the amplitudes.
     #[serde(default)]
@@ -89,8 +80,6 @@ pub struct RelaxRequest {
     #[serde(default)]
     pub dry_run: bool,
     /// Ask for the states along the path.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub steps: Option<Steps>,
 }
 

@@ -1,6 +1,7 @@
 //! What `POST /protocols` and `POST /contacts/{id}/relax` reply.
 
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
@@ -138,19 +139,14 @@ pub struct RobustnessReply {
 }
 
 /// The figures of the other laws.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Comparison {
     /// The linear fall.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub linear: Option<Outcome>,
     /// Equal peaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub equal_peaks: Option<Outcome>,
     /// Minimax.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub minimax: Option<Outcome>,
 }
 
