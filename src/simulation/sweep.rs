@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use stickslip_mechanics::Setup;
 use stickslip_wire::any::Pointer;
-use stickslip_wire::check::{At, Fault, Faults};
+use stickslip_wire::check::{Fault, Faults, JsonPath};
 use stickslip_wire::pluck::{Found, pluck};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::Draft;
@@ -161,7 +161,7 @@ impl Sweep {
         for fault in found {
             let place = self.draft.place_of(&fault.pointer);
             if (taken == 0 || !place.starts_with("/base")) && !seen.contains(&place) {
-                faults.add(At::Pointer(&place), fault.detail);
+                faults.add(JsonPath::Pointer(&place), fault.detail);
                 seen.push(place);
             }
         }
@@ -174,7 +174,7 @@ impl Sweep {
     }
 
     fn check_outputs(&self, found: &[Found]) -> Result<(), Rejection> {
-        let (mut faults, at) = (Faults::default(), At::Root.member("outputs"));
+        let (mut faults, at) = (Faults::default(), JsonPath::Root.member("outputs"));
         for (index, found) in found.iter().enumerate() {
             match found {
                 Found::Number(_) => {}

@@ -7,6 +7,8 @@
 //! Choices are objects with one key, or carry a `type`; there is no untagged union, so that an error can always say
 //! which member is meant. Numbers that are not finite leave as `null`.
 
+#![deny(clippy::arithmetic_side_effects)]
+
 pub mod accuracy;
 pub mod any;
 pub mod check;
@@ -25,6 +27,7 @@ pub mod protocol;
 pub mod reply;
 pub mod session;
 pub mod simulate;
+#[allow(clippy::arithmetic_side_effects, reason = "the lengths of the columns of a table have been checked")]
 mod slope;
 pub mod stress;
 mod strict;
@@ -32,7 +35,7 @@ pub mod sweep;
 pub mod trace;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
-pub use check::{At, Fault, Faults};
+pub use check::{Fault, Faults, JsonPath};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};

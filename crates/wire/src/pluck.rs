@@ -200,7 +200,7 @@ impl SerializeSeq for Inside<'_> {
         if self.element == Some(self.passed) {
             self.found = value.serialize(Pluck(self.rest))?;
         }
-        self.passed += 1;
+        self.passed = self.passed.saturating_add(1);
         Ok(())
     }
 

@@ -12,7 +12,7 @@ use stickslip_mechanics::profile::{
 };
 use stickslip_mechanics::{Error, range, range::Range};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::limits;
 use super::one_key::given;
 
@@ -136,7 +136,7 @@ pub struct SumProfile {
 
 impl Profile {
     /// The checked profile; its faults are noted at `at`.
-    pub fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+    pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
         let mut number = |name: &str, value: f64, range: &Range| faults.number(at.member(name), value, range);
         let shape = match self {
             Profile::Sphere(SphereProfile { radius }) => {
@@ -190,7 +190,7 @@ impl Profile {
 /// How a table is made of radii and heights: on its own, or as part of a sum.
 type Through = fn(&[f64], &[f64]) -> Result<Tabulated, Error>;
 
-fn check_table(r: &[f64], z: &[f64], through: Through, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+fn check_table(r: &[f64], z: &[f64], through: Through, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     for (name, numbers, range) in [("r", r, &range::TABLE_RADIUS), ("z", z, &range::TABLE_HEIGHT)] {
         let place = at.member(name);
         if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
@@ -203,7 +203,7 @@ fn check_table(r: &[f64], z: &[f64], through: Through, at: At<'_>, faults: &mut 
     noted(through(r, z).map(Shape::Tabulated), at, faults)
 }
 
-fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+fn check_sum(parts: &[Profile], at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     let place = at.member("parts");
     if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
         return None;
@@ -218,7 +218,7 @@ fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape
 }
 
 /// The shape, or a note of what is wrong with numbers that are each in their range.
-fn noted(shape: Result<Shape, Error>, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+fn noted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     match shape {
         Ok(shape) => return Some(shape),
         // It follows from a fault that is known already.

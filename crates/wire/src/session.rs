@@ -8,8 +8,9 @@ use uuid::Uuid;
 
 use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::definition::{ContactDefinition, Material, Preload};
+use super::limits::{Characters, Tolerance, limits};
 use super::one_key::given;
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
@@ -18,6 +19,9 @@ use super::protocol::Relaxation;
 use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
 use super::simulate::Steps;
 use super::stress::{Sampling, Stress, StressRequest};
+
+/// The text by which a client knows a contact.
+const LABEL: Characters = Characters(200);
 
 /// A contact definition, and perhaps a label to know it by.
 #[skip_serializing_none]
@@ -43,6 +47,7 @@ pub struct CreateRequest {
     /// The normal load that the contact starts with.
     pub preload: Preload,
 }
+limits!(CreateRequest { label: LABEL } and ContactDefinition);
 
 /// A move, and perhaps a request for the stresses after it.
 #[skip_serializing_none]
@@ -67,6 +72,7 @@ pub struct MoveRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64>,
 }
+limits!(MoveRequest { tolerance: Tolerance } and Move);
 
 /// A path for a session, applied as a whole or not at all.
 #[skip_serializing_none]
@@ -85,6 +91,7 @@ pub struct PathRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64>,
 }
+limits!(PathRequest { tolerance: Tolerance });
 
 /// What may be said about a fork; an empty body says nothing.
 #[skip_serializing_none]
@@ -96,6 +103,7 @@ pub struct ForkRequest {
     /// A label for the new session; left out, that of the original.
     pub label: Option<String>,
 }
+limits!(ForkRequest { label: LABEL });
 
 /// A session that has just been made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -280,10 +288,10 @@ impl Document for CreateRequest {
 
     fn check(self) -> Result<Creation, Rejection> {
         let mut faults = Faults::default();
-        faults.label(At::Root.member("label"), self.label.as_deref());
+        self.check_members(JsonPath::Root, &mut faults);
         let CreateRequest { label, profile, material, friction, preload } = self;
         let definition = ContactDefinition { profile, material, friction, preload };
-        let setup = definition.check(At::Root, &mut faults);
+        let setup = definition.check(JsonPath::Root, &mut faults);
         faults.done(setup.map(|setup| Creation { label, definition, setup }))
     }
 }
@@ -308,9 +316,9 @@ impl Document for MoveRequest {
     fn check(self) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
         let step = self.step();
-        step.check(At::Root, &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        step.check(JsonPath::Root, &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
         faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None }))
     }
 }
@@ -327,9 +335,9 @@ impl Document for PathRequest {
 
     fn check(self) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
-        let plan = self.path.check(At::Root.member("path"), &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
         faults.done(plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
     }
 }
@@ -339,7 +347,7 @@ impl Document for ForkRequest {
 
     fn check(self) -> Result<Option<String>, Rejection> {
         let mut faults = Faults::default();
-        faults.label(At::Root.member("label"), self.label.as_deref());
+        self.check_members(JsonPath::Root, &mut faults);
         faults.done(Some(self.label))
     }
 }

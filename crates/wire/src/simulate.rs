@@ -6,9 +6,9 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::{Setup, range};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
-use super::limits;
+use super::limits::{SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole, limits};
 use super::one_key::{given, one_key};
 use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
@@ -49,6 +49,7 @@ pub struct SimulateRequest {
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
     pub tolerance: Option<f64>,
 }
+limits!(SimulateRequest { tolerance: Tolerance });
 
 /// Which states of a path to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -82,6 +83,7 @@ pub struct Springs {
     /// Number of springs across the diameter of the contact.
     pub count: usize,
 }
+limits!(Springs { count: Whole(range::SPRING_COUNT) });
 
 /// What came of a simulation.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
@@ -129,15 +131,16 @@ impl Document for SimulateRequest {
 
     fn check(self) -> Result<Simulation, Rejection> {
         let mut faults = Faults::default();
-        let setup = self.contact.check(At::Root.member("contact"), &mut faults);
-        let plan = self.path.check(At::Root.member("path"), &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
         if let Some(solver) = &self.solver {
-            let search = if self.residual { limits::SPRING_SEARCH } else { 0 };
+            let search = if self.residual { SPRING_SEARCH } else { 0 };
             let moves = plan.as_ref().map_or(0, Plan::length);
-            let passes = moves + stress.as_ref().map_or(0, Sampling::length) + search;
-            solver.check(At::Root.member("solver"), passes, &mut faults);
+            let radii = stress.as_ref().map_or(0, Sampling::length);
+            let passes = moves.saturating_add(radii).saturating_add(search);
+            solver.check(JsonPath::Root.member("solver"), passes, &mut faults);
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
         let simulation =
@@ -148,14 +151,21 @@ impl Document for SimulateRequest {
 
 impl Solver {
     /// Notes what is wrong with the solver at `at`, if each of its springs is looked at so many times.
-    pub(super) fn check(&self, at: At<'_>, passes: usize, faults: &mut Faults) {
-        let Solver::Springs(Springs { count }) = *self else { return };
-        let springs = at.member("springs");
-        let at = springs.member("count");
-        faults.number(at, count as f64, &range::SPRING_COUNT);
-        let most = limits::SPRING_STEPS / passes.max(1);
+    pub(super) fn check(&self, at: JsonPath<'_>, passes: usize, faults: &mut Faults) {
+        let Solver::Springs(springs) = self else { return };
+        let at = at.member("springs");
+        springs.check_members(at, faults);
+        let (count, most) = (springs.count, most_springs(passes));
         if count > most {
-            faults.add(at, format_args!("{count} springs over {passes} moves and radii: allowed are {most}"));
+            faults.add(
+                at.member("count"),
+                format_args!("{count} springs over {passes} moves and radii: allowed are {most}"),
+            );
         }
     }
+}
+
+/// How many springs may be evaluated so many times each.
+pub(super) fn most_springs(passes: usize) -> usize {
+    SPRING_STEPS.checked_div(passes).unwrap_or(SPRING_STEPS)
 }

@@ -6,8 +6,8 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::range;
 
-use super::check::{At, Faults};
-use super::limits;
+use super::check::{Faults, JsonPath};
+use super::limits::{Numbers, STRESS_POINTS, limits};
 use super::one_key::given;
 
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
@@ -19,11 +19,12 @@ use super::one_key::given;
 pub struct StressRequest {
     /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
     pub points: Option<usize>,
-    /// Radii, m; outside the contact the stresses are nought.
+    /// Radii, m; outside the contact the stresses are zero.
     pub radii: Option<Vec<f64>>,
     /// Which fields are computed; left out, `pressure` and `shear`.
     pub fields: Option<Vec<Field>>,
 }
+limits!(StressRequest { points: STRESS_POINTS, radii: Numbers(1..=10_000, range::CONTACT_RADIUS) });
 
 /// A quantity along the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -112,11 +113,11 @@ impl Fields {
 
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
-    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+    pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
         faults.part(|faults| self.read(at, faults)).flatten()
     }
 
-    fn read(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+    fn read(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
         let fields = match self.fields.as_deref() {
             None => Fields { pressure: true, shear: true, slip: false, displacement: false },
             Some(named) => {
@@ -132,19 +133,12 @@ impl StressRequest {
                 }
             }
         };
+        if self.points.is_some() != self.radii.is_some() {
+            self.check_members(at, faults);
+        }
         let points = match (self.points, self.radii) {
-            (Some(count), None) => {
-                faults.count(at.member("points"), count, &limits::STRESS_POINTS);
-                Points::Uniform(count)
-            }
-            (None, Some(radii)) => {
-                let at = at.member("radii");
-                if faults.length(at, radii.len(), &limits::STRESS_RADII) {
-                    let each = radii.iter().enumerate();
-                    each.for_each(|(index, radius)| faults.number(at.index(index), *radius, &range::CONTACT_RADIUS));
-                }
-                Points::Radii(radii)
-            }
+            (Some(count), None) => Points::Uniform(count),
+            (None, Some(radii)) => Points::Radii(radii),
             (None, None) => {
                 faults.add(at, "name one of `points` and `radii`");
                 return None;
@@ -174,7 +168,8 @@ impl Sampling {
         match &self.points {
             // The quotient is exactly 1 at the last point, so that it is the edge itself.
             Points::Uniform(count) => {
-                (0..*count).map(|index| contact_radius * (index as f64 / (count - 1) as f64)).collect()
+                let last = count.saturating_sub(1) as f64;
+                (0..*count).map(|index| contact_radius * (index as f64 / last)).collect()
             }
             Points::Radii(radii) => radii.clone(),
         }

@@ -8,11 +8,11 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::protocol::{End, Kind};
-use stickslip_mechanics::{Setup, range};
+use stickslip_mechanics::{Setup, range::DISPLACEMENT, range::Range};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
-use super::limits;
+use super::limits::{PROTOCOL_REVERSALS, limits};
 use super::one_key::{given, one_key};
 use super::parse::{Document, Rejection};
 use super::simulate::Steps;
@@ -106,12 +106,13 @@ pub enum ProtocolStart {
     ContactId(Uuid),
 }
 one_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
+limits!(enum ProtocolStart { Displacement "displacement": DISPLACEMENT });
 
 /// Where a path ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ProtocolEnd {
-    /// At displacement nought.
+    /// JsonPath displacement nought.
     #[default]
     DisplacementZero,
     /// Without a tangential force.
@@ -139,9 +140,19 @@ pub struct Robustness {
     #[serde(default)]
     pub seed: u64,
 }
+limits!(Robustness {
+    amplitude_error: Range { quantity: "amplitude_error", unit: "", min: 0.0, max: 1.0 },
+    friction_error: Range { quantity: "friction_error", unit: "", min: 0.0, max: 0.9 },
+    samples: 2..=10_000_usize,
+    // What every JSON reader takes for a whole number.
+    seed: 0..=0x1f_ffff_ffff_ffff_u64,
+});
+
+/// How many times a protocol is tried if the client does not say.
+const DEFAULT_SAMPLES: usize = 200;
 
 fn samples() -> usize {
-    limits::DEFAULT_SAMPLES
+    DEFAULT_SAMPLES
 }
 
 /// A number of reversals, or what they are to reach.
@@ -151,6 +162,38 @@ pub enum Aim {
     Reversals(usize),
     /// The fewest that leave so much, over the unit of stress.
     Target(f64),
+}
+
+/// The members by which a protocol and a relaxation name their aim; exactly one of the two is given.
+struct AimMembers {
+    reversals: Option<usize>,
+    target: Option<f64>,
+}
+limits!(AimMembers {
+    reversals: PROTOCOL_REVERSALS,
+    target: Range { quantity: "target", unit: "", min: 1e-4, max: 10.0 },
+});
+limits!(ProtocolRequest and AimMembers);
+limits!(RelaxRequest and AimMembers);
+
+impl AimMembers {
+    fn check(&self, faults: &mut Faults) -> Option<Aim> {
+        let at = JsonPath::Root;
+        let aim = match (self.reversals, self.target) {
+            (Some(reversals), None) => Aim::Reversals(reversals),
+            (None, Some(target)) => Aim::Target(target),
+            (None, None) => {
+                faults.add(at.member("reversals"), "missing: name `reversals` or `target`");
+                return None;
+            }
+            (Some(_), Some(_)) => {
+                faults.add(at.member("target"), "stands beside `reversals`: one of the two is allowed");
+                return None;
+            }
+        };
+        self.check_members(at, faults);
+        Some(aim)
+    }
 }
 
 /// What is asked of a protocol, checked.
@@ -180,7 +223,7 @@ impl Document for ProtocolRequest {
 
     fn check(self) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
-        let at = |name| At::Root.member(name);
+        let at = |name| JsonPath::Root.member(name);
         let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), &mut faults));
         let subject = match (self.start, self.contact, setup) {
             (Some(ProtocolStart::ContactId(id)), definition, _) => {
@@ -198,24 +241,13 @@ impl Document for ProtocolRequest {
                 None
             }
             (start, Some(definition), setup) => {
-                let first = start.and_then(|start| match start {
-                    ProtocolStart::Displacement(first) => Some(first),
-                    ProtocolStart::ContactId(_) => None,
-                });
-                if let Some(first) = first {
-                    let start = at("start");
-                    faults.number(start.member("displacement"), first, &range::DISPLACEMENT);
-                    if first.abs() <= 0.0 {
-                        faults
-                            .add(start.member("displacement"), "0 is no amplitude: allowed is any other displacement");
-                    }
-                }
+                let first = start.and_then(|start| start.check(at("start"), &mut faults));
                 setup.map(|setup| ProtocolSubject::Virgin(Box::new((definition, setup)), first))
             }
         };
-        let aim = aim(self.reversals, self.target, &mut faults);
+        let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
         if let Some(robustness) = &self.robustness {
-            robustness.check(at("robustness"), &mut faults);
+            robustness.check_members(at("robustness"), &mut faults);
         }
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: self.robustness });
         faults.done(subject.zip(task))
@@ -238,43 +270,21 @@ impl Document for RelaxRequest {
 
     fn check(self) -> Result<Relaxation, Rejection> {
         let mut faults = Faults::default();
-        let aim = aim(self.reversals, self.target, &mut faults);
+        let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: None });
         faults.done(task.map(|task| Relaxation { task, dry_run: self.dry_run, steps: self.steps }))
     }
 }
 
-fn aim(reversals: Option<usize>, target: Option<f64>, faults: &mut Faults) -> Option<Aim> {
-    let at = At::Root;
-    match (reversals, target) {
-        (Some(reversals), None) => {
-            faults.count(at.member("reversals"), reversals, &limits::PROTOCOL_REVERSALS);
-            Some(Aim::Reversals(reversals))
+impl ProtocolStart {
+    /// The displacement to begin with, if it is one.
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<f64> {
+        let ProtocolStart::Displacement(first) = *self else { return None };
+        self.check_members(at, faults);
+        if first.abs() <= 0.0 {
+            faults.add(at.member("displacement"), "0 is no amplitude: allowed is any other displacement");
         }
-        (None, Some(target)) => {
-            faults.number(at.member("target"), target, &limits::TARGET);
-            Some(Aim::Target(target))
-        }
-        (None, None) => {
-            faults.add(at.member("reversals"), "missing: name `reversals` or `target`");
-            None
-        }
-        (Some(_), Some(_)) => {
-            faults.add(at.member("target"), "stands beside `reversals`: one of the two is allowed");
-            None
-        }
-    }
-}
-
-impl Robustness {
-    fn check(&self, at: At<'_>, faults: &mut Faults) {
-        faults.number(at.member("amplitude_error"), self.amplitude_error, &limits::AMPLITUDE_ERROR);
-        faults.number(at.member("friction_error"), self.friction_error, &limits::FRICTION_ERROR);
-        faults.count(at.member("samples"), self.samples, &limits::SAMPLES);
-        let (seed, most) = (self.seed, *limits::SEED.end());
-        if seed > most {
-            faults.add(at.member("seed"), format_args!("{seed} is out of range: allowed is 0 to {most}"));
-        }
+        Some(first)
     }
 }
 
