@@ -19,7 +19,7 @@ use stickslip_wire::pluck::{Found, pluck};
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::Draft;
 use stickslip_wire::{
-    ContactDefinition, Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest, parse_value,
+    Code, ContactDefinition, Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest, parse_value,
 };
 
 use super::cost;
@@ -332,10 +332,10 @@ impl Sweep {
 fn of_rejection(rejection: Rejection) -> PointFailure {
     match rejection {
         Rejection::Refused { pointer, error } => of_failure(Failure::Refused { pointer, error }),
-        Rejection::NotJson(detail) => failure("invalid_input", String::new(), detail),
+        Rejection::NotJson(detail) => failure(Code::InvalidInput, String::new(), detail),
         Rejection::Invalid(faults) => {
             let first = faults.into_iter().next().unwrap_or(Fault { pointer: String::new(), detail: String::new() });
-            failure("invalid_input", first.pointer, first.detail)
+            failure(Code::InvalidInput, first.pointer, first.detail)
         }
     }
 }
@@ -349,8 +349,8 @@ fn of_failure(refusal: Failure) -> PointFailure {
     }
 }
 
-fn failure(code: &str, pointer: String, detail: String) -> PointFailure {
-    PointFailure { index: 0, code: code.to_owned(), pointer, detail }
+fn failure(code: Code, pointer: String, detail: String) -> PointFailure {
+    PointFailure { index: 0, code: code.as_str().to_owned(), pointer, detail }
 }
 
 /// How many peaks there are is not known before; so any of them may be asked for.

@@ -15,6 +15,8 @@ pub mod check;
 pub mod client;
 pub mod definition;
 pub mod event;
+#[cfg(test)]
+mod extremes;
 pub mod job;
 pub mod limits;
 mod one_key;
@@ -41,7 +43,7 @@ pub use event::{EndEvent, EndReason, StateEvent};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
-pub use problem::ProblemDocument;
+pub use problem::{Code, ProblemDocument};
 pub use profile::{Profile, SphereProfile};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, Figures, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
