@@ -9,11 +9,11 @@ use stickslip_mechanics::Setup;
 use super::check::{Fault, Faults, JsonPath};
 use super::definition::ContactDefinition;
 use super::limits::{Items, Tolerance, limits};
-use super::one_key::given;
 use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
 use super::reply::SolverKind;
 use super::simulate::{Solver, Springs, most_springs};
+use super::single_key::not_null;
 use super::stress::{Field, Points, Sampling, StressRequest};
 
 /// Solvers that one comparison may name.
@@ -25,7 +25,7 @@ const COMPARED_RADII: usize = 200;
 
 /// A contact, the path it is to follow, and the solvers that are to follow it; nothing of it is kept.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({

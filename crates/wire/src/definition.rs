@@ -7,8 +7,8 @@ use stickslip_mechanics::{self as mechanics, Setup, elasticity, range};
 
 use super::check::{Faults, JsonPath};
 use super::limits::{Exactly, limits};
-use super::one_key::one_key;
 use super::profile::Profile;
+use super::single_key::single_key;
 
 /// Two bodies pressed together, at rest and never yet moved sideways.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -40,7 +40,7 @@ pub enum Material {
     /// The reduced moduli themselves.
     Effective(Effective),
 }
-one_key!(Material { "bodies" => Bodies, "effective" => Effective });
+single_key!(Material { "bodies" => Bodies, "effective" => Effective });
 limits!(enum Material { Bodies "bodies": Exactly(2) });
 
 /// One of the two bodies: its elastic constants, or the string `"rigid"`.
@@ -95,7 +95,7 @@ pub enum Preload {
     /// Contact radius, m.
     ContactRadius(f64),
 }
-one_key!(Preload { "normal_force" => NormalForce, "indentation" => Indentation, "contact_radius" => ContactRadius });
+single_key!(Preload { "normal_force" => NormalForce, "indentation" => Indentation, "contact_radius" => ContactRadius });
 limits!(enum Preload {
     NormalForce "normal_force": range::NORMAL_FORCE,
     Indentation "indentation": range::PRELOAD_INDENTATION,

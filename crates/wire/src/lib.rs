@@ -10,43 +10,44 @@
 #![deny(clippy::arithmetic_side_effects)]
 
 pub mod accuracy;
-pub mod any;
 pub mod check;
 pub mod client;
 pub mod definition;
 pub mod event;
 #[cfg(test)]
 mod extremes;
+pub mod hysteresis_loop;
 pub mod job;
+pub mod json_value;
 pub mod limits;
-mod one_key;
+mod objects_only;
 pub mod parse;
 pub mod path;
-pub mod pluck;
+pub mod pointer_lookup;
 pub mod problem;
 pub mod profile;
 pub mod protocol;
 pub mod reply;
 pub mod session;
 pub mod simulate;
+mod single_key;
 #[allow(clippy::arithmetic_side_effects, reason = "the lengths of the columns of a table have been checked")]
 mod slope;
 pub mod stress;
-mod strict;
 pub mod sweep;
-pub mod trace;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{Fault, Faults, JsonPath};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
+pub use hysteresis_loop::LoopPage;
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
 pub use problem::{Code, ProblemDocument};
 pub use profile::{Profile, SphereProfile};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
-pub use reply::{Accuracy, Figures, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
+pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
     CreateRequest, ForkRequest, HistoryItem, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
     SessionPage, SessionReply, SessionSummary, StressReply,
@@ -54,4 +55,3 @@ pub use session::{
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
 pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};
-pub use trace::LoopPage;

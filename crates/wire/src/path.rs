@@ -10,8 +10,8 @@ use stickslip_mechanics::{self as mechanics, Contact, Normal, Tangential, protoc
 
 use super::check::{Faults, JsonPath};
 use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
-use super::one_key::{given, one_key};
 use super::reply::Protocol;
+use super::single_key::{not_null, single_key};
 
 /// Reversals of an oscillation that dies away; each is one move, and one more ends the path at zero.
 const REVERSALS: RangeInclusive<usize> = 1..=99_999;
@@ -20,7 +20,7 @@ const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
 /// normal one the indentation stays.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
@@ -55,7 +55,7 @@ pub enum Path {
     /// contact.
     EqualPeaks(EqualPeaks),
 }
-one_key!(Path {
+single_key!(Path {
     "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude,
     "equal_peaks" => EqualPeaks
 });
@@ -67,7 +67,7 @@ limits!(enum Path {
 
 /// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
@@ -83,7 +83,7 @@ limits!(EqualPeaks { reversals: REVERSALS, cutoff_radius: range::CONTACT_RADIUS 
 
 /// A tangential oscillation that dies away; it ends at displacement zero.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]

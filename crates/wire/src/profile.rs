@@ -14,7 +14,7 @@ use stickslip_mechanics::{Error, range, range::Range};
 
 use super::check::{Faults, JsonPath};
 use super::limits;
-use super::one_key::given;
+use super::single_key::not_null;
 
 /// The shape of the indenter before it is loaded, chosen by `type`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -275,25 +275,25 @@ impl Kind {
 struct Members {
     #[serde(rename = "type")]
     kind: Kind,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     radius: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     slope: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     exponent: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     coefficient: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     flat_radius: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     edge_radius: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     tip_radius: Option<f64>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     r: Option<Vec<f64>>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     z: Option<Vec<f64>>,
-    #[serde(default, deserialize_with = "given")]
+    #[serde(default, deserialize_with = "not_null")]
     parts: Option<Vec<Profile>>,
 }
 

@@ -7,7 +7,8 @@ use stickslip_mechanics as mechanics;
 
 /// The figures that follow from a contact's definition: those of its preload.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Figures {
+#[schema(as = Figures)]
+pub struct ContactSummary {
     /// Reduced modulus E*, Pa.
     pub e_star: f64,
     /// Reduced shear modulus G*, Pa.
@@ -153,9 +154,9 @@ pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-impl From<mechanics::Figures> for Figures {
+impl From<mechanics::Figures> for ContactSummary {
     fn from(figures: mechanics::Figures) -> Self {
-        Figures {
+        ContactSummary {
             e_star: figures.e_star,
             g_star: figures.g_star,
             indentation: figures.indentation,

@@ -11,13 +11,13 @@ use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
 use super::check::{Faults, JsonPath};
 use super::definition::{ContactDefinition, Material, Preload};
 use super::limits::{Characters, Tolerance, limits};
-use super::one_key::given;
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
 use super::profile::Profile;
 use super::protocol::Relaxation;
-use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
+use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
 use super::simulate::Steps;
+use super::single_key::not_null;
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// The text by which a client knows a contact.
@@ -25,7 +25,7 @@ const LABEL: Characters = Characters(200);
 
 /// A contact definition, and perhaps a label to know it by.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -51,7 +51,7 @@ limits!(CreateRequest { label: LABEL } and ContactDefinition);
 
 /// A move, and perhaps a request for the stresses after it.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
@@ -76,7 +76,7 @@ limits!(MoveRequest { tolerance: Tolerance } and Move);
 
 /// A path for a session, applied as a whole or not at all.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))]
@@ -95,7 +95,7 @@ limits!(PathRequest { tolerance: Tolerance });
 
 /// What may be said about a fork; an empty body says nothing.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"label": "what if"}))]
@@ -115,7 +115,7 @@ pub struct NewSession {
     /// How many moves it has behind it: nought, or those of the session it was forked from.
     pub sequence: u64,
     /// The figures of the contact at its preload.
-    pub contact: Figures,
+    pub contact: ContactSummary,
     /// Its state.
     pub state: State,
     /// What to know about its results.
@@ -132,7 +132,7 @@ pub struct SessionReply {
     /// How many moves it has behind it.
     pub sequence: u64,
     /// The figures of the contact at its preload.
-    pub contact: Figures,
+    pub contact: ContactSummary,
     /// Its state after the last move.
     pub state: State,
     /// When it was made (ISO 8601, UTC).

@@ -9,15 +9,15 @@ use stickslip_mechanics::{Setup, range};
 use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
 use super::limits::{SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole, limits};
-use super::one_key::{given, one_key};
 use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
-use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
+use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
+use super::single_key::{not_null, single_key};
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// A contact, and the path it is to follow; nothing of it is kept. Only what is asked for is computed.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -73,7 +73,7 @@ pub enum Solver {
     /// constant indentation, and a normal force only without a tangential target (else `unsupported_move`).
     Springs(Springs),
 }
-one_key!(Solver { "springs" => Springs } or { "exact" => Exact });
+single_key!(Solver { "springs" => Springs } or { "exact" => Exact });
 
 /// The spring foundation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -90,7 +90,7 @@ limits!(Springs { count: Whole(range::SPRING_COUNT) });
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SimulateReply {
     /// The figures of the contact at its preload.
-    pub contact: Figures,
+    pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
     /// The stresses at the end, if asked for.

@@ -8,11 +8,11 @@ use stickslip_mechanics::range;
 
 use super::check::{Faults, JsonPath};
 use super::limits::{Numbers, STRESS_POINTS, limits};
-use super::one_key::given;
+use super::single_key::not_null;
 
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"points": 200}))]

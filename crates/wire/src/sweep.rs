@@ -10,12 +10,12 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::range::Range;
 
-use super::any::{Any, Pointer};
 use super::check::{Faults, JsonPath};
+use super::json_value::{JsonValue, Pointer};
 use super::limits::{Items, Limit, Numbers, limits};
-use super::one_key::given;
 use super::parse::{Document, Rejection, parse_value};
 use super::simulate::SimulateRequest;
+use super::single_key::not_null;
 
 /// How far from a whole number, relatively, a value may be that goes to a field of whole numbers; it is rounded then.
 const WHOLE: f64 = 1e-9;
@@ -53,7 +53,7 @@ const SWEEP_NUMBERS: usize = 8_000_000;
 pub struct SweepRequest {
     /// The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
     #[schema(value_type = Object)]
-    pub base: Any,
+    pub base: JsonValue,
     /// The numbers that change.
     pub axes: Vec<Axis>,
     /// JSON pointers to numbers in the reply to `POST /simulate`, a column each. Where a point does not have one, such as a
@@ -68,7 +68,7 @@ limits!(SweepRequest { axes: Items(AXES), outputs: Items(OUTPUTS) });
 
 /// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and `values`.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
@@ -128,11 +128,11 @@ pub struct PointFailure {
 
 /// A sweep whose axes lead to numbers. What comes of the numbers together is not known yet.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct CheckedSweep {
     /// The request as it came.
     pub request: SweepRequest,
     /// The axes.
-    pub axes: Vec<Run>,
+    pub axes: Vec<AxisValues>,
     /// The outputs.
     pub outputs: Vec<Pointer>,
     /// How many points.
@@ -141,7 +141,7 @@ pub struct Draft {
 
 /// The values of an axis on their way to a field.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct AxisValues {
     /// The field.
     pub pointer: Pointer,
     /// Whether it takes whole numbers.
@@ -157,9 +157,9 @@ enum Values {
 }
 
 impl Document for SweepRequest {
-    type Checked = Draft;
+    type Checked = CheckedSweep;
 
-    fn check(self) -> Result<Draft, Rejection> {
+    fn check(self) -> Result<CheckedSweep, Rejection> {
         let mut faults = Faults::default();
         let at = JsonPath::Root.member("axes");
         let mut axes = Vec::new();
@@ -185,7 +185,7 @@ impl Document for SweepRequest {
         if faults.is_empty() {
             find_kinds(&self.base.0, &mut axes, &mut faults);
         }
-        let draft = Draft { request: self, axes, outputs, points };
+        let draft = CheckedSweep { request: self, axes, outputs, points };
         faults.done(Some(draft))
     }
 }
@@ -214,7 +214,7 @@ impl SweepRequest {
 const NO_POINTER: &str = "not a JSON pointer (RFC 6901), such as /contact/friction";
 
 impl Axis {
-    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Run> {
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<AxisValues> {
         let pointer = Pointer::parse(&self.pointer);
         if pointer.is_none() {
             faults.add(at.member("pointer"), NO_POINTER);
@@ -230,7 +230,7 @@ impl Axis {
             return None;
         };
         values.check(at.member(name), faults)?;
-        Some(Run { pointer: pointer?, whole: false, values })
+        Some(AxisValues { pointer: pointer?, whole: false, values })
     }
 }
 
@@ -257,7 +257,7 @@ impl Values {
     }
 }
 
-impl Run {
+impl AxisValues {
     /// How many values.
     #[must_use]
     pub fn count(&self) -> usize {
@@ -316,7 +316,7 @@ impl Run {
     }
 }
 
-impl Draft {
+impl CheckedSweep {
     /// Puts the values of a point into a copy of the base.
     pub fn put(&self, document: &mut Value, point: usize) {
         for (axis, index) in indices(&self.axes, point) {
@@ -334,7 +334,7 @@ impl Draft {
 }
 
 /// The values of the axes at a point, by their indices.
-pub fn indices(axes: &[Run], point: usize) -> impl Iterator<Item = (&Run, usize)> {
+pub fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&AxisValues, usize)> {
     let mut below = axes.iter().fold(1, |points: usize, axis| points.saturating_mul(axis.count()));
     let mut rest = point;
     axes.iter().map(move |axis| {
@@ -347,7 +347,7 @@ pub fn indices(axes: &[Run], point: usize) -> impl Iterator<Item = (&Run, usize)
 
 /// Finds out which of the fields take whole numbers, by trying: a field that is no number, and all that is wrong with the base
 /// whatever the numbers are, comes out on the way.
-fn find_kinds(base: &Value, axes: &mut [Run], faults: &mut Faults) {
+fn find_kinds(base: &Value, axes: &mut [AxisValues], faults: &mut Faults) {
     let at = JsonPath::Root.member("axes");
     let fraction = Number::from_f64(0.5).unwrap_or_else(|| Number::from(1));
     let mut document = base.clone();

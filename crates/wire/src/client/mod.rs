@@ -214,7 +214,7 @@ impl Client {
     ///
     /// # Errors
     /// [`Error`], as for every call.
-    pub async fn trace(
+    pub async fn hysteresis_loop(
         &self,
         id: Uuid,
         after: Option<u64>,

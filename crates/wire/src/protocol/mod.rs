@@ -13,9 +13,9 @@ use stickslip_mechanics::{Setup, range::DISPLACEMENT, range::Range};
 use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
 use super::limits::{PROTOCOL_REVERSALS, limits};
-use super::one_key::{given, one_key};
 use super::parse::{Document, Rejection};
 use super::simulate::Steps;
+use super::single_key::{not_null, single_key};
 
 pub use reply::{
     Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolReply, RelaxReply,
@@ -25,7 +25,7 @@ pub use reply::{
 /// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or follows
 /// from a target.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -60,7 +60,7 @@ pub struct ProtocolRequest {
 
 /// How a contact that lives is to be relaxed; an empty body but for `reversals` or `target` is enough.
 #[skip_serializing_none]
-#[apply(Option => #[serde(default, deserialize_with = "given")] #[schema(nullable = false)])]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
@@ -105,14 +105,14 @@ pub enum ProtocolStart {
     /// The present state of the contact of this identifier, whatever its history.
     ContactId(Uuid),
 }
-one_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
+single_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
 limits!(enum ProtocolStart { Displacement "displacement": DISPLACEMENT });
 
 /// Where a path ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ProtocolEnd {
-    /// JsonPath displacement nought.
+    /// At displacement zero.
     #[default]
     DisplacementZero,
     /// Without a tangential force.

@@ -5,14 +5,14 @@ use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::super::reply::{Accuracy, Figures, Residual, State, Warning};
+use super::super::reply::{Accuracy, ContactSummary, Residual, State, Warning};
 use super::{ProtocolEnd, ProtocolKind};
 
 /// How to move so that little shear stress remains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ProtocolReply {
     /// The figures of the contact at its present load.
-    pub contact: Figures,
+    pub contact: ContactSummary,
     /// The law of the amplitudes.
     pub kind: ProtocolKind,
     /// Where the path ends.
