@@ -23,7 +23,7 @@ const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
 /// Radii at which stresses are compared unless the request names some.
 const COMPARED_RADII: usize = 200;
 
-/// A contact, the path it is to follow, and the solvers that are to follow it; nothing of it is kept.
+/// A contact, the path that it follows, and the solvers to compare on it; the server keeps nothing of it.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -52,23 +52,23 @@ pub struct AccuracyRequest {
 }
 limits!(AccuracyRequest { tolerance: Tolerance, solvers: SOLVERS });
 
-/// What each solver costs, and how wrong it is.
+/// The time and the error of each solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyReply {
-    /// What the rows are held against.
+    /// What the rows are compared with.
     pub reference: Reference,
     /// One row a solver.
     pub rows: Vec<AccuracyRow>,
 }
 
-/// The zero of error, which has an error too.
+/// The solution that errors are measured from, with its own error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Reference {
     /// The solver.
     pub solver: SolverKind,
     /// What makes it a reference.
     pub reason: String,
-    /// Its own estimated error of the forces, relative to `force_unit`: differences below it say nothing.
+    /// Its own estimated error of the forces, relative to `force_unit`: smaller differences have no meaning.
     pub force_error: f64,
     /// Its own estimated error of the stresses, relative to `stress_unit`.
     pub stress_error: f64,
@@ -123,7 +123,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Moves and radii: how often each spring is looked at.
+    /// Moves and radii: how often each spring is evaluated.
     #[must_use]
     pub fn passes(&self) -> usize {
         self.plan.length().saturating_add(self.sampling.length())

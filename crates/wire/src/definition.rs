@@ -10,7 +10,7 @@ use super::limits::{Exactly, limits};
 use super::profile::Profile;
 use super::single_key::single_key;
 
-/// Two bodies pressed together, at rest and never yet moved sideways.
+/// Two bodies pressed together, at rest and never moved tangentially.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -44,7 +44,7 @@ single_key!(Material { "bodies" => Bodies, "effective" => Effective });
 limits!(enum Material { Bodies "bodies": Exactly(2) });
 
 /// One of the two bodies: its elastic constants, or the string `"rigid"`.
-// Untagged in writing alone. It is read by hand below, so that a fault in the object names its member.
+// Untagged when written. It is read by hand below, so that a fault in the object names its member.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Body {
@@ -54,7 +54,7 @@ pub enum Body {
     Rigid(Rigid),
 }
 
-/// The word for a body that does not deform.
+/// The name of a body that does not deform.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Rigid {
@@ -84,7 +84,7 @@ pub struct Effective {
 }
 limits!(Effective { e_star: range::E_STAR, g_star: range::G_STAR });
 
-/// The normal load that the contact starts with, one key. Nought is a contact just touching.
+/// The normal load that the contact starts with, one key. Zero is a contact just touching.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Preload {

@@ -1,4 +1,4 @@
-//! JsonValue JSON value, each member of an object given once: what is to be a document of ours when its numbers have been put in.
+//! Any JSON value whose objects have no repeated members, and JSON pointers into it: the base of a sweep.
 
 use std::fmt;
 
@@ -73,12 +73,12 @@ impl<'de> Visitor<'de> for JsonValueVisitor {
     }
 }
 
-/// A JSON pointer (RFC 6901), taken apart.
+/// A JSON pointer (RFC 6901), split into its segments.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Pointer(Box<[String]>);
 
 impl Pointer {
-    /// Takes a pointer apart; none if it is not written as one.
+    /// Splits a pointer into its segments; none if it is not a JSON pointer.
     #[must_use]
     pub fn parse(text: &str) -> Option<Pointer> {
         if text.is_empty() {
@@ -91,7 +91,7 @@ impl Pointer {
         text.strip_prefix('/')?.split('/').map(segment).collect::<Option<_>>().map(Pointer)
     }
 
-    /// Its parts.
+    /// Its segments.
     #[must_use]
     pub fn segments(&self) -> &[String] {
         &self.0
@@ -99,8 +99,8 @@ impl Pointer {
 
     /// Puts a number where it points to: in place of a number, or as a member that is missing. Says whether it could.
     pub fn put(&self, document: &mut Value, number: Number) -> bool {
-        let Some((last, way)) = self.0.split_last() else { return false };
-        let parent = way.iter().try_fold(document, |node, segment| match node {
+        let Some((last, parents)) = self.0.split_last() else { return false };
+        let parent = parents.iter().try_fold(document, |node, segment| match node {
             Value::Object(members) => members.get_mut(segment),
             Value::Array(elements) => index(segment).and_then(|index| elements.get_mut(index)),
             _ => None,

@@ -6,7 +6,7 @@
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor};
 
-/// JsonValue part of serde's machinery, with the rule that structs are objects.
+/// Any part of serde's machinery, with the rule that structs are objects.
 pub(super) struct ObjectsOnly<T>(pub(super) T);
 
 /// Methods that pass a visitor on.

@@ -34,7 +34,7 @@ struct Unexpected;
 
 impl fmt::Display for Unexpected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("unforeseen")
+        f.write_str("unexpected kind of value")
     }
 }
 

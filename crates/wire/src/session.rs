@@ -1,4 +1,4 @@
-//! The bodies and replies of `/contacts`: a contact that lives on the server.
+//! The bodies and replies of `/contacts`: contacts that the server keeps.
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ use super::stress::{Sampling, Stress, StressRequest};
 /// The text by which a client knows a contact.
 const LABEL: Characters = Characters(200);
 
-/// A contact definition, and perhaps a label to know it by.
+/// A contact definition, with an optional label.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -49,7 +49,7 @@ pub struct CreateRequest {
 }
 limits!(CreateRequest { label: LABEL } and ContactDefinition);
 
-/// A move, and perhaps a request for the stresses after it.
+/// A move, with an optional request for the stresses after it.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -60,7 +60,7 @@ pub struct MoveRequest {
     pub displacement: Option<f64>,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
     pub force: Option<f64>,
-    /// Indentation, m; below nought the bodies are apart and nothing is remembered.
+    /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64>,
     /// Normal force, N.
     pub normal_force: Option<f64>,
@@ -74,7 +74,7 @@ pub struct MoveRequest {
 }
 limits!(MoveRequest { tolerance: Tolerance } and Move);
 
-/// A path for a session, applied as a whole or not at all.
+/// A path for a contact, applied as a whole or not at all.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -93,82 +93,82 @@ pub struct PathRequest {
 }
 limits!(PathRequest { tolerance: Tolerance });
 
-/// What may be said about a fork; an empty body says nothing.
+/// Options of a fork; the body may be empty.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"label": "what if"}))]
 pub struct ForkRequest {
-    /// A label for the new session; left out, that of the original.
+    /// A label for the new contact; left out, that of the original.
     pub label: Option<String>,
 }
 limits!(ForkRequest { label: LABEL });
 
-/// A session that has just been made.
+/// A contact that has just been made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NewSession {
     /// Its identifier.
     pub id: Uuid,
     /// Its label, if it has one.
     pub label: Option<String>,
-    /// How many moves it has behind it: nought, or those of the session it was forked from.
+    /// Number of moves so far: zero, or those of the contact that it was forked from.
     pub sequence: u64,
-    /// The figures of the contact at its preload.
+    /// What follows from the definition at the preload.
     pub contact: ContactSummary,
     /// Its state.
     pub state: State,
-    /// What to know about its results.
+    /// Warnings about its results.
     pub warnings: Vec<Warning>,
 }
 
-/// A session.
+/// A contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionReply {
     /// Its identifier.
     pub id: Uuid,
     /// Its label, if it has one.
     pub label: Option<String>,
-    /// How many moves it has behind it.
+    /// Number of moves so far.
     pub sequence: u64,
-    /// The figures of the contact at its preload.
+    /// What follows from the definition at the preload.
     pub contact: ContactSummary,
     /// Its state after the last move.
     pub state: State,
     /// When it was made (ISO 8601, UTC).
     pub created_at: Timestamp,
-    /// When it last moved (ISO 8601, UTC).
+    /// When it was last moved (ISO 8601, UTC).
     pub updated_at: Timestamp,
 }
 
-/// A session as a line of a list.
+/// A contact as an item of a list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionSummary {
     /// Its identifier.
     pub id: Uuid,
     /// Its label, if it has one.
     pub label: Option<String>,
-    /// How many moves it has behind it.
+    /// Number of moves so far.
     pub sequence: u64,
     /// When it was made (ISO 8601, UTC).
     pub created_at: Timestamp,
-    /// When it last moved (ISO 8601, UTC).
+    /// When it was last moved (ISO 8601, UTC).
     pub updated_at: Timestamp,
 }
 
-/// A page of sessions, oldest first.
+/// A page of contacts, oldest first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionPage {
-    /// The sessions.
+    /// The contacts.
     pub items: Vec<SessionSummary>,
     /// What to give as `after` for the next page; `null` on the last.
     pub next: Option<Uuid>,
 }
 
-/// What came of a move.
+/// The result of a move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MoveReply {
-    /// The session.
+    /// The identifier of the contact.
     pub id: Uuid,
     /// The number of this move, and of moves so far.
     pub sequence: u64,
@@ -180,17 +180,17 @@ pub struct MoveReply {
     pub stress: Option<Stress>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the results since this move, if it is new.
+    /// Warnings about the results from this move on that earlier replies have not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<Warning>,
 }
 
-/// What came of a path.
+/// The result of a path.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PathReply {
-    /// The session.
+    /// The identifier of the contact.
     pub id: Uuid,
     /// The number of the last move, and of moves so far.
     pub sequence: u64,
@@ -202,13 +202,13 @@ pub struct PathReply {
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the results since this path, if it is new.
+    /// Warnings about the results from this path on that earlier replies have not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<Warning>,
 }
 
-/// The stresses of a session, and perhaps their extrema.
+/// The stresses of a contact, and their extrema if asked for.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StressReply {
@@ -226,7 +226,7 @@ pub struct StressReply {
     pub residual: Option<Residual>,
 }
 
-/// A move of the past.
+/// A move that has been applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistoryItem {
     /// Its number, counted from 1.
@@ -240,7 +240,7 @@ pub struct HistoryItem {
     pub at: Timestamp,
 }
 
-/// A page of the past, oldest first.
+/// A page of the history of a contact, oldest first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistoryPage {
     /// The moves.
@@ -249,7 +249,7 @@ pub struct HistoryPage {
     pub next: Option<u64>,
 }
 
-/// A contact that has passed all checks, to be made into a session.
+/// A contact that has passed all checks, to be created.
 #[derive(Clone, Debug)]
 pub struct Creation {
     /// The label.
@@ -260,7 +260,7 @@ pub struct Creation {
     pub setup: Setup,
 }
 
-/// Moves that have passed all checks, to be applied to a session.
+/// Moves that have passed all checks, to be applied to a contact.
 #[derive(Clone, Debug)]
 pub struct Advance {
     /// The moves.
@@ -271,7 +271,7 @@ pub struct Advance {
     pub steps: Steps,
     /// The tolerance for what is not exact.
     pub tolerance: f64,
-    /// Whether the moves are to be found first, so that little stress remains; `plan` has none then.
+    /// Which protocol finds the moves; `plan` has none then.
     pub relax: Option<Relaxation>,
 }
 

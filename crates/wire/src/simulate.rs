@@ -15,7 +15,7 @@ use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning}
 use super::single_key::{not_null, single_key};
 use super::stress::{Sampling, Stress, StressRequest};
 
-/// A contact, and the path it is to follow; nothing of it is kept. Only what is asked for is computed.
+/// A contact and the path that it follows; the server keeps nothing of it. Only what is asked for is computed.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -67,9 +67,9 @@ pub enum Steps {
 #[serde(rename_all = "snake_case")]
 #[schema(example = "exact")]
 pub enum Solver {
-    /// The exact memory of turning points.
+    /// The exact solver, which stores turning points of the path.
     Exact,
-    /// The spring foundation of the paper: a yardstick, slower and approximate. It follows a tangential force only at
+    /// The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential force only at
     /// constant indentation, and a normal force only without a tangential target (else `unsupported_move`).
     Springs(Springs),
 }
@@ -85,11 +85,11 @@ pub struct Springs {
 }
 limits!(Springs { count: Whole(range::SPRING_COUNT) });
 
-/// What came of a simulation.
+/// The result of a simulation.
 #[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SimulateReply {
-    /// The figures of the contact at its preload.
+    /// What follows from the definition at the preload.
     pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
@@ -101,7 +101,7 @@ pub struct SimulateReply {
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the result.
+    /// Warnings about the result.
     pub warnings: Vec<Warning>,
 }
 
@@ -150,7 +150,7 @@ impl Document for SimulateRequest {
 }
 
 impl Solver {
-    /// Notes what is wrong with the solver at `at`, if each of its springs is looked at so many times.
+    /// Notes at `at` what is wrong with the solver, each of whose springs is evaluated `passes` times.
     pub(super) fn check(&self, at: JsonPath<'_>, passes: usize, faults: &mut Faults) {
         let Solver::Springs(springs) = self else { return };
         let at = at.member("springs");

@@ -104,7 +104,7 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// How many are asked for.
+    /// How many fields are asked for.
     #[must_use]
     pub fn count(&self) -> usize {
         [self.pressure, self.shear, self.slip, self.displacement].into_iter().filter(|asked| *asked).count()

@@ -1,4 +1,4 @@
-//! The body of `POST /sweep`, and the table that comes of it.
+//! The body of `POST /sweep`, and its table.
 
 use std::collections::{BTreeMap, HashSet};
 use std::ops::RangeInclusive;
@@ -33,7 +33,7 @@ const SWEEP_POINTS: usize = 2_000_000;
 /// Numbers that come out of a sweep: points times outputs.
 const SWEEP_NUMBERS: usize = 8_000_000;
 
-/// Many simulations that differ in up to three numbers, and what is wanted of each. The points are all combinations of the
+/// Many simulations that differ in up to three numbers, and which numbers of each reply are wanted. The points are all combinations of the
 /// values of the axes, the last axis running fastest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -60,7 +60,7 @@ pub struct SweepRequest {
     /// peak of a number that it does not reach, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
     pub outputs: Vec<String>,
-    /// Make a job of it, however small it is.
+    /// Always make a job of it, even if it is small.
     #[serde(default)]
     pub job: bool,
 }
@@ -126,7 +126,7 @@ pub struct PointFailure {
     pub detail: String,
 }
 
-/// A sweep whose axes lead to numbers. What comes of the numbers together is not known yet.
+/// A sweep whose axes lead to numbers, each within the limits of an axis; whether a point is valid is not known yet.
 #[derive(Clone, Debug)]
 pub struct CheckedSweep {
     /// The request as it came.
@@ -139,7 +139,7 @@ pub struct CheckedSweep {
     pub points: usize,
 }
 
-/// The values of an axis on their way to a field.
+/// The values of an axis, and the field that takes them.
 #[derive(Clone, Debug)]
 pub struct AxisValues {
     /// The field.

@@ -39,7 +39,7 @@ pub use reply::{
     "kind": "minimax"
 }))]
 pub struct ProtocolRequest {
-    /// The contact; may be left out where `start` names one that lives.
+    /// The contact; may be left out where `start` names one on the server.
     pub contact: Option<ContactDefinition>,
     /// Number of reversals N_R; this or `target`.
     pub reversals: Option<usize>,
@@ -58,7 +58,7 @@ pub struct ProtocolRequest {
     pub robustness: Option<Robustness>,
 }
 
-/// How a contact that lives is to be relaxed; an empty body but for `reversals` or `target` is enough.
+/// How a contact on the server is to be relaxed; `reversals` or `target` is needed, all else has a default.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -89,7 +89,7 @@ pub struct RelaxRequest {
 pub enum ProtocolKind {
     /// They fall linearly (eq. 20 of the paper).
     Linear,
-    /// They leave equal peaks on the profile at hand, by steps proportional to x/g'(x).
+    /// They leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
     EqualPeaks,
     /// They leave the smallest largest stress that is found.
     #[default]
@@ -117,11 +117,11 @@ pub enum ProtocolEnd {
     DisplacementZero,
     /// Without a tangential force.
     ForceZero,
-    /// Wherever least stress remains.
+    /// Wherever the least stress remains.
     Free,
 }
 
-/// What may be off when a protocol is followed: it is tried many times, each with errors of its own.
+/// Errors with which a protocol is followed: it is tried many times, each with errors of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}))]
@@ -130,7 +130,7 @@ pub struct Robustness {
     #[serde(default)]
     pub amplitude_error: f64,
     /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for a
-    /// start from a contact that lives, whose history belongs to its own coefficient.
+    /// start from a contact on the server, whose history belongs to its own coefficient.
     #[serde(default)]
     pub friction_error: f64,
     /// How many times it is tried.
@@ -148,7 +148,7 @@ limits!(Robustness {
     seed: 0..=0x1f_ffff_ffff_ffff_u64,
 });
 
-/// How many times a protocol is tried if the client does not say.
+/// How many times a protocol is tried with errors by default.
 const DEFAULT_SAMPLES: usize = 200;
 
 fn samples() -> usize {
@@ -214,7 +214,7 @@ pub struct ProtocolTask {
 pub enum ProtocolSubject {
     /// One that has never moved, and the displacement to begin with.
     Virgin(Box<(ContactDefinition, Setup)>, Option<f64>),
-    /// One that lives, and the definition that it is said to have.
+    /// One on the server, and the definition that the request says it has.
     Living(Uuid, Option<Box<ContactDefinition>>),
 }
 
