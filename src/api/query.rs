@@ -7,7 +7,7 @@ use axum::http::HeaderMap;
 use axum::http::request::Parts;
 
 use stickslip_wire::limits as wire_limits;
-use stickslip_wire::{At, Fault, Faults, Field, Rejection, Sampling, StressRequest};
+use stickslip_wire::{Fault, Faults, Field, JsonPath, Rejection, Sampling, StressRequest};
 
 use crate::api::App;
 use crate::api::formats::Format;
@@ -48,7 +48,7 @@ impl Params {
         let value = parse(&text);
         if value.is_none() {
             let shown: String = text.chars().take(40).collect();
-            self.faults.add(At::Root.member(name), format_args!("`{shown}` is not {expected}"));
+            self.faults.add(JsonPath::Root.member(name), format_args!("`{shown}` is not {expected}"));
         }
         value
     }
@@ -76,7 +76,7 @@ impl Params {
             let again = self.known.iter().any(|known| *known == name);
             let detail = if again { "given twice".to_owned() } else { format!("unknown parameter, expected {known}") };
             let shown: String = name.chars().take(40).collect();
-            self.faults.add(At::Root.member(&shown), detail);
+            self.faults.add(JsonPath::Root.member(&shown), detail);
         }
         Ok(self.faults.done(value)?)
     }
@@ -124,7 +124,7 @@ impl Params {
     pub fn hysteresis(mut self) -> Result<(Option<u64>, usize, usize, Option<Format>), Problem> {
         let (after, limit) = self.bounds("the number of a move");
         let points = self.number("points_per_move", "a whole number, not negative").unwrap_or(1);
-        self.faults.count(At::Root.member("points_per_move"), points, &wire_limits::LOOP_POINTS);
+        self.faults.count(JsonPath::Root.member("points_per_move"), points, &wire_limits::LOOP_POINTS);
         let format = self.format();
         self.finish(Some((after, limit, points, format)))
     }
@@ -143,7 +143,7 @@ impl Params {
     fn bounds<T: FromStr>(&mut self, expected: &str) -> (Option<T>, usize) {
         let after = self.number("after", expected);
         let limit = self.number("limit", "a whole number, not negative").unwrap_or(limits::DEFAULT_PAGE);
-        self.faults.count(At::Root.member("limit"), limit, &limits::PAGE);
+        self.faults.count(JsonPath::Root.member("limit"), limit, &limits::PAGE);
         (after, limit)
     }
 
@@ -156,7 +156,7 @@ impl Params {
         let mut points = self.number("points", "a whole number, not negative");
         let radii = self.list("radii", "numbers with commas between them", |text| text.parse().ok());
         if let Some(radii) = &radii {
-            self.faults.length(At::Root.member("radii"), radii.len(), &limits::QUERY_RADII);
+            self.faults.length(JsonPath::Root.member("radii"), radii.len(), &limits::QUERY_RADII);
         }
         let fields = self.list(
             "fields",
@@ -167,7 +167,8 @@ impl Params {
         let format = self.format();
         if Format::chosen(format, headers).is_ok_and(Format::is_plot) {
             if fields.is_some() {
-                self.faults.add(At::Root.member("fields"), "a plot always shows pressure and shear: leave this out");
+                self.faults
+                    .add(JsonPath::Root.member("fields"), "a plot always shows pressure and shear: leave this out");
             }
             if radii.is_none() {
                 points = points.or(Some(PLOTTED));
@@ -176,7 +177,7 @@ impl Params {
         if !self.faults.is_empty() {
             return self.finish(None);
         }
-        let sampling = StressRequest { points, radii, fields }.check(At::Root, &mut self.faults);
+        let sampling = StressRequest { points, radii, fields }.check(JsonPath::Root, &mut self.faults);
         self.finish(sampling.map(|sampling| (sampling, residual, format)))
     }
 }

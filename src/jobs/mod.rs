@@ -20,7 +20,7 @@ use crate::admission::{Pool, Stop};
 use crate::metrics::{Counter, Gauge};
 use crate::simulation::{Rows, Sweep, Workers};
 use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
-use stickslip_wire::sweep::Draft;
+use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{self as wire, JobProgress, JobReply, JobState, SweepRequest};
 
 pub use error::JobError;
@@ -208,7 +208,7 @@ impl Jobs {
     ///
     /// # Errors
     /// As [`Jobs::size`].
-    pub async fn result(&self, id: Uuid) -> Result<(Draft, Rows), JobError> {
+    pub async fn result(&self, id: Uuid) -> Result<(CheckedSweep, Rows), JobError> {
         self.size(id).await?;
         let job = self.own(id).await?;
         let request = self.common.store.job_request(id).await.map_err(refused(id))?;

@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use crate::store::{Record, Session, Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
-use stickslip_wire::{At, Faults, State};
+use stickslip_wire::{Faults, JsonPath, State};
 
 use super::live::Live;
 use super::snapshot::{Worth, worth};
@@ -215,7 +215,7 @@ impl Check<'_> {
 /// The contact before its first move.
 fn start(session: Session) -> Result<Contact, String> {
     let mut faults = Faults::default();
-    let setup = session.definition.check(At::Root, &mut faults);
+    let setup = session.definition.check(JsonPath::Root, &mut faults);
     let setup = faults.done(setup).map_err(|error| error.to_string())?;
     Live::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
 }

@@ -6,7 +6,7 @@ use crate::simulation::{self, Seen, warnings};
 use crate::store::{Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
-use stickslip_wire::{ContactDefinition, Figures, NewSession, Warning};
+use stickslip_wire::{ContactDefinition, ContactSummary, NewSession, Warning};
 
 use super::snapshot::Beyond;
 use super::{SessionError, written};
@@ -31,7 +31,7 @@ pub(super) struct Live {
 
 /// What follows from the definition and never changes.
 pub(super) struct About {
-    pub(super) figures: Figures,
+    pub(super) figures: ContactSummary,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -41,8 +41,8 @@ impl Live {
     pub(super) fn start(session: Session, setup: Setup) -> Result<Live, simulation::Failure> {
         let elasticity = setup.elasticity;
         let contact = simulation::contact(setup, "")?;
-        let figures: Figures = contact.initial_summary().into();
-        let Figures { contact_radius, e_star, indentation, .. } = figures;
+        let figures: ContactSummary = contact.initial_summary().into();
+        let ContactSummary { contact_radius, e_star, indentation, .. } = figures;
         let noise = contact.profile().noise(contact_radius);
         let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
         let warnings = warnings(contact.profile(), &elasticity, &seen);

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use crate::simulation::cost::Work;
 use crate::store::{Record, Session, StoreError};
-use stickslip_wire::{At, Faults, limits};
+use stickslip_wire::{Faults, JsonPath, limits};
 
 use super::cache::Guard;
 use super::live::Live;
@@ -86,7 +86,7 @@ impl Sessions {
         let pieces = usize::try_from(sequence).unwrap_or(usize::MAX).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
         guard.held = self.common.pool.reserve(pieces * PIECE_BYTES).await?;
         let mut faults = Faults::default();
-        let setup = session.definition.check(At::Root, &mut faults);
+        let setup = session.definition.check(JsonPath::Root, &mut faults);
         let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;
         let mut live = Box::new(Live::start(session, setup).map_err(|error| broken(guard, &error))?);
         (live.contact, live.session.sequence) = self.newest(snapshot, live.contact, sequence).await?;

@@ -29,7 +29,7 @@ pub use warnings::{Seen, missed, news, warnings};
 use std::time::Duration;
 
 use stickslip_mechanics::{self as mechanics, range::Quantity};
-use stickslip_wire::limits;
+use stickslip_wire::{Code, limits};
 
 use crate::admission::Interrupted;
 
@@ -83,19 +83,19 @@ impl Failure {
 
     /// The code that `POST /simulate` refuses it with.
     #[must_use]
-    pub fn code(&self) -> &'static str {
+    pub fn code(&self) -> Code {
         match self {
             Failure::Refused { error, .. } => match error {
-                mechanics::Error::OutOfRange { .. } | mechanics::Error::Table { .. } => "invalid_input",
-                mechanics::Error::BeyondProfile { .. } => "beyond_profile",
-                mechanics::Error::NotConvexEnough { .. } => "profile_not_convex_enough",
-                mechanics::Error::ForceExceedsFriction { .. } => "force_exceeds_friction",
-                mechanics::Error::Interrupted => "too_much_work",
-                mechanics::Error::Unsupported { .. } => "unsupported_move",
+                mechanics::Error::OutOfRange { .. } | mechanics::Error::Table { .. } => Code::InvalidInput,
+                mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
+                mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
+                mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
+                mechanics::Error::Interrupted => Code::TooMuchWork,
+                mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },
-            Failure::MemoryFull { .. } => "conflict",
-            Failure::TooLong { .. } => "too_much_work",
-            Failure::Stopped => "overloaded",
+            Failure::MemoryFull { .. } => Code::Conflict,
+            Failure::TooLong { .. } => Code::TooMuchWork,
+            Failure::Stopped => Code::Overloaded,
         }
     }
 }

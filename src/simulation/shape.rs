@@ -2,8 +2,8 @@
 
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
-    Accuracy, Figures, Peak, Plan, Protocol, Regime, Residual, Sampling, SimulateReply, SolverKind, State, Steps,
-    Stress,
+    Accuracy, ContactSummary, Peak, Plan, Protocol, Regime, Residual, Sampling, SimulateReply, SolverKind, State,
+    Steps, Stress,
 };
 
 /// A reply with a nought for each number that the simulation will give, and one peak for however many there will be.
@@ -42,7 +42,7 @@ fn stress(sampling: &Sampling) -> Stress {
     }
 }
 
-const FIGURES: Figures = Figures {
+const FIGURES: ContactSummary = ContactSummary {
     e_star: 0.0,
     g_star: 0.0,
     indentation: 0.0,

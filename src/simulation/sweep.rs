@@ -13,13 +13,13 @@ use serde::Deserialize as _;
 use serde_json::{Value, json};
 
 use stickslip_mechanics::Setup;
-use stickslip_wire::any::Pointer;
-use stickslip_wire::check::{At, Fault, Faults};
-use stickslip_wire::pluck::{Found, pluck};
+use stickslip_wire::check::{Fault, Faults, JsonPath};
+use stickslip_wire::json_value::Pointer;
+use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::simulate::Simulation;
-use stickslip_wire::sweep::Draft;
+use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{
-    ContactDefinition, Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest, parse_value,
+    Code, ContactDefinition, Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest, parse_value,
 };
 
 use super::cost;
@@ -50,7 +50,7 @@ const VALUE_BYTES: usize = 32;
 /// A sweep whose axes stay within the ranges of their fields and whose outputs exist.
 #[derive(Debug)]
 pub struct Sweep {
-    draft: Draft,
+    draft: CheckedSweep,
     base: Value,
     /// The contact, where no axis changes it: a table is not to be read anew for each point.
     contact: Option<(ContactDefinition, Setup)>,
@@ -97,10 +97,10 @@ impl Sweep {
     /// # Errors
     /// [`Rejection::Invalid`] if an axis leaves the range of its field, the base is at fault whatever the axes say, or an
     /// output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
-    pub fn plan(draft: Draft) -> Result<Sweep, Rejection> {
+    pub fn plan(draft: CheckedSweep) -> Result<Sweep, Rejection> {
         let mut document = draft.request.base.0.clone();
         let mut sweep = Sweep { draft, base: Value::Null, contact: None, each: 0, bytes: 0 };
-        let mut outputs = vec![Found::Nothing; sweep.draft.outputs.len()];
+        let mut outputs = vec![Lookup::Nothing; sweep.draft.outputs.len()];
         let (mut faults, mut taken, mut refused) = (Vec::new(), 0, None);
         for point in sweep.corners() {
             sweep.draft.put(&mut document, point);
@@ -138,17 +138,18 @@ impl Sweep {
         corners
     }
 
-    fn look(&mut self, simulation: Simulation, outputs: &mut [Found]) {
+    fn look(&mut self, simulation: Simulation, outputs: &mut [Lookup]) {
         self.each = self.each.max(cost::of_simulation(&simulation));
         self.bytes = self.bytes.max(cost::bytes_of_simulation(&simulation));
         let reply = shape(&simulation);
         for (output, found) in self.draft.outputs.iter().zip(outputs) {
-            if !matches!(found, Found::Number(_)) {
-                *found = pluck(&reply, &any_peak(output));
+            if !matches!(found, Lookup::Number(_)) {
+                *found = lookup(&reply, &any_peak(output));
             }
         }
-        let fixed =
-            |axis: &stickslip_wire::sweep::Run| axis.pointer.segments().first().is_none_or(|first| first != "contact");
+        let fixed = |axis: &stickslip_wire::sweep::AxisValues| {
+            axis.pointer.segments().first().is_none_or(|first| first != "contact")
+        };
         if self.draft.axes.iter().all(fixed) {
             self.contact = Some((simulation.definition, simulation.setup));
         }
@@ -161,7 +162,7 @@ impl Sweep {
         for fault in found {
             let place = self.draft.place_of(&fault.pointer);
             if (taken == 0 || !place.starts_with("/base")) && !seen.contains(&place) {
-                faults.add(At::Pointer(&place), fault.detail);
+                faults.add(JsonPath::Pointer(&place), fault.detail);
                 seen.push(place);
             }
         }
@@ -173,13 +174,13 @@ impl Sweep {
         }
     }
 
-    fn check_outputs(&self, found: &[Found]) -> Result<(), Rejection> {
-        let (mut faults, at) = (Faults::default(), At::Root.member("outputs"));
+    fn check_outputs(&self, found: &[Lookup]) -> Result<(), Rejection> {
+        let (mut faults, at) = (Faults::default(), JsonPath::Root.member("outputs"));
         for (index, found) in found.iter().enumerate() {
             match found {
-                Found::Number(_) => {}
-                Found::Nothing => faults.add(at.index(index), "the reply to the base has nothing there"),
-                Found::Other => faults.add(at.index(index), "the reply to the base has no number there"),
+                Lookup::Number(_) => {}
+                Lookup::Nothing => faults.add(at.index(index), "the reply to the base has nothing there"),
+                Lookup::Other => faults.add(at.index(index), "the reply to the base has no number there"),
             }
         }
         faults.done(Some(()))
@@ -187,7 +188,7 @@ impl Sweep {
 
     /// The sweep as it was asked for, with its axes.
     #[must_use]
-    pub fn draft(&self) -> &Draft {
+    pub fn draft(&self) -> &CheckedSweep {
         &self.draft
     }
 
@@ -302,9 +303,9 @@ impl Sweep {
             stop.check()?;
             let own = allowed.map_or_else(|| stop.clone(), |allowed| stop.child_deadline(allowed));
             match self.point(document, point, &own) {
-                Ok(reply) => rows.values.extend(self.draft.outputs.iter().map(|output| match pluck(&reply, output) {
-                    Found::Number(Some(value)) => value,
-                    Found::Number(None) | Found::Nothing | Found::Other => f64::NAN,
+                Ok(reply) => rows.values.extend(self.draft.outputs.iter().map(|output| match lookup(&reply, output) {
+                    Lookup::Number(Some(value)) => value,
+                    Lookup::Number(None) | Lookup::Nothing | Lookup::Other => f64::NAN,
                 })),
                 Err(failure) => {
                     stop.check()?;
@@ -332,10 +333,10 @@ impl Sweep {
 fn of_rejection(rejection: Rejection) -> PointFailure {
     match rejection {
         Rejection::Refused { pointer, error } => of_failure(Failure::Refused { pointer, error }),
-        Rejection::NotJson(detail) => failure("invalid_input", String::new(), detail),
+        Rejection::NotJson(detail) => failure(Code::InvalidInput, String::new(), detail),
         Rejection::Invalid(faults) => {
             let first = faults.into_iter().next().unwrap_or(Fault { pointer: String::new(), detail: String::new() });
-            failure("invalid_input", first.pointer, first.detail)
+            failure(Code::InvalidInput, first.pointer, first.detail)
         }
     }
 }
@@ -349,15 +350,15 @@ fn of_failure(refusal: Failure) -> PointFailure {
     }
 }
 
-fn failure(code: &str, pointer: String, detail: String) -> PointFailure {
-    PointFailure { index: 0, code: code.to_owned(), pointer, detail }
+fn failure(code: Code, pointer: String, detail: String) -> PointFailure {
+    PointFailure { index: 0, code: code.as_str().to_owned(), pointer, detail }
 }
 
 /// How many peaks there are is not known before; so any of them may be asked for.
 fn any_peak(output: &Pointer) -> Pointer {
     match output.segments() {
         [residual, peaks, index, rest @ ..]
-            if residual == "residual" && peaks == "peaks" && stickslip_wire::any::index(index).is_some() =>
+            if residual == "residual" && peaks == "peaks" && stickslip_wire::json_value::index(index).is_some() =>
         {
             let first = format!("/residual/peaks/0{}", rest.iter().map(|part| format!("/{part}")).collect::<String>());
             Pointer::parse(&first).unwrap_or_else(|| output.clone())

@@ -28,7 +28,7 @@ async fn loops_and_sweeps_answer_the_client() {
     for displacement in [1e-7, -1e-7] {
         client.apply(contact.id, &Move::displacement(displacement).into(), &plain).await.unwrap();
     }
-    let page = client.trace(contact.id, Some(1), Some(1), Some(4)).await.unwrap();
+    let page = client.hysteresis_loop(contact.id, Some(1), Some(1), Some(4)).await.unwrap();
     assert_eq!((page.sequence, page.part), (vec![2; 4], vec![0.25, 0.5, 0.75, 1.0]));
     assert_eq!((page.displacement[3], page.next), (-1e-7, None));
 

@@ -17,7 +17,7 @@ use stickslip::store::{MemoryStore, Snapshot, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{
-    At, CreateRequest, EndReason, Faults, ForkRequest, Move, Path, PathRequest, State, Steps, StressRequest,
+    CreateRequest, EndReason, Faults, ForkRequest, JsonPath, Move, Path, PathRequest, State, Steps, StressRequest,
 };
 use uuid::Uuid;
 
@@ -43,7 +43,7 @@ fn along(moves: Vec<Move>) -> PathRequest {
 /// Every move of a session made again from its definition, with nothing of the session layer.
 async fn replayed(store: &dyn Store, id: Uuid) -> Contact {
     let session = store.find(id).await.unwrap();
-    let setup = session.definition.check(At::Root, &mut Faults::default()).unwrap();
+    let setup = session.definition.check(JsonPath::Root, &mut Faults::default()).unwrap();
     let mut contact = Contact::new(setup).unwrap();
     for record in store.history(id, 0, usize::MAX).await.unwrap() {
         contact.apply_within(&record.step.step(), record.tolerance).unwrap();

@@ -1,21 +1,31 @@
 //! The body of `POST /accuracy` and its reply.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::Setup;
 
-use super::check::{At, Fault, Faults};
+use super::check::{Fault, Faults, JsonPath};
 use super::definition::ContactDefinition;
-use super::limits;
-use super::one_key::given;
+use super::limits::{Items, Tolerance, limits};
 use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
 use super::reply::SolverKind;
-use super::simulate::{Solver, Springs};
+use super::simulate::{Solver, Springs, most_springs};
+use super::single_key::not_null;
 use super::stress::{Field, Points, Sampling, StressRequest};
 
-/// A contact, the path it is to follow, and the solvers that are to follow it; nothing of it is kept.
+/// Solvers that one comparison may name.
+const SOLVERS: Items = Items(1..=16);
+/// Springs that are compared unless the request names its solvers.
+const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
+/// Radii at which stresses are compared unless the request names some.
+const COMPARED_RADII: usize = 200;
+
+/// A contact, the path that it follows, and the solvers to compare on it; the server keeps nothing of it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -34,36 +44,31 @@ pub struct AccuracyRequest {
     pub path: Path,
     /// Where the shear stress at the end of the path is compared; left out, at 200 radii evenly spaced from the centre to the
     /// edge. `fields`, if named, must hold `shear`; nothing else is compared.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// The solvers, in the order of the rows; left out, the exact one and 10, 100, 1000 and 10 000 springs.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub solvers: Option<Vec<Solver>>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number. The reference is held to a sixteenth of it.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
+limits!(AccuracyRequest { tolerance: Tolerance, solvers: SOLVERS });
 
-/// What each solver costs, and how wrong it is.
+/// The time and the error of each solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyReply {
-    /// What the rows are held against.
+    /// What the rows are compared with.
     pub reference: Reference,
     /// One row a solver.
     pub rows: Vec<AccuracyRow>,
 }
 
-/// The zero of error, which has an error too.
+/// The solution that errors are measured from, with its own error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Reference {
     /// The solver.
     pub solver: SolverKind,
     /// What makes it a reference.
     pub reason: String,
-    /// Its own estimated error of the forces, relative to `force_unit`: differences below it say nothing.
+    /// Its own estimated error of the forces, relative to `force_unit`: smaller differences have no meaning.
     pub force_error: f64,
     /// Its own estimated error of the stresses, relative to `stress_unit`.
     pub stress_error: f64,
@@ -118,10 +123,10 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Moves and radii: how often each spring is looked at.
+    /// Moves and radii: how often each spring is evaluated.
     #[must_use]
     pub fn passes(&self) -> usize {
-        self.plan.length() + self.sampling.length()
+        self.plan.length().saturating_add(self.sampling.length())
     }
 
     /// The springs of each solver that has any.
@@ -135,7 +140,7 @@ impl Comparison {
 
 /// The exact solver, and springs in powers of ten.
 fn ladder() -> Vec<Solver> {
-    let springs = limits::SPRING_LADDER.map(|count| Solver::Springs(Springs { count }));
+    let springs = SPRING_LADDER.map(|count| Solver::Springs(Springs { count }));
     std::iter::once(Solver::Exact).chain(springs).collect()
 }
 
@@ -144,24 +149,24 @@ impl Document for AccuracyRequest {
 
     fn check(self) -> Result<Comparison, Rejection> {
         let mut faults = Faults::default();
-        let setup = self.contact.check(At::Root.member("contact"), &mut faults);
-        let plan = self.path.check(At::Root.member("path"), &mut faults);
+        let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.unwrap_or_else(|| StressRequest {
-            points: Some(limits::COMPARED),
+            points: Some(COMPARED_RADII),
             fields: Some(vec![Field::Shear]),
             ..StressRequest::default()
         });
-        let at = At::Root.member("stress");
+        let at = JsonPath::Root.member("stress");
         let sampling = stress.check(at, &mut faults).unwrap_or_else(Sampling::none);
         // Without a sampling its own faults are known already.
         if !sampling.fields.shear && sampling.fields != Sampling::none().fields {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
-        let at = At::Root.member("solvers");
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let at = JsonPath::Root.member("solvers");
         let solvers = self.solvers.unwrap_or_else(ladder);
-        let passes = plan.as_ref().map_or(0, Plan::length) + sampling.length();
-        if faults.length(at, solvers.len(), &limits::SOLVERS) {
+        let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(sampling.length());
+        if faults.length(at, solvers.len(), &SOLVERS.0) {
             let each = solvers.iter().enumerate();
             each.for_each(|(index, solver)| solver.check(at.index(index), passes, &mut faults));
         }
@@ -170,8 +175,7 @@ impl Document for AccuracyRequest {
         let comparison =
             setup.zip(plan).map(|(setup, plan)| Comparison { definition, setup, plan, sampling, solvers, tolerance });
         if let Some(comparison) = &comparison {
-            let (all, most) =
-                (comparison.springs().fold(0, usize::saturating_add), limits::SPRING_STEPS / passes.max(1));
+            let (all, most) = (comparison.springs().fold(0, usize::saturating_add), most_springs(passes));
             if faults.is_empty() && all > most {
                 faults.add(at, format_args!("{all} springs in all over {passes} moves and radii: allowed are {most}"));
             }

@@ -3,10 +3,12 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use stickslip_mechanics::{DEFAULT_TOLERANCE, Error, range::Range};
+use stickslip_mechanics::{Error, range::Range};
 
-use super::limits;
 use super::parse::Rejection;
+
+/// Faults that one reply lists; a body can have a great many.
+const LISTED_FAULTS: usize = 100;
 
 /// One fault of a request.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -19,40 +21,41 @@ pub struct Fault {
     pub detail: String,
 }
 
-/// A place in the document. It borrows its parent, so that walking a sound document writes no pointer at all.
+/// A place in a JSON document, written as a JSON pointer (RFC 6901). It borrows its parent, so that no pointer is written
+/// while nothing is wrong.
 #[derive(Clone, Copy, Debug)]
-pub enum At<'a> {
+pub enum JsonPath<'a> {
     /// The whole document.
     Root,
     /// A place written out already.
     Pointer(&'a str),
     /// A member of an object.
-    Member(&'a At<'a>, &'a str),
+    Member(&'a JsonPath<'a>, &'a str),
     /// An element of an array.
-    Index(&'a At<'a>, usize),
+    Index(&'a JsonPath<'a>, usize),
 }
 
-impl<'a> At<'a> {
+impl<'a> JsonPath<'a> {
     /// The member `name` of the object at this place.
     #[must_use]
-    pub fn member(&'a self, name: &'a str) -> At<'a> {
-        At::Member(self, name)
+    pub fn member(&'a self, name: &'a str) -> JsonPath<'a> {
+        JsonPath::Member(self, name)
     }
 
     /// The element `index` of the array at this place.
     #[must_use]
-    pub fn index(&'a self, index: usize) -> At<'a> {
-        At::Index(self, index)
+    pub fn index(&'a self, index: usize) -> JsonPath<'a> {
+        JsonPath::Index(self, index)
     }
 }
 
-impl fmt::Display for At<'_> {
+impl fmt::Display for JsonPath<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            At::Root => Ok(()),
-            At::Pointer(written) => f.write_str(written),
-            At::Member(parent, name) => write!(f, "{parent}/{}", escaped(name)),
-            At::Index(parent, index) => write!(f, "{parent}/{index}"),
+            JsonPath::Root => Ok(()),
+            JsonPath::Pointer(written) => f.write_str(written),
+            JsonPath::Member(parent, name) => write!(f, "{parent}/{}", escaped(name)),
+            JsonPath::Index(parent, index) => write!(f, "{parent}/{index}"),
         }
     }
 }
@@ -74,28 +77,28 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Notes a fault; beyond [`limits::FAULTS`] they are no longer listed.
-    pub fn add(&mut self, at: At<'_>, detail: impl fmt::Display) {
+    /// Notes a fault; beyond one hundred they are no longer listed.
+    pub fn add(&mut self, at: JsonPath<'_>, detail: impl fmt::Display) {
         self.count = self.count.saturating_add(1);
-        if self.found.len() < limits::FAULTS {
+        if self.found.len() < LISTED_FAULTS {
             self.found.push(Fault { pointer: at.to_string(), detail: detail.to_string() });
         }
     }
 
     /// Notes what the mechanics has no answer to, though every number of it is in its range.
-    pub fn unanswerable(&mut self, at: At<'_>, error: Error) {
+    pub fn unanswerable(&mut self, at: JsonPath<'_>, error: Error) {
         self.unanswerable.get_or_insert_with(|| (at.to_string(), error));
     }
 
     /// Holds a number against the range of its quantity.
-    pub fn number(&mut self, at: At<'_>, value: f64, range: &Range) {
+    pub fn number(&mut self, at: JsonPath<'_>, value: f64, range: &Range) {
         if !range.contains(value) {
             self.add(at, format_args!("{value:?} is out of range: allowed is {range}"));
         }
     }
 
     /// Holds a count against its limits.
-    pub fn count(&mut self, at: At<'_>, value: usize, allowed: &RangeInclusive<usize>) {
+    pub fn count<T: PartialOrd + fmt::Display>(&mut self, at: JsonPath<'_>, value: T, allowed: &RangeInclusive<T>) {
         if !allowed.contains(&value) {
             let (least, most) = (allowed.start(), allowed.end());
             self.add(at, format_args!("{value} is out of range: allowed is {least} to {most}"));
@@ -103,32 +106,13 @@ impl Faults {
     }
 
     /// Holds the length of an array against its limits; says whether it fits.
-    pub fn length(&mut self, at: At<'_>, length: usize, allowed: &RangeInclusive<usize>) -> bool {
+    pub fn length(&mut self, at: JsonPath<'_>, length: usize, allowed: &RangeInclusive<usize>) -> bool {
         let fits = allowed.contains(&length);
         if !fits {
             let (least, most) = (allowed.start(), allowed.end());
             self.add(at, format_args!("{length} elements: allowed are {least} to {most}"));
         }
         fits
-    }
-
-    /// Holds a label against its length.
-    pub fn label(&mut self, at: At<'_>, label: Option<&str>) {
-        if label.is_some_and(|text| text.contains('\0')) {
-            // Databases end a text there.
-            self.add(at, "the character U+0000 is not allowed");
-        } else if label.is_some_and(|text| text.chars().count() > limits::LABEL_LENGTH) {
-            self.add(at, format_args!("too long: allowed are {} characters", limits::LABEL_LENGTH));
-        }
-    }
-
-    /// The tolerance asked for, held against its range, or else the usual one.
-    pub fn tolerance(&mut self, at: At<'_>, tolerance: Option<f64>) -> f64 {
-        if let Some(value) = tolerance.filter(|value| !limits::TOLERANCE.contains(value)) {
-            let (least, most) = (limits::TOLERANCE.start(), limits::TOLERANCE.end());
-            self.add(at, format_args!("{value:?} is out of range: allowed is {least:e} to {most:e}"));
-        }
-        tolerance.unwrap_or(DEFAULT_TOLERANCE)
     }
 
     /// What `check` makes of a part of the document, if it notes no fault: nothing is computed from numbers that are out of
@@ -155,7 +139,7 @@ impl Faults {
             (Some(value), None) if self.found.is_empty() => Ok(value),
             (_, Some((pointer, error))) if self.found.is_empty() => Err(Rejection::Refused { pointer, error }),
             (_, Some((pointer, error))) => {
-                self.add(At::Pointer(&pointer), error);
+                self.add(JsonPath::Pointer(&pointer), error);
                 Err(Rejection::Invalid(self.found))
             }
             (_, None) => Err(Rejection::Invalid(self.found)),

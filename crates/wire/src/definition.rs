@@ -5,11 +5,12 @@ use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
 
-use super::check::{At, Faults};
-use super::one_key::one_key;
+use super::check::{Faults, JsonPath};
+use super::limits::{Exactly, limits};
 use super::profile::Profile;
+use super::single_key::single_key;
 
-/// Two bodies pressed together, at rest and never yet moved sideways.
+/// Two bodies pressed together, at rest and never moved tangentially.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -28,6 +29,7 @@ pub struct ContactDefinition {
     /// The normal load that the contact starts with.
     pub preload: Preload,
 }
+limits!(ContactDefinition { friction: range::FRICTION });
 
 /// The elastic constants, one key: the two bodies, or their reduced moduli.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -38,10 +40,11 @@ pub enum Material {
     /// The reduced moduli themselves.
     Effective(Effective),
 }
-one_key!(Material { "bodies" => Bodies, "effective" => Effective });
+single_key!(Material { "bodies" => Bodies, "effective" => Effective });
+limits!(enum Material { Bodies "bodies": Exactly(2) });
 
 /// One of the two bodies: its elastic constants, or the string `"rigid"`.
-// Untagged in writing alone. It is read by hand below, so that a fault in the object names its member.
+// Untagged when written. It is read by hand below, so that a fault in the object names its member.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Body {
@@ -51,7 +54,7 @@ pub enum Body {
     Rigid(Rigid),
 }
 
-/// The word for a body that does not deform.
+/// The name of a body that does not deform.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Rigid {
@@ -68,6 +71,7 @@ pub struct ElasticBody {
     /// Poisson's ratio ν, a pure number.
     pub poisson_ratio: f64,
 }
+limits!(ElasticBody { youngs_modulus: range::YOUNGS_MODULUS, poisson_ratio: range::POISSON_RATIO });
 
 /// The reduced moduli of the pair of bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -78,8 +82,9 @@ pub struct Effective {
     /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
     pub g_star: f64,
 }
+limits!(Effective { e_star: range::E_STAR, g_star: range::G_STAR });
 
-/// The normal load that the contact starts with, one key. Nought is a contact just touching.
+/// The normal load that the contact starts with, one key. Zero is a contact just touching.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Preload {
@@ -90,7 +95,12 @@ pub enum Preload {
     /// Contact radius, m.
     ContactRadius(f64),
 }
-one_key!(Preload { "normal_force" => NormalForce, "indentation" => Indentation, "contact_radius" => ContactRadius });
+single_key!(Preload { "normal_force" => NormalForce, "indentation" => Indentation, "contact_radius" => ContactRadius });
+limits!(enum Preload {
+    NormalForce "normal_force": range::NORMAL_FORCE,
+    Indentation "indentation": range::PRELOAD_INDENTATION,
+    ContactRadius "contact_radius": range::CONTACT_RADIUS,
+});
 
 impl<'de> Deserialize<'de> for Body {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -121,10 +131,10 @@ impl<'de> serde::de::Visitor<'de> for BodyVisitor {
 
 impl ContactDefinition {
     /// The checked setup; its faults are noted at `at`.
-    pub fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Setup> {
+    pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Setup> {
         let profile = self.profile.check(at.member("profile"), faults);
         let elasticity = self.material.check(at.member("material"), faults);
-        faults.number(at.member("friction"), self.friction, &range::FRICTION);
+        self.check_members(at, faults);
         let preload = self.preload.check(at.member("preload"), faults);
         Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })
     }
@@ -149,20 +159,22 @@ impl ContactDefinition {
 }
 
 impl Material {
-    fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
         match self {
             Material::Effective(moduli) => {
-                let at = at.member("effective");
-                faults.number(at.member("e_star"), moduli.e_star, &range::E_STAR);
-                faults.number(at.member("g_star"), moduli.g_star, &range::G_STAR);
+                moduli.check_members(at.member("effective"), faults);
                 elasticity::Elasticity::effective(moduli.e_star, moduli.g_star).ok()
             }
-            Material::Bodies(bodies) => check_bodies(bodies, at.member("bodies"), faults),
+            Material::Bodies(bodies) => {
+                let elasticity = check_bodies(bodies, at.member("bodies"), faults);
+                self.check_members(at, faults);
+                elasticity
+            }
         }
     }
 }
 
-fn check_bodies(bodies: &[Body], at: At<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
+fn check_bodies(bodies: &[Body], at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
     let mut checked = bodies.iter().enumerate().map(|(index, body)| body.check(at.index(index), faults));
     match (checked.next(), checked.next(), checked.next()) {
         (Some(first), Some(second), None) => match (first, second) {
@@ -177,10 +189,7 @@ fn check_bodies(bodies: &[Body], at: At<'_>, faults: &mut Faults) -> Option<elas
                 None
             }
         },
-        _ => {
-            faults.add(at, format_args!("{} elements: allowed are exactly 2", bodies.len()));
-            None
-        }
+        _ => None,
     }
 }
 
@@ -191,12 +200,11 @@ enum Checked {
 }
 
 impl Body {
-    fn check(&self, at: At<'_>, faults: &mut Faults) -> Checked {
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Checked {
         match self {
             Body::Rigid(Rigid::Rigid) => Checked::Rigid,
             Body::Elastic(body) => {
-                faults.number(at.member("youngs_modulus"), body.youngs_modulus, &range::YOUNGS_MODULUS);
-                faults.number(at.member("poisson_ratio"), body.poisson_ratio, &range::POISSON_RATIO);
+                body.check_members(at, faults);
                 Checked::Elastic(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok())
             }
         }
@@ -204,20 +212,12 @@ impl Body {
 }
 
 impl Preload {
-    fn check(&self, at: At<'_>, faults: &mut Faults) -> mechanics::Preload {
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> mechanics::Preload {
+        self.check_members(at, faults);
         match *self {
-            Preload::NormalForce(force) => {
-                faults.number(at.member("normal_force"), force, &range::NORMAL_FORCE);
-                mechanics::Preload::NormalForce(force)
-            }
-            Preload::Indentation(depth) => {
-                faults.number(at.member("indentation"), depth, &range::PRELOAD_INDENTATION);
-                mechanics::Preload::Indentation(depth)
-            }
-            Preload::ContactRadius(radius) => {
-                faults.number(at.member("contact_radius"), radius, &range::CONTACT_RADIUS);
-                mechanics::Preload::ContactRadius(radius)
-            }
+            Preload::NormalForce(force) => mechanics::Preload::NormalForce(force),
+            Preload::Indentation(depth) => mechanics::Preload::Indentation(depth),
+            Preload::ContactRadius(radius) => mechanics::Preload::ContactRadius(radius),
         }
     }
 }

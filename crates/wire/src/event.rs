@@ -11,17 +11,17 @@ use super::reply::State;
 /// The data of an event `state`: a move that has been applied, with the state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StateEvent {
-    /// The session.
+    /// The identifier of the contact.
     pub id: Uuid,
     /// The number of the move, and of moves so far; the identifier of the event.
     pub sequence: u64,
-    /// The move as it was given; left out before the first.
+    /// The move as it was given; absent before the first.
     #[serde(rename = "move", default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub step: Option<Move>,
     /// The state after it.
     pub state: State,
-    /// When it was applied, or the session made (ISO 8601, UTC).
+    /// When it was applied, or the contact created (ISO 8601, UTC).
     pub at: Timestamp,
 }
 
@@ -40,6 +40,6 @@ pub enum EndReason {
     Deleted,
     /// The contact has been idle for so long that it has expired.
     Expired,
-    /// The server stops; another, or the same when it is back, goes on from `Last-Event-ID`.
+    /// The server stops. After a restart, or on another server, the stream continues from `Last-Event-ID`.
     Stopping,
 }

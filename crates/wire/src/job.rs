@@ -1,51 +1,49 @@
-//! What `/jobs` tells of work that goes on after its request has been answered.
+//! Replies of `/jobs`: work that continues after its request has been answered.
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::event::EndReason;
 
-/// A piece of work that the server does on its own.
+/// A sweep that the server computes after its request has been answered.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JobReply {
     /// Its identifier.
     pub id: Uuid,
-    /// How it stands.
+    /// Its state.
     pub state: JobState,
-    /// How far it has come.
+    /// Its progress.
     pub progress: JobProgress,
     /// When it was asked for (ISO 8601, UTC).
     pub created_at: Timestamp,
     /// When it ended (ISO 8601, UTC).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub finished_at: Option<Timestamp>,
-    /// When it goes, with its result (ISO 8601, UTC).
+    /// When it is deleted, with its result (ISO 8601, UTC).
     pub expires_at: Timestamp,
     /// Why it failed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub detail: Option<String>,
-    /// The path of its result, which is there once the state is `done`.
+    /// The path of its result, available once the state is `done`.
     #[schema(example = "/jobs/0199…/result")]
     pub result: String,
 }
 
-/// How a job stands.
+/// The state of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JobState {
-    /// It waits for its turn, or is worked on.
+    /// It is queued, or being computed.
     Running,
-    /// Its result is there.
+    /// Its result is available.
     Done,
-    /// It cannot be done.
+    /// It ended with an error.
     Failed,
 }
 
-/// How far a job has come.
+/// The progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct JobProgress {
     /// Points in all.

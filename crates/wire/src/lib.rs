@@ -1,47 +1,57 @@
 //! The JSON that goes in and out, and its checked conversion into the types of [`stickslip_mechanics`].
 //!
-//! A request passes two gates. [`parse()`] turns bytes into the typed document: what is not JSON, names an unknown
-//! member or has a wrong type stops there. [`Document::check`] then holds every number against its range and collects all
-//! faults at once. Both name the place by a JSON pointer. What has passed is trusted from there on.
+//! A request is checked in two steps. [`parse()`] turns bytes into the typed document: it refuses what is not JSON, names an
+//! unknown member or has a wrong type. [`Document::check`] then holds every number against its limit, declared beside the
+//! document by `limits!`, and collects all faults at once. Both name the place by a JSON pointer. What has passed is trusted
+//! from there on.
 //!
 //! Choices are objects with one key, or carry a `type`; there is no untagged union, so that an error can always say
-//! which member is meant. Numbers that are not finite leave as `null`.
+//! which member is meant. Numbers that are not finite are written as `null`.
+//!
+//! No integer of a request is computed with before it has been held against its limit, and integer arithmetic that could
+//! overflow is denied throughout the crate.
+
+#![deny(clippy::arithmetic_side_effects)]
 
 pub mod accuracy;
-pub mod any;
 pub mod check;
 pub mod client;
 pub mod definition;
 pub mod event;
+#[cfg(test)]
+mod extremes;
+pub mod hysteresis_loop;
 pub mod job;
+pub mod json_value;
 pub mod limits;
-mod one_key;
+mod objects_only;
 pub mod parse;
 pub mod path;
-pub mod pluck;
+pub mod pointer_lookup;
 pub mod problem;
 pub mod profile;
 pub mod protocol;
 pub mod reply;
 pub mod session;
 pub mod simulate;
+mod single_key;
+#[allow(clippy::arithmetic_side_effects, reason = "the lengths of the columns of a table have been checked")]
 mod slope;
 pub mod stress;
-mod strict;
 pub mod sweep;
-pub mod trace;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
-pub use check::{At, Fault, Faults};
+pub use check::{Fault, Faults, JsonPath};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
+pub use hysteresis_loop::LoopPage;
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
-pub use problem::ProblemDocument;
+pub use problem::{Code, ProblemDocument};
 pub use profile::{Profile, SphereProfile};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
-pub use reply::{Accuracy, Figures, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
+pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
     CreateRequest, ForkRequest, HistoryItem, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
     SessionPage, SessionReply, SessionSummary, StressReply,
@@ -49,4 +59,3 @@ pub use session::{
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
 pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};
-pub use trace::LoopPage;

@@ -1,75 +1,302 @@
-//! How much one request may ask for. Each limit is one constant, used by the checks, by the OpenAPI document and by
-//! the error that names it.
+//! Limits of the members of documents. Each is declared once, beside its document, by [`limits!`]: from that declaration
+//! come the check of the member and the keywords of its schema in the OpenAPI document.
+//!
+//! The constants here are those that more than one document, or the service, needs.
 
 use std::ops::RangeInclusive;
 
-use stickslip_mechanics::range::{self, Quantity, Range};
+use serde_json::{Value, json};
+use stickslip_mechanics::DEFAULT_TOLERANCE;
+use stickslip_mechanics::range::{self, Range};
+
+use super::check::{Faults, JsonPath};
 
 /// Moves in one path.
 pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
-/// Reversals of a falling amplitude; each is one move, and one more ends the path at nought.
-pub const REVERSALS: RangeInclusive<usize> = 1..=99_999;
-/// Reversals of a protocol that is to be found: kinks are sought one by one, and the cost grows with their square.
+/// Reversals of a protocol that is to be found: extrema are sought one by one, and the cost grows with their square.
 pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
-/// What may remain of the largest stress after a protocol, over μ times the pressure.
-pub const TARGET: Range = Range { quantity: Quantity::ProtocolTarget, unit: "", min: 1e-4, max: 10.0 };
-/// Standard deviation of the displacements of a protocol, relative to themselves.
-pub const AMPLITUDE_ERROR: Range = Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 };
-/// The fraction that the coefficient of friction may be off.
-pub const FRICTION_ERROR: Range = Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 };
-/// How many times a protocol is tried with errors.
-pub const SAMPLES: RangeInclusive<usize> = 2..=10_000;
-/// The same if the client does not say.
-pub const DEFAULT_SAMPLES: usize = 200;
-/// Where a sequence of random numbers may begin: what every JSON reader takes for a whole number.
-pub const SEED: RangeInclusive<u64> = 0..=(1 << 53) - 1;
 /// Points of a uniform stress request, both ends included.
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
-/// Radii of a stress request that lists them.
-pub const STRESS_RADII: RangeInclusive<usize> = 1..=10_000;
-/// Points of a hysteresis loop that one move is given.
+/// Points of a hysteresis loop per move.
 pub const LOOP_POINTS: RangeInclusive<usize> = 1..=100;
-/// Radii at which the search for extrema looks at the springs.
+/// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
 /// does not have.
 pub const SPRING_STEPS: usize = 2_000_000_000;
-/// Solvers that one comparison may name.
-pub const SOLVERS: RangeInclusive<usize> = 1..=16;
-/// Springs that a comparison looks at unless it names its solvers.
-pub const SPRING_LADDER: [usize; 4] = [10, 100, 1_000, 10_000];
-/// Points at which a comparison looks at the stress unless it names radii.
-pub const COMPARED: usize = 200;
-/// Characters of a label.
-pub const LABEL_LENGTH: usize = 200;
-/// Pieces of memory that a contact may hold. A move adds one at the most, unless it is curved, when it adds many.
+/// Pieces that the slip history of a contact may have. A move adds one at most, unless it is curved, when it adds many.
 pub const MEMORY_DEPTH: usize = 200_000;
 /// Relative tolerance for what is not exact.
 pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
-/// Faults that one reply lists; a body can hold a great many.
-pub const FAULTS: usize = 100;
 /// Profiles in one sum.
 pub const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
 /// Points of a tabulated profile.
 pub const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
-/// Axes of a sweep.
-pub const SWEEP_AXES: RangeInclusive<usize> = 1..=3;
-/// Values of an axis that is a linear or logarithmic span, both ends included.
-pub const AXIS_COUNT: RangeInclusive<usize> = 2..=2_000_000;
-/// Values of an axis that lists them.
-pub const AXIS_VALUES: RangeInclusive<usize> = 1..=10_000;
-/// A value of an axis; the field that it goes to has a range of its own.
-pub const AXIS_NUMBER: Range = Range { quantity: Quantity::Number, unit: "", min: -1e280, max: 1e280 };
-/// Outputs of a sweep.
-pub const SWEEP_OUTPUTS: RangeInclusive<usize> = 1..=16;
-/// Points of a sweep: the product of the counts of its axes.
-pub const SWEEP_POINTS: usize = 2_000_000;
-/// Numbers that come out of a sweep: points times outputs.
-pub const SWEEP_NUMBERS: usize = 8_000_000;
 /// Points without an answer that the reply to a sweep lists; all of them are counted.
 pub const SWEEP_FAILURES: usize = 100;
 
 /// The range of a count that the mechanics has among its quantities.
 const fn count(range: &Range) -> RangeInclusive<usize> {
     RangeInclusive::new(range.min as usize, range.max as usize)
+}
+
+/// A limit as JSON Schema states it.
+pub trait Keywords {
+    /// An object of keywords, to be added to the schema of the member.
+    fn keywords(&self) -> Value;
+}
+
+/// A limit of values of the type `T`.
+pub trait Limit<T>: Keywords {
+    /// Notes a fault at `at` if `value` is outside.
+    fn check(&self, value: &T, at: JsonPath<'_>, faults: &mut Faults);
+}
+
+/// A document some of whose members have limits.
+pub trait Limited {
+    /// The name of its schema.
+    const SCHEMA: &'static str;
+
+    /// The names of the members that have a limit, with the keywords of each.
+    fn limits() -> Vec<(&'static str, Value)>;
+}
+
+/// The number of elements of an array, whose elements have checks of their own.
+pub struct Items(pub RangeInclusive<usize>);
+
+/// The same where only one number is allowed.
+pub struct Exactly(pub usize);
+
+/// The number of elements of an array of numbers, and the range of each.
+pub struct Numbers(pub RangeInclusive<usize>, pub Range);
+
+/// A whole number whose range the mechanics gives.
+pub struct Whole(pub Range);
+
+/// The largest number of characters of a text, in which U+0000 is not allowed either.
+pub struct Characters(pub usize);
+
+/// [`TOLERANCE`], with the default.
+pub struct Tolerance;
+
+impl Tolerance {
+    /// The member `tolerance` of a request, or else the default.
+    pub(super) fn of(tolerance: Option<f64>, faults: &mut Faults) -> f64 {
+        Tolerance.check(&tolerance, JsonPath::Root.member("tolerance"), faults);
+        tolerance.unwrap_or(DEFAULT_TOLERANCE)
+    }
+}
+
+impl<T, L: Limit<T>> Limit<Option<T>> for L {
+    fn check(&self, value: &Option<T>, at: JsonPath<'_>, faults: &mut Faults) {
+        value.iter().for_each(|value| self.check(value, at, faults));
+    }
+}
+
+impl Keywords for Range {
+    fn keywords(&self) -> Value {
+        json!({"minimum": self.min, "maximum": self.max})
+    }
+}
+
+impl Limit<f64> for Range {
+    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        faults.number(at, *value, self);
+    }
+}
+
+macro_rules! counts {
+    ($($count:ty),*) => {$(
+        impl Keywords for RangeInclusive<$count> {
+            fn keywords(&self) -> Value {
+                json!({"minimum": self.start(), "maximum": self.end()})
+            }
+        }
+
+        impl Limit<$count> for RangeInclusive<$count> {
+            fn check(&self, value: &$count, at: JsonPath<'_>, faults: &mut Faults) {
+                faults.count(at, *value, self);
+            }
+        }
+    )*};
+}
+counts!(usize, u64);
+
+impl Keywords for Whole {
+    fn keywords(&self) -> Value {
+        count(&self.0).keywords()
+    }
+}
+
+impl Limit<usize> for Whole {
+    fn check(&self, value: &usize, at: JsonPath<'_>, faults: &mut Faults) {
+        faults.number(at, *value as f64, &self.0);
+    }
+}
+
+impl Keywords for Items {
+    fn keywords(&self) -> Value {
+        json!({"minItems": self.0.start(), "maxItems": self.0.end()})
+    }
+}
+
+impl<T> Limit<Vec<T>> for Items {
+    fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
+        faults.length(at, value.len(), &self.0);
+    }
+}
+
+impl Keywords for Exactly {
+    fn keywords(&self) -> Value {
+        Items(self.0..=self.0).keywords()
+    }
+}
+
+impl<T> Limit<Vec<T>> for Exactly {
+    fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
+        if value.len() != self.0 {
+            faults.add(at, format_args!("{} elements: allowed are exactly {}", value.len(), self.0));
+        }
+    }
+}
+
+impl Keywords for Numbers {
+    fn keywords(&self) -> Value {
+        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": self.1.keywords()})
+    }
+}
+
+impl Limit<Vec<f64>> for Numbers {
+    fn check(&self, value: &Vec<f64>, at: JsonPath<'_>, faults: &mut Faults) {
+        if faults.length(at, value.len(), &self.0) {
+            value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.1));
+        }
+    }
+}
+
+impl Keywords for Characters {
+    fn keywords(&self) -> Value {
+        json!({"maxLength": self.0})
+    }
+}
+
+impl Limit<String> for Characters {
+    fn check(&self, value: &String, at: JsonPath<'_>, faults: &mut Faults) {
+        if value.contains('\0') {
+            // Databases end a text there.
+            faults.add(at, "the character U+0000 is not allowed");
+        } else if value.chars().count() > self.0 {
+            faults.add(at, format_args!("too long: allowed are {} characters", self.0));
+        }
+    }
+}
+
+impl Keywords for Tolerance {
+    fn keywords(&self) -> Value {
+        json!({"minimum": TOLERANCE.start(), "maximum": TOLERANCE.end(), "default": DEFAULT_TOLERANCE})
+    }
+}
+
+impl Limit<f64> for Tolerance {
+    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        if !TOLERANCE.contains(value) {
+            let (least, most) = (TOLERANCE.start(), TOLERANCE.end());
+            faults.add(at, format_args!("{value:?} is out of range: allowed is {least:e} to {most:e}"));
+        }
+    }
+}
+
+/// Declares the limits of the members of a document, `limits!(Document { member: limit, .. } and Shared)`, or of a choice with
+/// one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then holds them against their limits.
+/// `Shared` is a document whose limited members this one has too, and which checks them itself.
+macro_rules! limits {
+    ($document:ident and $shared:ty) => {
+        impl $crate::limits::Limited for $document {
+            const SCHEMA: &'static str = stringify!($document);
+
+            fn limits() -> Vec<(&'static str, serde_json::Value)> {
+                <$shared as $crate::limits::Limited>::limits()
+            }
+        }
+    };
+    ($document:ident { $($member:ident: $limit:expr),* $(,)? } $(and $shared:ty)?) => {
+        impl $crate::limits::Limited for $document {
+            const SCHEMA: &'static str = stringify!($document);
+
+            fn limits() -> Vec<(&'static str, serde_json::Value)> {
+                #[allow(unused_mut)]
+                let mut limits = vec![$((stringify!($member), $crate::limits::Keywords::keywords(&$limit))),*];
+                $(limits.extend(<$shared as $crate::limits::Limited>::limits());)?
+                limits
+            }
+        }
+
+        impl $document {
+            /// Notes which of its own members are out of their limits.
+            #[allow(dead_code, reason = "a document that is taken apart on the way checks its members one by one")]
+            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
+                $($crate::limits::Limit::check(&$limit, &self.$member, at.member(stringify!($member)), faults);)*
+            }
+        }
+    };
+    (enum $choice:ident { $($variant:ident $key:literal: $limit:expr),* $(,)? }) => {
+        impl $crate::limits::Limited for $choice {
+            const SCHEMA: &'static str = stringify!($choice);
+
+            fn limits() -> Vec<(&'static str, serde_json::Value)> {
+                vec![$(($key, $crate::limits::Keywords::keywords(&$limit))),*]
+            }
+        }
+
+        impl $choice {
+            /// Notes whether the value of the key is out of its limits.
+            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
+                #[allow(unreachable_patterns)]
+                match self {
+                    $($choice::$variant(value) => $crate::limits::Limit::check(&$limit, value, at.member($key), faults),)*
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+pub(crate) use limits;
+
+/// Schema, member and keywords of every limit but those of profiles.
+#[must_use]
+pub fn all() -> Vec<(&'static str, &'static str, Value)> {
+    use super::{definition, path, protocol, session, simulate, stress, sweep};
+
+    fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
+        D::limits().into_iter().map(|(member, keywords)| (D::SCHEMA, member, keywords))
+    }
+    macro_rules! of_all {
+        ($($document:ty),* $(,)?) => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
+    }
+    of_all![
+        definition::ContactDefinition,
+        definition::ElasticBody,
+        definition::Effective,
+        definition::Material,
+        definition::Preload,
+        path::EqualPeaks,
+        path::FallingAmplitude,
+        path::Move,
+        path::Path,
+        protocol::ProtocolRequest,
+        protocol::ProtocolStart,
+        protocol::RelaxRequest,
+        protocol::Robustness,
+        session::CreateRequest,
+        session::ForkRequest,
+        session::MoveRequest,
+        session::PathRequest,
+        simulate::SimulateRequest,
+        simulate::Springs,
+        stress::StressRequest,
+        super::accuracy::AccuracyRequest,
+        sweep::Axis,
+        sweep::Span,
+        sweep::SweepRequest,
+    ]
 }

@@ -7,7 +7,7 @@ use serde_path_to_error::{Deserializer, Path, Segment, Track};
 use stickslip_mechanics as mechanics;
 
 use super::check::{Fault, escaped};
-use super::strict::Strict;
+use super::objects_only::ObjectsOnly;
 
 /// Longest detail or pointer of a fault: both can quote the body, which may be long.
 const LONGEST_TEXT: usize = 400;
@@ -67,7 +67,7 @@ pub fn read<T: Document>(body: &[u8]) -> Result<T::Checked, Rejection> {
 pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
     let mut json = serde_json::Deserializer::from_slice(body);
     let mut track = Track::new();
-    let parsed = T::deserialize(Strict(Deserializer::new(&mut json, &mut track)));
+    let parsed = T::deserialize(ObjectsOnly(Deserializer::new(&mut json, &mut track)));
     match parsed.and_then(|value| json.end().map(|()| value)) {
         Ok(value) => Ok(value),
         // serde_json calls some well-formed documents a syntax error too (1e999, an array longer than expected), and
@@ -85,7 +85,7 @@ pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
 /// The fault if it is another document than asked for.
 pub fn parse_value<T: DeserializeOwned>(value: &Value) -> Result<T, Fault> {
     let mut track = Track::new();
-    let parsed = T::deserialize(Strict(Deserializer::new(value, &mut track)));
+    let parsed = T::deserialize(ObjectsOnly(Deserializer::new(value, &mut track)));
     parsed.map_err(|error| fault(&track.path(), &error.to_string()))
 }
 

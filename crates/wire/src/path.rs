@@ -1,6 +1,9 @@
 //! Moves, and paths of moves.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{
@@ -8,32 +11,29 @@ use stickslip_mechanics::{
     range::{Quantity, Range},
 };
 
-use super::check::{At, Faults};
-use super::limits;
-use super::one_key::{given, one_key};
+use super::check::{Faults, JsonPath};
+use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
+use super::single_key::{not_null, single_key};
+
+/// Reversals of an oscillation that dies away; each is one move, and one more ends the path at zero.
+const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
 /// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without a
 /// normal one the indentation stays.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct Move {
     /// Tangential displacement of the indenter, m.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub displacement: Option<f64>,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub force: Option<f64>,
-    /// Indentation, m; below nought the bodies are apart and nothing is remembered.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
+    /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64>,
     /// Normal force, N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub normal_force: Option<f64>,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -51,17 +51,25 @@ pub enum Path {
     Displacement(Vec<f64>),
     /// Tangential forces, N, one move each.
     Force(Vec<f64>),
-    /// To and fro with an amplitude that falls linearly to nought (eq. 20 of the paper).
+    /// Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper).
     FallingAmplitude(FallingAmplitude),
-    /// To and fro from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the profile at hand.
+    /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the profile of the
+    /// contact.
     EqualPeaks(EqualPeaks),
 }
-one_key!(Path {
+single_key!(Path {
     "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude,
     "equal_peaks" => EqualPeaks
 });
+limits!(enum Path {
+    Moves "moves": Items(PATH_MOVES),
+    Displacement "displacement": Numbers(PATH_MOVES, range::DISPLACEMENT),
+    Force "force": Numbers(PATH_MOVES, range::FORCE),
+});
 
-/// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement nought.
+/// A tangential oscillation that dies away by the law of equal peaks; it ends at displacement zero.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
@@ -70,13 +78,14 @@ pub struct EqualPeaks {
     pub reversals: usize,
     /// Radius from which on the peaks are equal, m, up to the contact radius. The law needs one where the slope of the profile
     /// jumps (the tip of a cone, the rim of a flat), from that radius on; left out, it is there a tenth of the way from that
-    /// radius to the edge, else nought.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
+    /// radius to the edge, else zero.
     pub cutoff_radius: Option<f64>,
 }
+limits!(EqualPeaks { reversals: REVERSALS, cutoff_radius: range::CONTACT_RADIUS });
 
-/// A tangential oscillation that dies away; it ends at displacement nought.
+/// A tangential oscillation that dies away; it ends at displacement zero.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20}))]
@@ -84,9 +93,18 @@ pub struct FallingAmplitude {
     /// Number of reversals N_R; the path has one move more.
     pub reversals: usize,
     /// Displacement of the first reversal, m; left out, the displacement at which the contact just slips as a whole.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub amplitude: Option<f64>,
+}
+limits!(FallingAmplitude { reversals: REVERSALS, amplitude: range::DISPLACEMENT });
+
+impl Limited for Move {
+    const SCHEMA: &'static str = "Move";
+
+    /// Those of a relative move: as an increment the normal force may be negative.
+    fn limits() -> Vec<(&'static str, serde_json::Value)> {
+        let widest = Move { relative: true, ..Move::default() };
+        widest.targets().map(|(name, _, range)| (name, range.keywords())).into()
+    }
 }
 
 /// A checked path. Its moves are known once the contact is.
@@ -120,7 +138,7 @@ impl Move {
     }
 
     /// Notes at `at` what is wrong with the move.
-    pub fn check(&self, at: At<'_>, faults: &mut Faults) {
+    pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
         for (name, value, range) in self.targets() {
             if let Some(value) = value {
                 faults.number(at.member(name), value, range);
@@ -183,46 +201,25 @@ impl Move {
 impl Path {
     /// The checked path; its faults are noted at `at`.
     #[must_use]
-    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Plan> {
+    pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
+        faults.part(|faults| self.check_members(at, faults))?;
         faults.part(|faults| match self {
             Path::Moves(moves) => {
                 let at = at.member("moves");
-                if faults.length(at, moves.len(), &limits::PATH_MOVES) {
-                    moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
-                }
+                moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
                 Plan::Moves(moves)
             }
-            Path::Displacement(targets) => {
-                check_numbers(&targets, at.member("displacement"), &range::DISPLACEMENT, faults);
-                Plan::Displacement(targets)
-            }
-            Path::Force(targets) => {
-                check_numbers(&targets, at.member("force"), &range::FORCE, faults);
-                Plan::Force(targets)
-            }
+            Path::Displacement(targets) => Plan::Displacement(targets),
+            Path::Force(targets) => Plan::Force(targets),
             Path::FallingAmplitude(fall) => {
-                let at = at.member("falling_amplitude");
-                faults.count(at.member("reversals"), fall.reversals, &limits::REVERSALS);
-                if let Some(amplitude) = fall.amplitude {
-                    faults.number(at.member("amplitude"), amplitude, &range::DISPLACEMENT);
-                }
+                fall.check_members(at.member("falling_amplitude"), faults);
                 Plan::FallingAmplitude(fall)
             }
             Path::EqualPeaks(peaks) => {
-                let at = at.member("equal_peaks");
-                faults.count(at.member("reversals"), peaks.reversals, &limits::REVERSALS);
-                if let Some(radius) = peaks.cutoff_radius {
-                    faults.number(at.member("cutoff_radius"), radius, &range::CONTACT_RADIUS);
-                }
+                peaks.check_members(at.member("equal_peaks"), faults);
                 Plan::EqualPeaks(peaks)
             }
         })
-    }
-}
-
-fn check_numbers(numbers: &[f64], at: At<'_>, range: &Range, faults: &mut Faults) {
-    if faults.length(at, numbers.len(), &limits::PATH_MOVES) {
-        numbers.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, range));
     }
 }
 
@@ -233,8 +230,8 @@ impl Plan {
         match self {
             Plan::Moves(moves) => moves.len(),
             Plan::Displacement(targets) | Plan::Force(targets) => targets.len(),
-            Plan::FallingAmplitude(fall) => fall.reversals + 1,
-            Plan::EqualPeaks(peaks) => peaks.reversals + 1,
+            Plan::FallingAmplitude(fall) => fall.reversals.saturating_add(1),
+            Plan::EqualPeaks(peaks) => peaks.reversals.saturating_add(1),
             Plan::Single(_) => 1,
         }
     }

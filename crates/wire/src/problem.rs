@@ -1,9 +1,144 @@
-//! The document that every refusal comes as (RFC 9457).
+//! The document that every refusal comes as (RFC 9457), and the table of its kinds.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::check::Fault;
+
+/// Declares [`Code`]: for each kind when to use it, its status, code and title, and what a client can do.
+macro_rules! codes {
+    ($($(#[doc = $when:literal])+ $kind:ident = $status:literal $code:literal: $title:literal, $advice:literal;)+) => {
+        /// The kinds of refusals. Each says when it is the one to use.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Code {
+            $($(#[doc = $when])+ $kind,)+
+        }
+
+        impl Code {
+            /// All kinds, by status.
+            pub const ALL: &[Code] = &[$(Code::$kind),+];
+
+            /// The status code of a response that refuses so.
+            #[must_use]
+            pub fn status(self) -> u16 {
+                match self {
+                    $(Code::$kind => $status,)+
+                }
+            }
+
+            /// The name for programs, which never changes.
+            #[must_use]
+            pub fn as_str(self) -> &'static str {
+                match self {
+                    $(Code::$kind => $code,)+
+                }
+            }
+
+            /// What this kind of refusal is.
+            #[must_use]
+            pub fn title(self) -> &'static str {
+                match self {
+                    $(Code::$kind => $title,)+
+                }
+            }
+
+            /// What a client can do about it, in Markdown.
+            #[must_use]
+            pub fn advice(self) -> &'static str {
+                match self {
+                    $(Code::$kind => $advice,)+
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    /// The body is not JSON. What is JSON but wrong in itself is [`Code::InvalidInput`], as its syntax is not to blame.
+    NotJson = 400 "not_json": "The body is not JSON", "the body is not JSON: mend it";
+    /// A proxy might read the head of the request in another way than this server.
+    AmbiguousRequest = 400 "ambiguous_request": "The head of the request is ambiguous",
+        "the head can be read in two ways (two lengths, say): a proxy or a client is at fault";
+    /// The request has no key, or one that is not known.
+    Unauthorized = 401 "unauthorized": "A key is needed", "send a key: `Authorization: Bearer KEY`";
+    /// The key does not allow it. What belongs to another tenant does not exist: [`Code::ContactNotFound`].
+    Forbidden = 403 "forbidden": "The key does not allow this", "the key has not the role that this needs";
+    /// The path does not exist.
+    NotFound = 404 "not_found": "There is nothing at this path", "no such path";
+    /// The contact does not exist.
+    ContactNotFound = 404 "contact_not_found": "There is no such contact", "no such contact, or one of another tenant";
+    /// The job does not exist.
+    JobNotFound = 404 "job_not_found": "There is no such job",
+        "no such job, one of another tenant, or one that ended more than a day ago";
+    /// The path exists, but not with this method.
+    MethodNotAllowed = 405 "method_not_allowed": "This path has no such method", "`Allow` says which methods there are";
+    /// `Accept` admits no format that the path has.
+    NotAcceptable = 406 "not_acceptable": "There is no such format",
+        "`Accept` admits no format: [those there are](session.md#formats)";
+    /// The body takes too long to arrive.
+    RequestTimeout = 408 "request_timeout": "The request did not arrive in time", "the body came too slowly";
+    /// The request is sound, but the present state of the contact forbids it; [`Code::StaleSequence`] if the client has
+    /// said which state it expects.
+    Conflict = 409 "conflict": "The state of the contact forbids this",
+        "the contact does not allow it as it stands: its memory is full, or others moved it all the time";
+    /// The result of a job that has not ended, and may yet have one.
+    JobNotDone = 409 "job_not_done": "The job has not ended",
+        "the job has not ended: wait for its events, or ask again";
+    /// The result of a job that will never have one.
+    JobFailed = 409 "job_failed": "The job has failed", "the job ended with an error, which its document names";
+    /// The contact was idle for so long that it has been deleted.
+    ContactExpired = 410 "contact_expired": "The contact has expired",
+        "it was idle for longer than `--expire-after`: make a new one";
+    /// The contact is not at the sequence that `If-Match` names.
+    StaleSequence = 412 "stale_sequence": "The contact has moved on",
+        "it is not where `If-Match` says: look, then decide";
+    /// The body is too large.
+    TooLarge = 413 "too_large": "The body is too large", "bodies have at most 8 MiB";
+    /// The body is not declared as JSON.
+    UnsupportedMediaType = 415 "unsupported_media_type": "The body must be application/json",
+        "send `Content-Type: application/json`, uncompressed";
+    /// Something in the request is missing, unknown, of the wrong type or out of range, whatever the state of the
+    /// server. Each fault comes with a pointer to its place.
+    InvalidInput = 422 "invalid_input": "The request is invalid", "`errors` names each fault and what is allowed";
+    /// The request is valid, but no state carries the tangential force that it asks for.
+    ForceExceedsFriction = 422 "force_exceeds_friction": "The tangential force is not below the friction limit",
+        "the force must stay below μ F_N, which `detail` gives";
+    /// The request is valid, but the contact would outgrow the profile.
+    BeyondProfile = 422 "beyond_profile": "The contact outgrows the profile",
+        "the contact outgrows the table or the sphere: less load, or a larger profile";
+    /// The request is valid, but the contact area would be a ring.
+    ProfileNotConvexEnough = 422 "profile_not_convex_enough": "The contact area would not be a full circle",
+        "the contact would be a ring: [limits](limits.md)";
+    /// The request is valid, but the solver that it names cannot follow a move of it.
+    UnsupportedMove = 422 "unsupported_move": "The solver cannot follow this move",
+        "springs cannot follow this move: leave `solver` out";
+    /// The request takes longer than a server computes for one.
+    TooMuchWork = 422 "too_much_work": "The request takes too long",
+        "ask for less at a time: fewer springs, moves or points";
+    /// The idempotency key belongs to another request.
+    IdempotencyKeyReused = 422 "idempotency_key_reused": "The idempotency key belongs to another request",
+        "the key belongs to another request: choose a new one";
+    /// The tenant has as many jobs as it may have.
+    TooManyJobs = 429 "too_many_jobs": "There are too many jobs",
+        "wait for a job to end, or delete one; `Retry-After` says when to try again";
+    /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
+    Internal = 500 "internal": "The server has failed", "a fault of the server: tell its operator the `request_id`";
+    /// Nothing is wrong with the request, but there is no capacity at present.
+    Overloaded = 503 "overloaded": "The server is busy", "wait as long as `Retry-After` says, and repeat";
+    /// The storage cannot be reached. Nothing has been acknowledged, and a retry is welcome.
+    StorageUnavailable = 503 "storage_unavailable": "The storage cannot be reached",
+        "repeat with the same `Idempotency-Key`: it may have been stored";
+    /// The storage has no room. Nothing has been acknowledged.
+    StorageFull = 507 "storage_full": "The server has no room left", "the operator must make room; nothing has changed";
+}
+
+impl Code {
+    /// The kind of this name.
+    #[must_use]
+    pub fn parse(code: &str) -> Option<Code> {
+        Code::ALL.iter().copied().find(|known| known.as_str() == code)
+    }
+}
 
 /// What went wrong, for programs (`code`, `errors`) and for people (`title`, `detail`).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -28,4 +163,49 @@ pub struct ProblemDocument {
     pub errors: Vec<Fault>,
     /// The identifier of the request, by which its operator finds it in the log; also in the header `x-request-id`.
     pub request_id: String,
+}
+
+impl ProblemDocument {
+    /// The document of a refusal.
+    #[must_use]
+    pub fn new(code: Code, detail: String, errors: Vec<Fault>, request_id: &str) -> ProblemDocument {
+        ProblemDocument {
+            kind: format!("/problems/{}", code.as_str()),
+            title: code.title().to_owned(),
+            status: code.status(),
+            detail,
+            code: code.as_str().to_owned(),
+            errors,
+            request_id: request_id.to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Code;
+
+    /// The page is printed anew by `UPDATE=1 cargo test -p stickslip-wire`.
+    #[test]
+    fn the_page_of_errors_is_printed_from_the_table() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/errors.md");
+        let page = std::fs::read_to_string(path).unwrap();
+        let (before, rest) = page.split_once("|---|---|---|\n").unwrap();
+        let (_, after) = rest.split_once("\n\n").unwrap();
+        let row = |code: &Code| format!("| {} | `{}` | {} |\n", code.status(), code.as_str(), code.advice());
+        let rows: String = Code::ALL.iter().map(row).collect();
+        let printed = format!("{before}|---|---|---|\n{rows}\n{after}");
+        if std::env::var_os("UPDATE").is_some() {
+            std::fs::write(path, &printed).unwrap();
+        }
+        assert_eq!(page, printed, "run this test with UPDATE=1");
+    }
+
+    #[test]
+    fn a_code_names_one_kind() {
+        for code in Code::ALL {
+            assert_eq!(Code::parse(code.as_str()), Some(*code));
+        }
+        assert_eq!(Code::parse("teapot"), None);
+    }
 }

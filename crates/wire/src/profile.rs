@@ -14,7 +14,7 @@ use utoipa::openapi::{RefOr, Schema};
 use stickslip_mechanics::profile::{Profile as Shape, Sum, Tabulated};
 use stickslip_mechanics::{Error, TableFault, for_each_family, profile as families, range, range::Range};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::limits;
 
 /// Everything that follows from the table of families.
@@ -78,7 +78,7 @@ macro_rules! documents {
 
         impl Profile {
             /// The checked profile; its faults are noted at `at`.
-            pub fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+            pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
                 match self {
                     $(Profile::$Family($Document { $($number),+ }) => {
                         $(faults.number(at.member(stringify!($number)), *$number, &range::$RANGE);)+
@@ -128,7 +128,7 @@ pub struct SumProfile {
 /// How a table is made of radii and heights: on its own, or as part of a sum.
 type Through = fn(&[f64], &[f64]) -> Result<Tabulated, Error>;
 
-fn check_table(r: &[f64], z: &[f64], through: Through, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+fn check_table(r: &[f64], z: &[f64], through: Through, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     for (name, numbers, range) in [("r", r, &range::TABLE_RADIUS), ("z", z, &range::TABLE_HEIGHT)] {
         let place = at.member(name);
         if faults.length(place, numbers.len(), &limits::TABLE_POINTS) {
@@ -141,7 +141,7 @@ fn check_table(r: &[f64], z: &[f64], through: Through, at: At<'_>, faults: &mut 
     accepted(through(r, z).map(Shape::Tabulated), at, faults)
 }
 
-fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+fn check_sum(parts: &[Profile], at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     let place = at.member("parts");
     if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
         return None;
@@ -156,7 +156,7 @@ fn check_sum(parts: &[Profile], at: At<'_>, faults: &mut Faults) -> Option<Shape
 }
 
 /// The shape, unless the mechanics refuses it although each number is in its range: then a fault is added.
-fn accepted(shape: Result<Shape, Error>, at: At<'_>, faults: &mut Faults) -> Option<Shape> {
+fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     match shape {
         Ok(shape) => return Some(shape),
         // It follows from a fault that is known already.

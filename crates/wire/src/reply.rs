@@ -1,13 +1,14 @@
-//! What replies are made of.
+//! Parts that several replies share.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use stickslip_mechanics as mechanics;
 
-/// The figures that follow from a contact's definition: those of its preload.
+/// What follows from the definition of a contact at its preload.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Figures {
+#[schema(as = Figures)]
+pub struct ContactSummary {
     /// Reduced modulus E*, Pa.
     pub e_star: f64,
     /// Reduced shear modulus G*, Pa.
@@ -33,25 +34,25 @@ pub struct State {
     pub displacement: f64,
     /// Tangential force F, N; positive for a positive displacement of a virgin contact.
     pub force: f64,
-    /// Indentation d, m; below nought the bodies are apart.
+    /// Indentation d, m; below zero the bodies are apart.
     pub indentation: f64,
     /// Normal force F_N, N.
     pub normal_force: f64,
     /// Contact radius a, m.
     pub contact_radius: f64,
-    /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, nought in gross slip.
+    /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip.
     pub stick_radius: f64,
-    /// How the last move went.
+    /// How much of the contact slipped in the last move.
     pub regime: Regime,
-    /// Work done against friction since the start, J.
+    /// Work dissipated by friction since the start, J.
     pub dissipated_energy: f64,
     /// Energy stored in the tangential deformation, J.
     pub elastic_energy: f64,
-    /// Pieces held in memory, a pure number.
+    /// Number of pieces of the slip history.
     pub memory_depth: usize,
 }
 
-/// How the last move went.
+/// How much of the contact slipped in the last move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
@@ -78,7 +79,7 @@ impl Regime {
     }
 }
 
-/// The shear stress that a contact carries, in its extrema.
+/// The extrema of the shear stress of a contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Residual {
     /// Shear stress in the centre, Pa; `null` where it is infinite.
@@ -102,7 +103,7 @@ pub struct Peak {
     pub shear: Option<f64>,
 }
 
-/// Which solver answered, and how far it can be trusted.
+/// Which solver answered, and how accurate its answer is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Accuracy {
     /// The solver that answered.
@@ -122,7 +123,7 @@ pub struct Accuracy {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverKind {
-    /// The exact memory of turning points.
+    /// The exact solver, which stores turning points of the path.
     Exact,
     /// The spring foundation of the paper.
     Springs,
@@ -137,7 +138,7 @@ pub struct Protocol {
     pub cutoff_radius: f64,
 }
 
-/// Something to know about a result that is nevertheless given.
+/// A caveat about a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning {
@@ -147,15 +148,15 @@ pub struct Warning {
     pub message: String,
 }
 
-/// The number, or nothing where JSON has none for it.
+/// The number, or none where JSON has no number for it.
 #[must_use]
 pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-impl From<mechanics::ContactSummary> for Figures {
+impl From<mechanics::ContactSummary> for ContactSummary {
     fn from(figures: mechanics::ContactSummary) -> Self {
-        Figures {
+        ContactSummary {
             e_star: figures.e_star,
             g_star: figures.g_star,
             indentation: figures.indentation,
@@ -172,7 +173,7 @@ impl From<mechanics::State> for State {
     fn from(state: mechanics::State) -> Self {
         State {
             displacement: state.displacement,
-            // A virgin contact has none, with no sign.
+            // Turns the -0 of a virgin contact into 0.
             force: state.force + 0.0,
             indentation: state.indentation,
             normal_force: state.normal_force,

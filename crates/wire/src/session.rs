@@ -1,24 +1,31 @@
-//! The bodies and replies of `/contacts`: a contact that lives on the server.
+//! The bodies and replies of `/contacts`: contacts that the server keeps.
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::definition::{ContactDefinition, Material, Preload};
-use super::one_key::given;
+use super::limits::{Characters, Tolerance, limits};
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
 use super::profile::Profile;
 use super::protocol::Relaxation;
-use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
+use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
 use super::simulate::Steps;
+use super::single_key::not_null;
 use super::stress::{Sampling, Stress, StressRequest};
 
-/// A contact definition, and perhaps a label to know it by.
+/// The text by which a client knows a contact.
+const LABEL: Characters = Characters(200);
+
+/// A contact definition, with an optional label.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -30,8 +37,6 @@ use super::stress::{Sampling, Stress, StressRequest};
 }))]
 pub struct CreateRequest {
     /// A label of your own.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub label: Option<String>,
     /// The shape of the indenter.
     pub profile: Profile,
@@ -42,42 +47,36 @@ pub struct CreateRequest {
     /// The normal load that the contact starts with.
     pub preload: Preload,
 }
+limits!(CreateRequest { label: LABEL } and ContactDefinition);
 
-/// A move, and perhaps a request for the stresses after it.
+/// A move, with an optional request for the stresses after it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct MoveRequest {
     /// Tangential displacement of the indenter, m.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub displacement: Option<f64>,
     /// Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub force: Option<f64>,
-    /// Indentation, m; below nought the bodies are apart and nothing is remembered.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
+    /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64>,
     /// Normal force, N.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub normal_force: Option<f64>,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
     /// Ask for stresses after the move.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
+limits!(MoveRequest { tolerance: Tolerance } and Move);
 
-/// A path for a session, applied as a whole or not at all.
+/// A path for a contact, applied as a whole or not at all.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))]
@@ -85,93 +84,91 @@ pub struct PathRequest {
     /// The path.
     pub path: Path,
     /// Ask for stresses at the end of the path.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// Which states to return.
     #[serde(default)]
     pub steps: Steps,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
+limits!(PathRequest { tolerance: Tolerance });
 
-/// What may be said about a fork; an empty body says nothing.
+/// Options of a fork; the body may be empty.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"label": "what if"}))]
 pub struct ForkRequest {
-    /// A label for the new session; left out, that of the original.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
+    /// A label for the new contact; left out, that of the original.
     pub label: Option<String>,
 }
+limits!(ForkRequest { label: LABEL });
 
-/// A session that has just been made.
+/// A contact that has just been made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NewSession {
     /// Its identifier.
     pub id: Uuid,
     /// Its label, if it has one.
     pub label: Option<String>,
-    /// How many moves it has behind it: nought, or those of the session it was forked from.
+    /// Number of moves so far: zero, or those of the contact that it was forked from.
     pub sequence: u64,
-    /// The figures of the contact at its preload.
-    pub contact: Figures,
+    /// What follows from the definition at the preload.
+    pub contact: ContactSummary,
     /// Its state.
     pub state: State,
-    /// What to know about its results.
+    /// Warnings about its results.
     pub warnings: Vec<Warning>,
 }
 
-/// A session.
+/// A contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionReply {
     /// Its identifier.
     pub id: Uuid,
     /// Its label, if it has one.
     pub label: Option<String>,
-    /// How many moves it has behind it.
+    /// Number of moves so far.
     pub sequence: u64,
-    /// The figures of the contact at its preload.
-    pub contact: Figures,
+    /// What follows from the definition at the preload.
+    pub contact: ContactSummary,
     /// Its state after the last move.
     pub state: State,
     /// When it was made (ISO 8601, UTC).
     pub created_at: Timestamp,
-    /// When it last moved (ISO 8601, UTC).
+    /// When it was last moved (ISO 8601, UTC).
     pub updated_at: Timestamp,
 }
 
-/// A session as a line of a list.
+/// A contact as an item of a list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionSummary {
     /// Its identifier.
     pub id: Uuid,
     /// Its label, if it has one.
     pub label: Option<String>,
-    /// How many moves it has behind it.
+    /// Number of moves so far.
     pub sequence: u64,
     /// When it was made (ISO 8601, UTC).
     pub created_at: Timestamp,
-    /// When it last moved (ISO 8601, UTC).
+    /// When it was last moved (ISO 8601, UTC).
     pub updated_at: Timestamp,
 }
 
-/// A page of sessions, oldest first.
+/// A page of contacts, oldest first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SessionPage {
-    /// The sessions.
+    /// The contacts.
     pub items: Vec<SessionSummary>,
     /// What to give as `after` for the next page; `null` on the last.
     pub next: Option<Uuid>,
 }
 
-/// What came of a move.
+/// The result of a move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MoveReply {
-    /// The session.
+    /// The identifier of the contact.
     pub id: Uuid,
     /// The number of this move, and of moves so far.
     pub sequence: u64,
@@ -183,65 +180,53 @@ pub struct MoveReply {
     pub stress: Option<Stress>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the results since this move, if it is new.
+    /// Warnings about the results from this move on that earlier replies have not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<Warning>,
 }
 
-/// What came of a path.
+/// The result of a path.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PathReply {
-    /// The session.
+    /// The identifier of the contact.
     pub id: Uuid,
     /// The number of the last move, and of moves so far.
     pub sequence: u64,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
     /// The stresses at the end, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub stress: Option<Stress>,
     /// The path, if it follows the law of equal peaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the results since this path, if it is new.
+    /// Warnings about the results from this path on that earlier replies have not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<Warning>,
 }
 
-/// The stresses of a session, and perhaps their extrema.
+/// The stresses of a contact, and their extrema if asked for.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StressReply {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Normal pressure, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub pressure: Option<Vec<Option<f64>>>,
     /// Shear stress, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub shear: Option<Vec<Option<f64>>>,
     /// Slip, m; `null` outside the contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub slip: Option<Vec<Option<f64>>>,
     /// Tangential displacement of the surface, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub displacement: Option<Vec<Option<f64>>>,
     /// The extrema of the shear stress, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub residual: Option<Residual>,
 }
 
-/// A move of the past.
+/// A move that has been applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistoryItem {
     /// Its number, counted from 1.
@@ -255,7 +240,7 @@ pub struct HistoryItem {
     pub at: Timestamp,
 }
 
-/// A page of the past, oldest first.
+/// A page of the history of a contact, oldest first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistoryPage {
     /// The moves.
@@ -264,7 +249,7 @@ pub struct HistoryPage {
     pub next: Option<u64>,
 }
 
-/// A contact that has passed all checks, to be made into a session.
+/// A contact that has passed all checks, to be created.
 #[derive(Clone, Debug)]
 pub struct Creation {
     /// The label.
@@ -275,7 +260,7 @@ pub struct Creation {
     pub setup: Setup,
 }
 
-/// Moves that have passed all checks, to be applied to a session.
+/// Moves that have passed all checks, to be applied to a contact.
 #[derive(Clone, Debug)]
 pub struct Advance {
     /// The moves.
@@ -286,7 +271,7 @@ pub struct Advance {
     pub steps: Steps,
     /// The tolerance for what is not exact.
     pub tolerance: f64,
-    /// Whether the moves are to be found first, so that little stress remains; `plan` has none then.
+    /// Which protocol finds the moves; `plan` has none then.
     pub relax: Option<Relaxation>,
 }
 
@@ -303,10 +288,10 @@ impl Document for CreateRequest {
 
     fn check(self) -> Result<Creation, Rejection> {
         let mut faults = Faults::default();
-        faults.label(At::Root.member("label"), self.label.as_deref());
+        self.check_members(JsonPath::Root, &mut faults);
         let CreateRequest { label, profile, material, friction, preload } = self;
         let definition = ContactDefinition { profile, material, friction, preload };
-        let setup = definition.check(At::Root, &mut faults);
+        let setup = definition.check(JsonPath::Root, &mut faults);
         faults.done(setup.map(|setup| Creation { label, definition, setup }))
     }
 }
@@ -331,9 +316,9 @@ impl Document for MoveRequest {
     fn check(self) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
         let step = self.step();
-        step.check(At::Root, &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        step.check(JsonPath::Root, &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
         faults.done(Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None }))
     }
 }
@@ -350,9 +335,9 @@ impl Document for PathRequest {
 
     fn check(self) -> Result<Advance, Rejection> {
         let mut faults = Faults::default();
-        let plan = self.path.check(At::Root.member("path"), &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
         faults.done(plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None }))
     }
 }
@@ -362,7 +347,7 @@ impl Document for ForkRequest {
 
     fn check(self) -> Result<Option<String>, Rejection> {
         let mut faults = Faults::default();
-        faults.label(At::Root.member("label"), self.label.as_deref());
+        self.check_members(JsonPath::Root, &mut faults);
         faults.done(Some(self.label))
     }
 }

@@ -1,20 +1,23 @@
 //! The body of `POST /simulate` and its reply.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{Setup, range};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
-use super::limits;
-use super::one_key::{given, one_key};
+use super::limits::{SPRING_SEARCH, SPRING_STEPS, Tolerance, Whole, limits};
 use super::parse::{Document, Rejection};
 use super::path::{Path, Plan};
-use super::reply::{Accuracy, Figures, Protocol, Residual, State, Warning};
+use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
+use super::single_key::{not_null, single_key};
 use super::stress::{Sampling, Stress, StressRequest};
 
-/// A contact, and the path it is to follow; nothing of it is kept. Only what is asked for is computed.
+/// A contact and the path that it follows; the server keeps nothing of it. Only what is asked for is computed.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -34,8 +37,6 @@ pub struct SimulateRequest {
     /// The path.
     pub path: Path,
     /// Ask for stresses at the end of the path.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub stress: Option<StressRequest>,
     /// Ask for the extrema of the shear stress at the end of the path.
     #[serde(default)]
@@ -44,14 +45,11 @@ pub struct SimulateRequest {
     #[serde(default)]
     pub steps: Steps,
     /// Which solver to use; left out, the cheapest that serves the request.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub solver: Option<Solver>,
     /// Tolerance for what is not exact, relative to μ F_N, a pure number.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub tolerance: Option<f64>,
 }
+limits!(SimulateRequest { tolerance: Tolerance });
 
 /// Which states of a path to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -69,13 +67,13 @@ pub enum Steps {
 #[serde(rename_all = "snake_case")]
 #[schema(example = "exact")]
 pub enum Solver {
-    /// The exact memory of turning points.
+    /// The exact solver, which stores turning points of the path.
     Exact,
-    /// The spring foundation of the paper: a yardstick, slower and approximate. It follows a tangential force only at
+    /// The spring foundation of the paper: a reference for comparison, slower and approximate. It follows a tangential force only at
     /// constant indentation, and a normal force only without a tangential target (else `unsupported_move`).
     Springs(Springs),
 }
-one_key!(Solver { "springs" => Springs } or { "exact" => Exact });
+single_key!(Solver { "springs" => Springs } or { "exact" => Exact });
 
 /// The spring foundation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -85,29 +83,25 @@ pub struct Springs {
     /// Number of springs across the diameter of the contact.
     pub count: usize,
 }
+limits!(Springs { count: Whole(range::SPRING_COUNT) });
 
-/// What came of a simulation.
+/// The result of a simulation.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SimulateReply {
-    /// The figures of the contact at its preload.
-    pub contact: Figures,
+    /// What follows from the definition at the preload.
+    pub contact: ContactSummary,
     /// The states along the path: all of them, or the last.
     pub steps: Vec<State>,
     /// The stresses at the end, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub stress: Option<Stress>,
     /// The extrema of the shear stress at the end, if asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub residual: Option<Residual>,
     /// The path, if it follows the law of equal peaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the result.
+    /// Warnings about the result.
     pub warnings: Vec<Warning>,
 }
 
@@ -137,15 +131,16 @@ impl Document for SimulateRequest {
 
     fn check(self) -> Result<Simulation, Rejection> {
         let mut faults = Faults::default();
-        let setup = self.contact.check(At::Root.member("contact"), &mut faults);
-        let plan = self.path.check(At::Root.member("path"), &mut faults);
-        let stress = self.stress.and_then(|stress| stress.check(At::Root.member("stress"), &mut faults));
-        let tolerance = faults.tolerance(At::Root.member("tolerance"), self.tolerance);
+        let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
+        let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let tolerance = Tolerance::of(self.tolerance, &mut faults);
         if let Some(solver) = &self.solver {
-            let search = if self.residual { limits::SPRING_SEARCH } else { 0 };
+            let search = if self.residual { SPRING_SEARCH } else { 0 };
             let moves = plan.as_ref().map_or(0, Plan::length);
-            let passes = moves + stress.as_ref().map_or(0, Sampling::length) + search;
-            solver.check(At::Root.member("solver"), passes, &mut faults);
+            let radii = stress.as_ref().map_or(0, Sampling::length);
+            let passes = moves.saturating_add(radii).saturating_add(search);
+            solver.check(JsonPath::Root.member("solver"), passes, &mut faults);
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
         let simulation =
@@ -155,15 +150,22 @@ impl Document for SimulateRequest {
 }
 
 impl Solver {
-    /// Notes what is wrong with the solver at `at`, if each of its springs is looked at so many times.
-    pub(super) fn check(&self, at: At<'_>, passes: usize, faults: &mut Faults) {
-        let Solver::Springs(Springs { count }) = *self else { return };
-        let springs = at.member("springs");
-        let at = springs.member("count");
-        faults.number(at, count as f64, &range::SPRING_COUNT);
-        let most = limits::SPRING_STEPS / passes.max(1);
+    /// Notes at `at` what is wrong with the solver, each of whose springs is evaluated `passes` times.
+    pub(super) fn check(&self, at: JsonPath<'_>, passes: usize, faults: &mut Faults) {
+        let Solver::Springs(springs) = self else { return };
+        let at = at.member("springs");
+        springs.check_members(at, faults);
+        let (count, most) = (springs.count, most_springs(passes));
         if count > most {
-            faults.add(at, format_args!("{count} springs over {passes} moves and radii: allowed are {most}"));
+            faults.add(
+                at.member("count"),
+                format_args!("{count} springs over {passes} moves and radii: allowed are {most}"),
+            );
         }
     }
+}
+
+/// How many springs may be evaluated so many times each.
+pub(super) fn most_springs(passes: usize) -> usize {
+    SPRING_STEPS.checked_div(passes).unwrap_or(SPRING_STEPS)
 }

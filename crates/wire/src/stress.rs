@@ -1,32 +1,30 @@
 //! Stress requests and their answers.
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::range;
 
-use super::check::{At, Faults};
-use super::limits;
-use super::one_key::given;
+use super::check::{Faults, JsonPath};
+use super::limits::{Numbers, STRESS_POINTS, limits};
+use super::single_key::not_null;
 
 /// Where stresses are asked for: exactly one of `points` and `radii`, and which `fields`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"points": 200}))]
 pub struct StressRequest {
     /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub points: Option<usize>,
-    /// Radii, m; outside the contact the stresses are nought.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
+    /// Radii, m; outside the contact the stresses are zero.
     pub radii: Option<Vec<f64>>,
     /// Which fields are computed; left out, `pressure` and `shear`.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub fields: Option<Vec<Field>>,
 }
+limits!(StressRequest { points: STRESS_POINTS, radii: Numbers(1..=10_000, range::CONTACT_RADIUS) });
 
 /// A quantity along the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -59,25 +57,18 @@ impl Field {
 }
 
 /// Stresses along the radius; an array that was not asked for is left out.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Stress {
     /// Radii, m.
     pub radius: Vec<f64>,
     /// Normal pressure, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub pressure: Option<Vec<Option<f64>>>,
     /// Shear stress, Pa; `null` where it is infinite.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub shear: Option<Vec<Option<f64>>>,
     /// Slip, m; `null` outside the contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub slip: Option<Vec<Option<f64>>>,
     /// Tangential displacement of the surface, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub displacement: Option<Vec<Option<f64>>>,
 }
 
@@ -113,7 +104,7 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// How many are asked for.
+    /// How many fields are asked for.
     #[must_use]
     pub fn count(&self) -> usize {
         [self.pressure, self.shear, self.slip, self.displacement].into_iter().filter(|asked| *asked).count()
@@ -122,11 +113,11 @@ impl Fields {
 
 impl StressRequest {
     /// The checked request; its faults are noted at `at`.
-    pub fn check(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+    pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
         faults.part(|faults| self.read(at, faults)).flatten()
     }
 
-    fn read(self, at: At<'_>, faults: &mut Faults) -> Option<Sampling> {
+    fn read(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Sampling> {
         let fields = match self.fields.as_deref() {
             None => Fields { pressure: true, shear: true, slip: false, displacement: false },
             Some(named) => {
@@ -142,19 +133,12 @@ impl StressRequest {
                 }
             }
         };
+        if self.points.is_some() != self.radii.is_some() {
+            self.check_members(at, faults);
+        }
         let points = match (self.points, self.radii) {
-            (Some(count), None) => {
-                faults.count(at.member("points"), count, &limits::STRESS_POINTS);
-                Points::Uniform(count)
-            }
-            (None, Some(radii)) => {
-                let at = at.member("radii");
-                if faults.length(at, radii.len(), &limits::STRESS_RADII) {
-                    let each = radii.iter().enumerate();
-                    each.for_each(|(index, radius)| faults.number(at.index(index), *radius, &range::CONTACT_RADIUS));
-                }
-                Points::Radii(radii)
-            }
+            (Some(count), None) => Points::Uniform(count),
+            (None, Some(radii)) => Points::Radii(radii),
             (None, None) => {
                 faults.add(at, "name one of `points` and `radii`");
                 return None;
@@ -184,7 +168,8 @@ impl Sampling {
         match &self.points {
             // The quotient is exactly 1 at the last point, so that it is the edge itself.
             Points::Uniform(count) => {
-                (0..*count).map(|index| contact_radius * (index as f64 / (count - 1) as f64)).collect()
+                let last = count.saturating_sub(1) as f64;
+                (0..*count).map(|index| contact_radius * (index as f64 / last)).collect()
             }
             Points::Radii(radii) => radii.clone(),
         }

@@ -1,22 +1,39 @@
-//! The body of `POST /sweep`, and the table that comes of it.
+//! The body of `POST /sweep`, and its table.
 
 use std::collections::{BTreeMap, HashSet};
+use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Number, Value};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
-use super::any::{Any, Pointer};
-use super::check::{At, Faults};
-use super::limits;
-use super::one_key::given;
+use stickslip_mechanics::range::{Quantity, Range};
+
+use super::check::{Faults, JsonPath};
+use super::json_value::{JsonValue, Pointer};
+use super::limits::{Items, Limit, Numbers, limits};
 use super::parse::{Document, Rejection, parse_value};
 use super::simulate::SimulateRequest;
+use super::single_key::not_null;
 
 /// How far from a whole number, relatively, a value may be that goes to a field of whole numbers; it is rounded then.
 const WHOLE: f64 = 1e-9;
 
-/// Many simulations that differ in up to three numbers, and what is wanted of each. The points are all combinations of the
+/// Axes of a sweep.
+const AXES: RangeInclusive<usize> = 1..=3;
+/// Outputs of a sweep.
+const OUTPUTS: RangeInclusive<usize> = 1..=16;
+/// A value of an axis; the field that it goes to has a range of its own.
+const AXIS_VALUE: Range = Range { quantity: Quantity::Number, unit: "", min: -1e280, max: 1e280 };
+/// Values of an axis that lists them.
+const AXIS_VALUES: Numbers = Numbers(1..=10_000, AXIS_VALUE);
+/// Points of a sweep: the product of the counts of its axes.
+const SWEEP_POINTS: usize = 2_000_000;
+/// Numbers that come out of a sweep: points times outputs.
+const SWEEP_NUMBERS: usize = 8_000_000;
+
+/// Many simulations that differ in up to three numbers, and which numbers of each reply are wanted. The points are all combinations of the
 /// values of the axes, the last axis running fastest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -36,19 +53,22 @@ const WHOLE: f64 = 1e-9;
 pub struct SweepRequest {
     /// The body of `POST /simulate` that each point is made from. What an axis names may be left out of it.
     #[schema(value_type = Object)]
-    pub base: Any,
+    pub base: JsonValue,
     /// The numbers that change.
     pub axes: Vec<Axis>,
     /// JSON pointers to numbers in the reply to `POST /simulate`, a column each. Where a point does not have one, such as a
     /// peak of a number that it does not reach, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
     pub outputs: Vec<String>,
-    /// Make a job of it, however small it is.
+    /// Always make a job of it, even if it is small.
     #[serde(default)]
     pub job: bool,
 }
+limits!(SweepRequest { axes: Items(AXES), outputs: Items(OUTPUTS) });
 
 /// A number of the base and the values that it takes: `pointer`, and one key out of `linear`, `logarithmic` and `values`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
@@ -56,18 +76,13 @@ pub struct Axis {
     #[schema(example = "/contact/friction")]
     pub pointer: String,
     /// Evenly spaced values.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub linear: Option<Span>,
     /// Values with the same ratio from one to the next; both ends positive, or both negative.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub logarithmic: Option<Span>,
     /// These values.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub values: Option<Vec<f64>>,
 }
+limits!(Axis { values: AXIS_VALUES });
 
 /// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and is
 /// rounded; else list the values.
@@ -81,6 +96,7 @@ pub struct Span {
     /// How many values, both ends included.
     pub count: usize,
 }
+limits!(Span { count: 2..=2_000_000_usize, from: AXIS_VALUE, to: AXIS_VALUE });
 
 /// The table of a sweep: a row a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -110,22 +126,22 @@ pub struct PointFailure {
     pub detail: String,
 }
 
-/// A sweep whose axes lead to numbers. What comes of the numbers together is not known yet.
+/// A sweep whose axes lead to numbers, each within the limits of an axis; whether a point is valid is not known yet.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct CheckedSweep {
     /// The request as it came.
     pub request: SweepRequest,
     /// The axes.
-    pub axes: Vec<Run>,
+    pub axes: Vec<AxisValues>,
     /// The outputs.
     pub outputs: Vec<Pointer>,
     /// How many points.
     pub points: usize,
 }
 
-/// The values of an axis on their way to a field.
+/// The values of an axis, and the field that takes them.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct AxisValues {
     /// The field.
     pub pointer: Pointer,
     /// Whether it takes whole numbers.
@@ -141,23 +157,23 @@ enum Values {
 }
 
 impl Document for SweepRequest {
-    type Checked = Draft;
+    type Checked = CheckedSweep;
 
-    fn check(self) -> Result<Draft, Rejection> {
+    fn check(self) -> Result<CheckedSweep, Rejection> {
         let mut faults = Faults::default();
-        let at = At::Root.member("axes");
+        let at = JsonPath::Root.member("axes");
         let mut axes = Vec::new();
-        if faults.length(at, self.axes.len(), &limits::SWEEP_AXES) {
+        if faults.length(at, self.axes.len(), &AXES) {
             axes.extend(
                 self.axes.iter().enumerate().filter_map(|(index, axis)| axis.check(at.index(index), &mut faults)),
             );
         }
         let outputs = self.check_outputs(&mut faults);
         let points = axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count()));
-        if points > limits::SWEEP_POINTS {
-            faults.add(at, format_args!("{points} points: allowed are {}", limits::SWEEP_POINTS));
-        } else if points.saturating_mul(outputs.len()) > limits::SWEEP_NUMBERS {
-            let (outputs, most) = (outputs.len(), limits::SWEEP_NUMBERS);
+        if points > SWEEP_POINTS {
+            faults.add(at, format_args!("{points} points: allowed are {}", SWEEP_POINTS));
+        } else if points.saturating_mul(outputs.len()) > SWEEP_NUMBERS {
+            let (outputs, most) = (outputs.len(), SWEEP_NUMBERS);
             faults.add(at, format_args!("{points} points times {outputs} outputs: allowed are {most} numbers"));
         }
         let mut names = HashSet::new();
@@ -169,16 +185,16 @@ impl Document for SweepRequest {
         if faults.is_empty() {
             find_kinds(&self.base.0, &mut axes, &mut faults);
         }
-        let draft = Draft { request: self, axes, outputs, points };
+        let draft = CheckedSweep { request: self, axes, outputs, points };
         faults.done(Some(draft))
     }
 }
 
 impl SweepRequest {
     fn check_outputs(&self, faults: &mut Faults) -> Vec<Pointer> {
-        let at = At::Root.member("outputs");
+        let at = JsonPath::Root.member("outputs");
         let mut outputs: Vec<Pointer> = Vec::new();
-        if !faults.length(at, self.outputs.len(), &limits::SWEEP_OUTPUTS) {
+        if !faults.length(at, self.outputs.len(), &OUTPUTS) {
             return outputs;
         }
         for (index, text) in self.outputs.iter().enumerate() {
@@ -198,7 +214,7 @@ impl SweepRequest {
 const NO_POINTER: &str = "not a JSON pointer (RFC 6901), such as /contact/friction";
 
 impl Axis {
-    fn check(&self, at: At<'_>, faults: &mut Faults) -> Option<Run> {
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<AxisValues> {
         let pointer = Pointer::parse(&self.pointer);
         if pointer.is_none() {
             faults.add(at.member("pointer"), NO_POINTER);
@@ -213,40 +229,35 @@ impl Axis {
             faults.add(at, "expected `pointer` and one key, one of `linear`, `logarithmic`, `values`");
             return None;
         };
-        let fits = values.check(at.member(name), faults);
-        (fits && pointer.is_some()).then_some(Run { pointer: pointer?, whole: false, values })
+        values.check(at.member(name), faults)?;
+        Some(AxisValues { pointer: pointer?, whole: false, values })
+    }
+}
+
+impl Span {
+    /// The index of the last value.
+    fn last(&self) -> usize {
+        self.count.saturating_sub(1)
     }
 }
 
 impl Values {
-    fn check(&self, at: At<'_>, faults: &mut Faults) -> bool {
-        let number = |at: At<'_>, value: f64, faults: &mut Faults| {
-            faults.number(at, value, &limits::AXIS_NUMBER);
-            limits::AXIS_NUMBER.contains(value)
-        };
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<()> {
+        faults.part(|faults| match self {
+            Values::Listed(values) => Limit::check(&AXIS_VALUES, values, at, faults),
+            Values::Linear(span) | Values::Logarithmic(span) => span.check_members(at, faults),
+        })?;
         match self {
-            Values::Listed(values) => {
-                let fits = faults.length(at, values.len(), &limits::AXIS_VALUES);
-                fits && values.iter().enumerate().all(|(index, value)| number(at.index(index), *value, faults))
+            Values::Logarithmic(Span { from, to, .. }) if !((to / from).is_normal() && to / from > 0.0) => {
+                faults.add(at, "both ends must be positive or both negative, and not too far apart");
+                None
             }
-            Values::Linear(span) | Values::Logarithmic(span) => {
-                faults.count(at.member("count"), span.count, &limits::AXIS_COUNT);
-                let numbers = number(at.member("from"), span.from, faults) && number(at.member("to"), span.to, faults);
-                let mut fits = numbers && limits::AXIS_COUNT.contains(&span.count);
-                if let Values::Logarithmic(span) = self {
-                    let ratio = span.to / span.from;
-                    if fits && !(ratio.is_normal() && ratio > 0.0) {
-                        faults.add(at, "both ends must be positive or both negative, and not too far apart");
-                        fits = false;
-                    }
-                }
-                fits
-            }
+            _ => Some(()),
         }
     }
 }
 
-impl Run {
+impl AxisValues {
     /// How many values.
     #[must_use]
     pub fn count(&self) -> usize {
@@ -259,14 +270,10 @@ impl Run {
     fn raw(&self, index: usize) -> f64 {
         match &self.values {
             Values::Listed(values) => values.get(index).copied().unwrap_or(f64::NAN),
-            Values::Linear(Span { to, count, .. }) | Values::Logarithmic(Span { to, count, .. })
-                if index + 1 == *count =>
-            {
-                *to
-            }
+            Values::Linear(span) | Values::Logarithmic(span) if index == span.last() => span.to,
             // The product first: where the result is whole, it is so exactly.
-            Values::Linear(Span { from, to, count }) => from + (to - from) * index as f64 / (count - 1) as f64,
-            Values::Logarithmic(Span { from, to, count }) => from * (to / from).powf(index as f64 / (count - 1) as f64),
+            Values::Linear(span) => span.from + (span.to - span.from) * index as f64 / span.last() as f64,
+            Values::Logarithmic(span) => span.from * (span.to / span.from).powf(index as f64 / span.last() as f64),
         }
     }
 
@@ -292,7 +299,7 @@ impl Run {
     #[must_use]
     pub fn ends(&self) -> [usize; 2] {
         match &self.values {
-            Values::Linear(span) | Values::Logarithmic(span) => [0, span.count - 1],
+            Values::Linear(span) | Values::Logarithmic(span) => [0, span.last()],
             Values::Listed(values) => {
                 let by = |(_, one): &(usize, &f64), (_, other): &(usize, &f64)| one.total_cmp(other);
                 let least = values.iter().enumerate().min_by(by).map_or(0, |(index, _)| index);
@@ -309,7 +316,7 @@ impl Run {
     }
 }
 
-impl Draft {
+impl CheckedSweep {
     /// Puts the values of a point into a copy of the base.
     pub fn put(&self, document: &mut Value, point: usize) {
         for (axis, index) in indices(&self.axes, point) {
@@ -327,21 +334,21 @@ impl Draft {
 }
 
 /// The values of the axes at a point, by their indices.
-pub fn indices(axes: &[Run], point: usize) -> impl Iterator<Item = (&Run, usize)> {
+pub fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&AxisValues, usize)> {
     let mut below = axes.iter().fold(1, |points: usize, axis| points.saturating_mul(axis.count()));
     let mut rest = point;
     axes.iter().map(move |axis| {
-        below /= axis.count().max(1);
-        let index = rest / below.max(1);
-        rest %= below.max(1);
+        below = below.checked_div(axis.count()).unwrap_or(0);
+        let index = rest.checked_div(below).unwrap_or(0);
+        rest = rest.checked_rem(below).unwrap_or(0);
         (axis, index)
     })
 }
 
 /// Finds out which of the fields take whole numbers, by trying: a field that is no number, and all that is wrong with the base
 /// whatever the numbers are, comes out on the way.
-fn find_kinds(base: &Value, axes: &mut [Run], faults: &mut Faults) {
-    let at = At::Root.member("axes");
+fn find_kinds(base: &Value, axes: &mut [AxisValues], faults: &mut Faults) {
+    let at = JsonPath::Root.member("axes");
     let fraction = Number::from_f64(0.5).unwrap_or_else(|| Number::from(1));
     let mut document = base.clone();
     loop {
@@ -356,7 +363,7 @@ fn find_kinds(base: &Value, axes: &mut [Run], faults: &mut Faults) {
         match axes.iter_mut().enumerate().find(|(_, axis)| axis.pointer.to_string() == fault.pointer) {
             Some((_, axis)) if !axis.whole => axis.whole = true,
             Some((index, _)) => return faults.add(at.index(index).member("pointer"), fault.detail),
-            None => return faults.add(At::Pointer(&format!("/base{}", fault.pointer)), fault.detail),
+            None => return faults.add(JsonPath::Pointer(&format!("/base{}", fault.pointer)), fault.detail),
         }
     }
     for (index, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.whole) {

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use serde_json::{Number, Value};
 
 use crate::simulation::Rows;
-use stickslip_wire::sweep::{Draft, Run, indices};
+use stickslip_wire::sweep::{AxisValues, CheckedSweep, indices};
 
 use crate::api::formats::Format;
 
@@ -17,7 +17,7 @@ const PIECE: usize = 512;
 
 /// What was asked for, and what came of it.
 pub struct Table {
-    axes: Vec<Run>,
+    axes: Vec<AxisValues>,
     names: Vec<String>,
     points: usize,
     rows: Rows,
@@ -26,7 +26,7 @@ pub struct Table {
 impl Table {
     /// The table of a sweep; there is a row for each of its points.
     #[must_use]
-    pub fn new(draft: &Draft, rows: Rows) -> Table {
+    pub fn new(draft: &CheckedSweep, rows: Rows) -> Table {
         let axes = draft.request.axes.iter().map(|axis| axis.pointer.clone());
         let names = axes.chain(draft.request.outputs.iter().cloned()).collect();
         Table { axes: draft.axes.clone(), names, points: draft.points, rows }

@@ -56,7 +56,7 @@ pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request
     let mut response = answer.unwrap_or_else(meta::panicked);
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
-    let code = problem.as_ref().map(Problem::code);
+    let code = problem.as_ref().map(|problem| problem.code().as_str());
     let cause = problem.as_ref().and_then(Problem::cause).map(str::to_owned);
     if let Some(problem) = problem {
         response = dressed(response, problem, &id);
@@ -127,7 +127,7 @@ fn foreign(response: &Response) -> Option<Problem> {
         _ if status.is_client_error() => Kind::InvalidInput,
         _ => return None,
     };
-    Some(Problem::new(kind, kind.parts().2))
+    Some(Problem::new(kind, kind.title()))
 }
 
 /// The response with the document as its body; other headers, such as `Allow`, stay.

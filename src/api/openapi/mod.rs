@@ -9,8 +9,8 @@ use utoipa::{IntoParams, OpenApi};
 use uuid::Uuid;
 
 use crate::access::Role;
-use stickslip_mechanics::DEFAULT_TOLERANCE;
 use stickslip_mechanics::range::{self, Range};
+use stickslip_wire::limits::Keywords as _;
 use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
 use crate::api::limits as server;
@@ -101,83 +101,23 @@ pub fn document() -> &'static str {
     })
 }
 
-/// What a property of a schema is limited to.
-enum Limit {
-    Number(Range),
-    Count(usize, usize),
-    Numbers(usize, usize, Range),
-    Items(usize, usize),
-    Length(usize),
-    Tolerance,
-}
-
-/// The limits, by schema and property. They are written here and not beside the fields, because an attribute takes a
-/// literal alone, and a limit is to be one constant.
-fn limited() -> Vec<(&'static str, &'static str, Limit)> {
-    use Limit::{Count, Items, Length, Number, Numbers, Tolerance};
-    let (moves, radii, points) = (&limits::PATH_MOVES, &limits::STRESS_RADII, &limits::TABLE_POINTS);
-    let mut all = vec![
-        ("TabulatedProfile", "r", Numbers(*points.start(), *points.end(), range::TABLE_RADIUS)),
-        ("TabulatedProfile", "z", Numbers(*points.start(), *points.end(), range::TABLE_HEIGHT)),
-        ("SumProfile", "parts", Items(*limits::SUM_PARTS.start(), *limits::SUM_PARTS.end())),
-        ("EqualPeaks", "reversals", Count(*limits::REVERSALS.start(), *limits::REVERSALS.end())),
-        ("EqualPeaks", "cutoff_radius", Number(range::CONTACT_RADIUS)),
-        ("ElasticBody", "youngs_modulus", Number(range::YOUNGS_MODULUS)),
-        ("ElasticBody", "poisson_ratio", Number(range::POISSON_RATIO)),
-        ("Effective", "e_star", Number(range::E_STAR)),
-        ("Effective", "g_star", Number(range::G_STAR)),
-        ("ContactDefinition", "friction", Number(range::FRICTION)),
-        ("CreateRequest", "friction", Number(range::FRICTION)),
-        ("CreateRequest", "label", Length(limits::LABEL_LENGTH)),
-        ("ForkRequest", "label", Length(limits::LABEL_LENGTH)),
-        ("Preload", "normal_force", Number(range::NORMAL_FORCE)),
-        ("Preload", "indentation", Number(range::PRELOAD_INDENTATION)),
-        ("Preload", "contact_radius", Number(range::CONTACT_RADIUS)),
-        ("Material", "bodies", Items(2, 2)),
-        ("Path", "moves", Items(*moves.start(), *moves.end())),
-        ("Path", "displacement", Numbers(*moves.start(), *moves.end(), range::DISPLACEMENT)),
-        ("Path", "force", Numbers(*moves.start(), *moves.end(), range::FORCE)),
-        ("FallingAmplitude", "reversals", Count(*limits::REVERSALS.start(), *limits::REVERSALS.end())),
-        ("FallingAmplitude", "amplitude", Number(range::DISPLACEMENT)),
-        ("StressRequest", "points", Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end())),
-        ("StressRequest", "radii", Numbers(*radii.start(), *radii.end(), range::CONTACT_RADIUS)),
-        ("SweepRequest", "axes", Items(*limits::SWEEP_AXES.start(), *limits::SWEEP_AXES.end())),
-        ("SweepRequest", "outputs", Items(*limits::SWEEP_OUTPUTS.start(), *limits::SWEEP_OUTPUTS.end())),
-        ("Axis", "values", Numbers(*limits::AXIS_VALUES.start(), *limits::AXIS_VALUES.end(), limits::AXIS_NUMBER)),
-        ("Span", "from", Number(limits::AXIS_NUMBER)),
-        ("Span", "to", Number(limits::AXIS_NUMBER)),
-        ("Span", "count", Count(*limits::AXIS_COUNT.start(), *limits::AXIS_COUNT.end())),
-        ("Springs", "count", Count(range::SPRING_COUNT.min as usize, range::SPRING_COUNT.max as usize)),
-    ];
-    all.extend(profile::NUMBERS.iter().map(|&(schema, property, range)| (schema, property, Number(range))));
-    all.push(("AccuracyRequest", "solvers", Items(*limits::SOLVERS.start(), *limits::SOLVERS.end())));
-    let reversals = &limits::PROTOCOL_REVERSALS;
-    for schema in ["ProtocolRequest", "RelaxRequest"] {
-        all.push((schema, "reversals", Count(*reversals.start(), *reversals.end())));
-        all.push((schema, "target", Number(limits::TARGET)));
-    }
-    all.push(("ProtocolStart", "displacement", Number(range::DISPLACEMENT)));
-    all.push(("Robustness", "amplitude_error", Number(limits::AMPLITUDE_ERROR)));
-    all.push(("Robustness", "friction_error", Number(limits::FRICTION_ERROR)));
-    all.push(("Robustness", "samples", Count(*limits::SAMPLES.start(), *limits::SAMPLES.end())));
-    all.push(("Robustness", "seed", Count(0, *limits::SEED.end() as usize)));
-    for schema in ["SimulateRequest", "AccuracyRequest", "MoveRequest", "PathRequest"] {
-        all.push((schema, "tolerance", Tolerance));
-    }
-    for schema in ["Move", "MoveRequest"] {
-        all.push((schema, "displacement", Number(range::DISPLACEMENT)));
-        all.push((schema, "force", Number(range::FORCE)));
-        all.push((schema, "indentation", Number(range::INDENTATION)));
-        // The wider range: as an increment it may be negative.
-        all.push((schema, "normal_force", Number(range::FORCE)));
-    }
-    all
+/// The limits of the members of profiles.
+fn profile_limits() -> Vec<(&'static str, &'static str, Value)> {
+    let column = |range: Range| limits::Numbers(limits::TABLE_POINTS, range).keywords();
+    let numbers = profile::NUMBERS.iter().map(|&(schema, member, range)| (schema, member, range.keywords()));
+    numbers
+        .chain([
+            ("TabulatedProfile", "r", column(range::TABLE_RADIUS)),
+            ("TabulatedProfile", "z", column(range::TABLE_HEIGHT)),
+            ("SumProfile", "parts", limits::Items(limits::SUM_PARTS).keywords()),
+        ])
+        .collect()
 }
 
 fn write_limits(document: &mut Value) {
-    for (schema, property, limit) in limited() {
+    for (schema, property, keywords) in limits::all().into_iter().chain(profile_limits()) {
         if let Some(schema) = document.pointer_mut(&format!("/components/schemas/{schema}")) {
-            visit_property(schema, property, &|node| write_limit(node, &limit));
+            visit_property(schema, property, &|node| write_keywords(node, &keywords));
         }
     }
 }
@@ -196,35 +136,12 @@ fn visit_property(node: &mut Value, property: &str, visit: &dyn Fn(&mut Map<Stri
     }
 }
 
-fn write_limit(node: &mut Map<String, Value>, limit: &Limit) {
-    let mut set = |name: &str, value: Value| node.insert(name.to_owned(), value);
-    match limit {
-        Limit::Number(range) => {
-            set("minimum", json!(range.min));
-            set("maximum", json!(range.max));
-        }
-        Limit::Count(least, most) => {
-            set("minimum", json!(least));
-            set("maximum", json!(most));
-        }
-        Limit::Items(least, most) => {
-            set("minItems", json!(least));
-            set("maxItems", json!(most));
-        }
-        Limit::Numbers(least, most, range) => {
-            set("minItems", json!(least));
-            set("maxItems", json!(most));
-            if let Some(Value::Object(items)) = node.get_mut("items") {
-                write_limit(items, &Limit::Number(*range));
-            }
-        }
-        Limit::Length(most) => {
-            set("maxLength", json!(most));
-        }
-        Limit::Tolerance => {
-            set("minimum", json!(limits::TOLERANCE.start()));
-            set("maximum", json!(limits::TOLERANCE.end()));
-            set("default", json!(DEFAULT_TOLERANCE));
+/// Adds keywords to a schema, and those of `items` to the schema of its elements.
+fn write_keywords(node: &mut Map<String, Value>, keywords: &Value) {
+    for (name, value) in keywords.as_object().into_iter().flatten() {
+        match node.get_mut(name) {
+            Some(Value::Object(inner)) if value.is_object() => write_keywords(inner, value),
+            _ => drop(node.insert(name.clone(), value.clone())),
         }
     }
 }
@@ -253,15 +170,15 @@ fn write_parameters(document: &mut Value) {
     for operation in operations {
         for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
             let limit = match parameter["name"].as_str() {
-                Some("limit") => Limit::Count(*server::PAGE.start(), *server::PAGE.end()),
-                Some("points_per_move") => Limit::Count(*limits::LOOP_POINTS.start(), *limits::LOOP_POINTS.end()),
-                Some("points") => Limit::Count(*limits::STRESS_POINTS.start(), *limits::STRESS_POINTS.end()),
-                Some("Idempotency-Key") => Limit::Length(server::KEY_LENGTH),
+                Some("limit") => server::PAGE.keywords(),
+                Some("points_per_move") => limits::LOOP_POINTS.keywords(),
+                Some("points") => limits::STRESS_POINTS.keywords(),
+                Some("Idempotency-Key") => limits::Characters(server::KEY_LENGTH).keywords(),
                 _ => continue,
             };
             let page = parameter["name"] == "limit";
             if let Some(schema) = parameter["schema"].as_object_mut() {
-                write_limit(schema, &limit);
+                write_keywords(schema, &limit);
                 if page {
                     schema.insert("default".to_owned(), json!(server::DEFAULT_PAGE));
                 }

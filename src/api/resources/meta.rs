@@ -55,11 +55,10 @@ pub async fn openapi() -> Response {
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
 pub async fn problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
-    let kind = Kind::ALL.iter().map(|kind| kind.parts()).find(|(_, known, _)| *known == code);
-    let Some((status, code, title)) = kind else {
+    let Some(kind) = Kind::parse(&code) else {
         return Err(nothing(&uri));
     };
-    Ok(reply::json(reply::written(&json!({"code": code, "title": title, "status": status.as_u16()}))?))
+    Ok(reply::json(reply::written(&json!({"code": code, "title": kind.title(), "status": kind.status()}))?))
 }
 
 /// The answer to a path that does not exist.

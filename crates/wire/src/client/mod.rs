@@ -1,19 +1,5 @@
 //! A typed client for the service.
-//!
-//! ```no_run
-//! # async fn example() -> Result<(), stickslip_wire::client::Error> {
-//! use stickslip_wire::client::{Client, Options};
-//! use stickslip_wire::{Move, MoveRequest};
-//!
-//! let client = Client::new("http://127.0.0.1:8080");
-//! let page = client.contacts(None, None).await?;
-//! for contact in page.items {
-//!     let reply = client.apply(contact.id, &Move::displacement(1e-7).into(), &Options::default()).await?;
-//!     println!("{} N", reply.state.force);
-//! }
-//! # Ok(())
-//! # }
-//! ```
+#![doc = include_str!("../../README.md")]
 
 mod sweeps;
 
@@ -51,7 +37,7 @@ pub struct Options {
     pub idempotency_key: Option<String>,
 }
 
-/// What a service tells those who follow a contact.
+/// What the event stream of a contact sends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// The contact is in this state.
@@ -60,7 +46,7 @@ pub enum Event {
     End(EndReason),
 }
 
-/// Why a call came to nothing.
+/// Why a call failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The service refused, and says why.
@@ -210,11 +196,11 @@ impl Client {
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
-    /// `GET /contacts/{id}/loop`: a page of moves with so many points for each, the recorded states alone unless told otherwise.
+    /// `GET /contacts/{id}/loop`: a page of moves with so many points for each, by default the recorded states alone.
     ///
     /// # Errors
     /// [`Error`], as for every call.
-    pub async fn trace(
+    pub async fn hysteresis_loop(
         &self,
         id: Uuid,
         after: Option<u64>,

@@ -3,18 +3,22 @@
 mod reply;
 
 use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd};
-use stickslip_mechanics::{Setup, range};
+use stickslip_mechanics::{
+    Setup,
+    range::{DISPLACEMENT, Quantity, Range},
+};
 
-use super::check::{At, Faults};
+use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
-use super::limits;
-use super::one_key::{given, one_key};
+use super::limits::{PROTOCOL_REVERSALS, limits};
 use super::parse::{Document, Rejection};
 use super::simulate::Steps;
+use super::single_key::{not_null, single_key};
 
 pub use reply::{
     Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolReply, RelaxReply,
@@ -23,6 +27,8 @@ pub use reply::{
 
 /// A contact, and how it is to be moved so that little shear stress remains. The number of reversals is given, or follows
 /// from a target.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
@@ -36,48 +42,36 @@ pub use reply::{
     "kind": "minimax"
 }))]
 pub struct ProtocolRequest {
-    /// The contact; may be left out where `start` names one that lives.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
+    /// The contact; may be left out where `start` names one on the server.
     pub contact: Option<ContactDefinition>,
     /// Number of reversals N_R; this or `target`.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub reversals: Option<usize>,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
     /// smallest number of reversals that reaches it is found.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub target: Option<f64>,
     /// The law of the amplitudes.
     #[serde(default)]
     pub kind: ProtocolKind,
     /// What the reversals begin from; left out, gross slip at its full amplitude.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub start: Option<ProtocolStart>,
     /// Where the path ends.
     #[serde(default)]
     pub end: ProtocolEnd,
     /// Ask what remains if the protocol is not followed exactly.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub robustness: Option<Robustness>,
 }
 
-/// How a contact that lives is to be relaxed; an empty body but for `reversals` or `target` is enough.
+/// How a contact on the server is to be relaxed; `reversals` or `target` is needed, all else has a default.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"reversals": 20, "dry_run": true}))]
 pub struct RelaxRequest {
     /// Number of reversals N_R, at the most; this or `target`. The path begins with a stroke more.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub reversals: Option<usize>,
     /// The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is infinite): the
     /// smallest number of reversals that reaches it is found.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub target: Option<f64>,
     /// The law of the amplitudes.
     #[serde(default)]
@@ -89,8 +83,6 @@ pub struct RelaxRequest {
     #[serde(default)]
     pub dry_run: bool,
     /// Ask for the states along the path.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[schema(nullable = false)]
     pub steps: Option<Steps>,
 }
 
@@ -100,7 +92,7 @@ pub struct RelaxRequest {
 pub enum ProtocolKind {
     /// They fall linearly (eq. 20 of the paper).
     Linear,
-    /// They leave equal peaks on the profile at hand, by steps proportional to x/g'(x).
+    /// They leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
     EqualPeaks,
     /// They leave the smallest largest stress that is found.
     #[default]
@@ -116,22 +108,23 @@ pub enum ProtocolStart {
     /// The present state of the contact of this identifier, whatever its history.
     ContactId(Uuid),
 }
-one_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
+single_key!(ProtocolStart { "displacement" => Displacement, "contact_id" => ContactId });
+limits!(enum ProtocolStart { Displacement "displacement": DISPLACEMENT });
 
 /// Where a path ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ProtocolEnd {
-    /// At displacement nought.
+    /// At displacement zero.
     #[default]
     DisplacementZero,
     /// Without a tangential force.
     ForceZero,
-    /// Wherever least stress remains.
+    /// Wherever the least stress remains.
     Free,
 }
 
-/// What may be off when a protocol is followed: it is tried many times, each with errors of its own.
+/// Errors with which a protocol is followed: it is tried many times, each with errors of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"amplitude_error": 0.01, "friction_error": 0.05, "samples": 100, "seed": 1}))]
@@ -140,7 +133,7 @@ pub struct Robustness {
     #[serde(default)]
     pub amplitude_error: f64,
     /// The fraction that the coefficient of friction may be off either way, a pure number; evenly distributed. Not for a
-    /// start from a contact that lives, whose history belongs to its own coefficient.
+    /// start from a contact on the server, whose history belongs to its own coefficient.
     #[serde(default)]
     pub friction_error: f64,
     /// How many times it is tried.
@@ -150,9 +143,19 @@ pub struct Robustness {
     #[serde(default)]
     pub seed: u64,
 }
+limits!(Robustness {
+    amplitude_error: Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 },
+    friction_error: Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 },
+    samples: 2..=10_000_usize,
+    // What every JSON reader takes for a whole number.
+    seed: 0..=0x1f_ffff_ffff_ffff_u64,
+});
+
+/// How many times a protocol is tried with errors by default.
+const DEFAULT_SAMPLES: usize = 200;
 
 fn samples() -> usize {
-    limits::DEFAULT_SAMPLES
+    DEFAULT_SAMPLES
 }
 
 /// A number of reversals, or what they are to reach.
@@ -162,6 +165,38 @@ pub enum Aim {
     Reversals(usize),
     /// The fewest that leave so much, over the unit of stress.
     Target(f64),
+}
+
+/// The members by which a protocol and a relaxation name their aim; exactly one of the two is given.
+struct AimMembers {
+    reversals: Option<usize>,
+    target: Option<f64>,
+}
+limits!(AimMembers {
+    reversals: PROTOCOL_REVERSALS,
+    target: Range { quantity: Quantity::ProtocolTarget, unit: "", min: 1e-4, max: 10.0 },
+});
+limits!(ProtocolRequest and AimMembers);
+limits!(RelaxRequest and AimMembers);
+
+impl AimMembers {
+    fn check(&self, faults: &mut Faults) -> Option<Aim> {
+        let at = JsonPath::Root;
+        let aim = match (self.reversals, self.target) {
+            (Some(reversals), None) => Aim::Reversals(reversals),
+            (None, Some(target)) => Aim::Target(target),
+            (None, None) => {
+                faults.add(at.member("reversals"), "missing: name `reversals` or `target`");
+                return None;
+            }
+            (Some(_), Some(_)) => {
+                faults.add(at.member("target"), "stands beside `reversals`: one of the two is allowed");
+                return None;
+            }
+        };
+        self.check_members(at, faults);
+        Some(aim)
+    }
 }
 
 /// What is asked of a protocol, checked.
@@ -182,7 +217,7 @@ pub struct ProtocolTask {
 pub enum ProtocolSubject {
     /// One that has never moved, and the displacement to begin with.
     Virgin(Box<(ContactDefinition, Setup)>, Option<f64>),
-    /// One that lives, and the definition that it is said to have.
+    /// One on the server, and the definition that the request says it has.
     Living(Uuid, Option<Box<ContactDefinition>>),
 }
 
@@ -191,7 +226,7 @@ impl Document for ProtocolRequest {
 
     fn check(self) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
-        let at = |name| At::Root.member(name);
+        let at = |name| JsonPath::Root.member(name);
         let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), &mut faults));
         let subject = match (self.start, self.contact, setup) {
             (Some(ProtocolStart::ContactId(id)), definition, _) => {
@@ -209,24 +244,13 @@ impl Document for ProtocolRequest {
                 None
             }
             (start, Some(definition), setup) => {
-                let first = start.and_then(|start| match start {
-                    ProtocolStart::Displacement(first) => Some(first),
-                    ProtocolStart::ContactId(_) => None,
-                });
-                if let Some(first) = first {
-                    let start = at("start");
-                    faults.number(start.member("displacement"), first, &range::DISPLACEMENT);
-                    if first.abs() <= 0.0 {
-                        faults
-                            .add(start.member("displacement"), "0 is no amplitude: allowed is any other displacement");
-                    }
-                }
+                let first = start.and_then(|start| start.check(at("start"), &mut faults));
                 setup.map(|setup| ProtocolSubject::Virgin(Box::new((definition, setup)), first))
             }
         };
-        let aim = aim(self.reversals, self.target, &mut faults);
+        let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
         if let Some(robustness) = &self.robustness {
-            robustness.check(at("robustness"), &mut faults);
+            robustness.check_members(at("robustness"), &mut faults);
         }
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: self.robustness });
         faults.done(subject.zip(task))
@@ -249,43 +273,21 @@ impl Document for RelaxRequest {
 
     fn check(self) -> Result<Relaxation, Rejection> {
         let mut faults = Faults::default();
-        let aim = aim(self.reversals, self.target, &mut faults);
+        let aim = AimMembers { reversals: self.reversals, target: self.target }.check(&mut faults);
         let task = aim.map(|aim| ProtocolTask { aim, kind: self.kind, end: self.end, robustness: None });
         faults.done(task.map(|task| Relaxation { task, dry_run: self.dry_run, steps: self.steps }))
     }
 }
 
-fn aim(reversals: Option<usize>, target: Option<f64>, faults: &mut Faults) -> Option<Aim> {
-    let at = At::Root;
-    match (reversals, target) {
-        (Some(reversals), None) => {
-            faults.count(at.member("reversals"), reversals, &limits::PROTOCOL_REVERSALS);
-            Some(Aim::Reversals(reversals))
+impl ProtocolStart {
+    /// The displacement to begin with, if it is one.
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<f64> {
+        let ProtocolStart::Displacement(first) = *self else { return None };
+        self.check_members(at, faults);
+        if first.abs() <= 0.0 {
+            faults.add(at.member("displacement"), "0 is no amplitude: allowed is any other displacement");
         }
-        (None, Some(target)) => {
-            faults.number(at.member("target"), target, &limits::TARGET);
-            Some(Aim::Target(target))
-        }
-        (None, None) => {
-            faults.add(at.member("reversals"), "missing: name `reversals` or `target`");
-            None
-        }
-        (Some(_), Some(_)) => {
-            faults.add(at.member("target"), "stands beside `reversals`: one of the two is allowed");
-            None
-        }
-    }
-}
-
-impl Robustness {
-    fn check(&self, at: At<'_>, faults: &mut Faults) {
-        faults.number(at.member("amplitude_error"), self.amplitude_error, &limits::AMPLITUDE_ERROR);
-        faults.number(at.member("friction_error"), self.friction_error, &limits::FRICTION_ERROR);
-        faults.count(at.member("samples"), self.samples, &limits::SAMPLES);
-        let (seed, most) = (self.seed, *limits::SEED.end());
-        if seed > most {
-            faults.add(at.member("seed"), format_args!("{seed} is out of range: allowed is 0 to {most}"));
-        }
+        Some(first)
     }
 }
 

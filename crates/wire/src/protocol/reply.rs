@@ -1,17 +1,18 @@
 //! What `POST /protocols` and `POST /contacts/{id}/relax` reply.
 
 use serde::{Deserialize, Serialize};
+use serde_with::apply;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::super::reply::{Accuracy, Figures, Residual, State, Warning};
+use super::super::reply::{Accuracy, ContactSummary, Residual, State, Warning};
 use super::{ProtocolEnd, ProtocolKind};
 
 /// How to move so that little shear stress remains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ProtocolReply {
-    /// The figures of the contact at its present load.
-    pub contact: Figures,
+    /// What follows from the definition at the present load.
+    pub contact: ContactSummary,
     /// The law of the amplitudes.
     pub kind: ProtocolKind,
     /// Where the path ends.
@@ -22,11 +23,11 @@ pub struct ProtocolReply {
     pub path: DisplacementPath,
     /// How the path begins.
     pub start: StartReply,
-    /// Where and in which unit the remaining stress is judged.
+    /// Where and in which unit the remaining stress is measured.
     pub judged: JudgedReply,
     /// What remains.
     pub residual: Residual,
-    /// The largest shear stress that remains where it is judged, Pa; `null` where it is infinite.
+    /// The largest shear stress that remains where it is measured, Pa; `null` where it is infinite.
     pub largest: Option<f64>,
     /// The same over `judged.unit`, a pure number.
     pub relative: Option<f64>,
@@ -36,7 +37,7 @@ pub struct ProtocolReply {
     pub force: f64,
     /// Work done against friction on the path, J.
     pub dissipated_energy: f64,
-    /// How far the path may be from the best there is, of `minimax` alone.
+    /// How far the path may be from the optimum; of `minimax` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub gap: Option<Gap>,
@@ -48,7 +49,7 @@ pub struct ProtocolReply {
     pub comparison: Comparison,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
-    /// What to know about the results.
+    /// Warnings about the results.
     pub warnings: Vec<Warning>,
 }
 
@@ -78,14 +79,14 @@ pub enum FirstStroke {
     GrossSlip,
     /// A stroke that wipes out the outer part of the history, and leaves the inner one as it is.
     Partial,
-    /// None: less stress is there already than any other path would leave.
+    /// None: less stress is present already than any other path would leave.
     Stay,
 }
 
-/// Where and in which unit the remaining stress is judged.
+/// Where and in which unit the remaining stress is measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JudgedReply {
-    /// From this radius on, m: nought, but where the stress is infinite whatever is done (the tip of a cone, the rim of a
+    /// From this radius on, m: zero, but where the stress is infinite whatever is done (the tip of a cone, the rim of a
     /// truncated profile).
     pub from_radius: f64,
     /// Up to this radius, m: the contact radius, but at a vertical edge.
@@ -108,7 +109,7 @@ pub enum PressureUnit {
     Mean,
 }
 
-/// How far a path may be from the best there is.
+/// How far a path may be from the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Gap {
     /// By how much the smallest of the alternating extrema falls short of the largest, relative to it; `null` where they are
@@ -137,20 +138,15 @@ pub struct RobustnessReply {
     pub percentile_95: Option<f64>,
 }
 
-/// The figures of the other laws.
+/// The results of the other laws.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Comparison {
     /// The linear fall.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub linear: Option<Outcome>,
     /// Equal peaks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub equal_peaks: Option<Outcome>,
     /// Minimax.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
     pub minimax: Option<Outcome>,
 }
 
@@ -159,7 +155,7 @@ pub struct Comparison {
 pub struct Outcome {
     /// What remains.
     pub residual: Residual,
-    /// The largest shear stress that remains where it is judged, Pa; `null` where it is infinite.
+    /// The largest shear stress that remains where it is measured, Pa; `null` where it is infinite.
     pub largest: Option<f64>,
     /// The same over `judged.unit`, a pure number.
     pub relative: Option<f64>,
@@ -169,7 +165,7 @@ pub struct Outcome {
     pub force: f64,
     /// Work done against friction on the path, J.
     pub dissipated_energy: f64,
-    /// How far the path may be from the best there is, of `minimax` alone.
+    /// How far the path may be from the optimum; of `minimax` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub gap: Option<Gap>,
@@ -179,12 +175,12 @@ pub struct Outcome {
     pub robustness: Option<RobustnessReply>,
 }
 
-/// What came of relaxing a contact, or would come of it.
+/// The result of relaxing a contact, or of a dry run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RelaxReply {
     /// The contact.
     pub id: Uuid,
-    /// How many moves it has behind it.
+    /// Number of moves so far.
     pub sequence: u64,
     /// Whether the path was only shown.
     pub dry_run: bool,

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Deserializer};
 
 /// Implements `Deserialize` for an enum whose variants are the keys of a one-key object, and perhaps bare words.
-macro_rules! one_key {
+macro_rules! single_key {
     ($name:ident { $($key:literal => $variant:ident),+ } $(or { $($word:literal => $unit:ident),+ })?) => {
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -52,9 +52,9 @@ macro_rules! one_key {
         }
     };
 }
-pub(super) use one_key;
+pub(super) use single_key;
 
 /// For members that may be left out but, once named, must have a value: `null` is what careless clients make of NaN.
-pub(super) fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+pub(super) fn not_null<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }

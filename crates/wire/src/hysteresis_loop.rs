@@ -1,17 +1,17 @@
-//! The reply of `/contacts/{id}/loop`: the way of a session as columns.
+//! The reply of `/contacts/{id}/loop`: displacement and force of a contact, as columns.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::reply::State;
 
-/// A page of the hysteresis loop of a session, oldest first. The first page begins with the virgin contact, sequence nought;
-/// pages put one after the other are the whole loop.
+/// A page of the hysteresis loop of a contact, oldest first. The first page begins with the virgin contact at sequence zero; the
+/// pages in sequence are the whole loop.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LoopPage {
-    /// The move that a point is on or at the end of.
+    /// The number of the move that a point belongs to.
     pub sequence: Vec<u64>,
-    /// How far on that move, 1 at its end.
+    /// Fraction of that move, 1 at its end.
     pub part: Vec<f64>,
     /// Tangential displacement U of the indenter, m.
     pub displacement: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct LoopPage {
 }
 
 impl LoopPage {
-    /// A page without moves as yet, beyond a move.
+    /// A page without moves yet, of those after the move `after`.
     #[must_use]
     pub fn after(after: u64) -> LoopPage {
         let mut page = LoopPage::default();
@@ -32,7 +32,7 @@ impl LoopPage {
         page
     }
 
-    /// Adds a point on the way.
+    /// Adds a point within a move.
     pub fn push(&mut self, sequence: u64, part: f64, displacement: f64, force: f64) {
         self.sequence.push(sequence);
         self.part.push(part);

@@ -1,4 +1,4 @@
-//! Any JSON value, each member of an object given once: what is to be a document of ours when its numbers have been put in.
+//! Any JSON value whose objects have no repeated members, and JSON pointers into it: the base of a sweep.
 
 use std::fmt;
 
@@ -11,17 +11,17 @@ use super::check::escaped;
 /// A JSON value without repeated members.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct Any(pub Value);
+pub struct JsonValue(pub Value);
 
-impl<'de> Deserialize<'de> for Any {
+impl<'de> Deserialize<'de> for JsonValue {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AnyVisitor).map(Any)
+        deserializer.deserialize_any(JsonValueVisitor).map(JsonValue)
     }
 }
 
-struct AnyVisitor;
+struct JsonValueVisitor;
 
-impl<'de> Visitor<'de> for AnyVisitor {
+impl<'de> Visitor<'de> for JsonValueVisitor {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -54,7 +54,7 @@ impl<'de> Visitor<'de> for AnyVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Value, A::Error> {
         let mut values = Vec::new();
-        while let Some(Any(value)) = elements.next_element()? {
+        while let Some(JsonValue(value)) = elements.next_element()? {
             values.push(value);
         }
         Ok(Value::Array(values))
@@ -66,19 +66,19 @@ impl<'de> Visitor<'de> for AnyVisitor {
             if values.contains_key(&name) {
                 return Err(A::Error::custom(format_args!("duplicate field `{name}`")));
             }
-            let Any(value) = members.next_value()?;
+            let JsonValue(value) = members.next_value()?;
             values.insert(name, value);
         }
         Ok(Value::Object(values))
     }
 }
 
-/// A JSON pointer (RFC 6901), taken apart.
+/// A JSON pointer (RFC 6901), split into its segments.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Pointer(Box<[String]>);
 
 impl Pointer {
-    /// Takes a pointer apart; none if it is not written as one.
+    /// Splits a pointer into its segments; none if it is not a JSON pointer.
     #[must_use]
     pub fn parse(text: &str) -> Option<Pointer> {
         if text.is_empty() {
@@ -91,7 +91,7 @@ impl Pointer {
         text.strip_prefix('/')?.split('/').map(segment).collect::<Option<_>>().map(Pointer)
     }
 
-    /// Its parts.
+    /// Its segments.
     #[must_use]
     pub fn segments(&self) -> &[String] {
         &self.0
@@ -99,8 +99,8 @@ impl Pointer {
 
     /// Puts a number where it points to: in place of a number, or as a member that is missing. Says whether it could.
     pub fn put(&self, document: &mut Value, number: Number) -> bool {
-        let Some((last, way)) = self.0.split_last() else { return false };
-        let parent = way.iter().try_fold(document, |node, segment| match node {
+        let Some((last, parents)) = self.0.split_last() else { return false };
+        let parent = parents.iter().try_fold(document, |node, segment| match node {
             Value::Object(members) => members.get_mut(segment),
             Value::Array(elements) => index(segment).and_then(|index| elements.get_mut(index)),
             _ => None,
@@ -136,7 +136,7 @@ pub fn index(segment: &str) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Any, Pointer};
+    use super::{JsonValue, Pointer};
     use serde_json::{Number, json};
 
     #[test]
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_member_given_twice_is_refused_wherever_it_is() {
-        let of = |text: &str| serde_json::from_str::<Any>(text);
+        let of = |text: &str| serde_json::from_str::<JsonValue>(text);
         assert_eq!(of(r#"{"a":[1,-2,0.1,"s",null,true,{}]}"#).unwrap().0, json!({"a":[1,-2,0.1,"s",null,true,{}]}));
         assert!(of(r#"{"a":[{"b":1,"b":1}]}"#).unwrap_err().to_string().contains("duplicate field `b`"));
     }
