@@ -91,3 +91,18 @@ fn every_test_that_verification_names_exists() {
     }
     assert!(named > 250, "{named} tests are named");
 }
+
+#[test]
+fn the_crates_depend_on_no_more_than_the_readme_says() {
+    let dependencies = |folder: &str| -> Vec<String> {
+        let manifest = std::fs::read_to_string(file("crates").join(folder).join("Cargo.toml")).unwrap();
+        let section = manifest.split("[dependencies]\n").nth(1).unwrap().split("\n[").next().unwrap();
+        let names = section.lines().map(|line| line.split([' ', '.']).next().unwrap());
+        names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
+    };
+    assert!(dependencies("mechanics").len() <= 2, "{:?}", dependencies("mechanics"));
+    let wire = dependencies("wire");
+    for absent in ["axum", "rusqlite", "tokio-postgres", "deadpool-postgres"] {
+        assert!(!wire.iter().any(|name| name == absent), "stickslip-wire depends on {absent}");
+    }
+}
