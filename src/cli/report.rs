@@ -24,7 +24,7 @@ pub struct Report {
     /// How many seconds all of it may take, or nearly, instead of 110, or of as many as it takes with --full.
     #[arg(long, value_name = "SECONDS")]
     budget: Option<u32>,
-    /// Run the scripts of crates/report/external beside our solvers, with this Python; see docs/speed-and-accuracy.md.
+    /// Run the scripts of benches/peers beside our solvers, with this Python; see docs/speed-and-accuracy.md.
     #[arg(long, value_name = "PYTHON")]
     peers: Option<PathBuf>,
 }
