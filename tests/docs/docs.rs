@@ -12,7 +12,7 @@ fn page(name: &str) -> String {
 #[tokio::test(flavor = "multi_thread")]
 async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
-    for (name, blocks) in [("simulate.md", 2), ("session.md", 5), ("gallery.md", 1), ("errors.md", 1)] {
+    for (name, blocks) in [("simulate.md", 2), ("contacts.md", 5), ("gallery.md", 1), ("errors.md", 1)] {
         let text = page(name);
         let found: Vec<&str> = text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
         assert_eq!(found.len(), blocks, "{name}");
@@ -29,7 +29,9 @@ async fn every_command_of_the_pages_runs_as_printed() {
 
 #[test]
 fn every_link_between_the_pages_leads_somewhere() {
-    for name in ["simulate.md", "session.md", "dashboards.md", "limits.md", "gallery.md", "errors.md"] {
+    for name in
+        ["simulate.md", "contacts.md", "dashboards.md", "limits.md", "gallery.md", "errors.md", "verification.md"]
+    {
         let text = page(name);
         let targets = text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap());
         for target in targets.filter(|target| !target.starts_with("http")) {
@@ -44,5 +46,51 @@ fn every_link_between_the_pages_leads_somewhere() {
                     .any(|line| line.starts_with('#') && heading(line) == place);
             assert!(found, "{name}: {target}");
         }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_calls_of_the_readme_run_as_printed() {
+    let server = Process::start("memory:").await;
+    let text = std::fs::read_to_string(file("README.md")).unwrap();
+    let blocks = text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    let calls: Vec<&str> = blocks.filter(|block| block.contains("localhost:8080")).collect();
+    assert_eq!(calls.len(), 5);
+    let script = calls.concat().replace("localhost:8080", server.base.trim_start_matches("http://"));
+    // Without -e: curl reports an error when its two seconds of events are over.
+    let mut run = Command::new("bash");
+    let printed = succeed(run.args(["-uo", "pipefail", "-c", &script]), "bash is installed");
+    for expected in ["\"residual\":{", "\"sequence\":1,", "event: state", "\"pressure\":[", "204"] {
+        assert!(printed.contains(expected), "{expected} is missing: {printed}");
+    }
+    assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
+}
+
+#[test]
+fn every_test_that_verification_names_exists() {
+    let text = page("verification.md");
+    let mut named = 0;
+    for row in text.lines().filter(|line| line.starts_with('|')) {
+        for (path, name) in row.split('`').filter_map(|cell| cell.split_once(" :: ")) {
+            let source = std::fs::read_to_string(file(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
+            assert!(source.contains(&format!("fn {name}(")), "{path} has no test {name}");
+            named += 1;
+        }
+    }
+    assert!(named > 250, "{named} tests are named");
+}
+
+#[test]
+fn the_crates_depend_on_no_more_than_the_readme_says() {
+    let dependencies = |folder: &str| -> Vec<String> {
+        let manifest = std::fs::read_to_string(file("crates").join(folder).join("Cargo.toml")).unwrap();
+        let section = manifest.split("[dependencies]\n").nth(1).unwrap().split("\n[").next().unwrap();
+        let names = section.lines().map(|line| line.split([' ', '.']).next().unwrap());
+        names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
+    };
+    assert!(dependencies("mechanics").len() <= 2, "{:?}", dependencies("mechanics"));
+    let wire = dependencies("wire");
+    for absent in ["axum", "rusqlite", "tokio-postgres", "deadpool-postgres"] {
+        assert!(!wire.iter().any(|name| name == absent), "stickslip-wire depends on {absent}");
     }
 }
