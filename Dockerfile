@@ -4,8 +4,8 @@ RUN apt-get update && apt-get install --yes --no-install-recommends musl-tools c
 WORKDIR /src
 COPY Cargo.toml Cargo.lock build.rs image ./
 COPY .cargo ./.cargo
+COPY crates ./crates
 COPY src ./src
-COPY benches ./benches
 COPY openapi ./openapi
 # What /metrics says that it was built from.
 ARG BUILD_COMMIT=unknown
