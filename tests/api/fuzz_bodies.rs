@@ -109,15 +109,15 @@ fn bodies_that_once_broke_a_law() {
 
 #[test]
 fn raw_bytes() {
-    fuzz(300_000, crate::damage::raw(), Clone::clone);
+    fuzz(1_200_000, crate::damage::raw(), Clone::clone);
 }
 
 #[test]
 fn damaged_requests() {
-    fuzz(10_000, crate::damage::damaged(), Clone::clone);
+    fuzz(20_000, crate::damage::damaged(), Clone::clone);
 }
 
 #[test]
 fn sound_requests() {
-    fuzz(3_000, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes());
+    fuzz(8_000, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes());
 }
