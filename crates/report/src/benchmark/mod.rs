@@ -11,13 +11,14 @@ mod scenes;
 mod shape;
 mod timing;
 
+use std::collections::HashMap;
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use external_solver::ExternalSolver;
+use external_solver::{ExternalSolver, SCRIPTS};
 use reference::Reference;
 use scenes::{E_STAR, FRICTION, G_STAR, Scene};
 use timing::{SceneBenchmark, SolverRun};
@@ -162,11 +163,21 @@ fn measure_scene(
     let mean_pressure = reference.normal_force() / (std::f64::consts::PI * edge * edge);
     let units = (FRICTION * load, FRICTION * reference.centre_pressure().unwrap_or(mean_pressure));
     let reference = SolverRun { forces, shears, seconds };
-    let mut benchmark =
-        SceneBenchmark::new(name, scene, &radii, &reference, units, options.repetition_time, share, begin);
+    let mut benchmark = SceneBenchmark {
+        name,
+        scene,
+        radii: &radii,
+        reference: &reference,
+        units,
+        repetition_time: options.repetition_time,
+        deadline: share.map(|share| begin + share),
+        rows: Vec::new(),
+        missing: Vec::new(),
+        last_seconds: HashMap::new(),
+    };
     benchmark.run_own_solvers(options.max_springs)?;
-    for script in external_solver::SCRIPTS.iter().filter(|_| options.python.is_some()) {
-        let Some(python) = &options.python else { continue };
+    for (python, script) in options.python.iter().flat_map(|python| SCRIPTS.iter().map(move |script| (python, script)))
+    {
         match ExternalSolver::start(python, script, &scene.to_json(&radii))? {
             Ok(solver) => {
                 if !report.external_solvers.contains(&solver.version) {

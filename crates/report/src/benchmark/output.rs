@@ -115,7 +115,7 @@ fn chart(rows: &[Row], scene: &str, what: &str, error: fn(&Row) -> f64) -> Chart
             rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(SMALLEST_ERROR))).collect();
         if solver == "exact" { Series::dots(solver, points) } else { Series::line(solver, points) }
     });
-    Chart { title: scene.to_owned(), x: "processor time, s".to_owned(), y: what.to_owned(), series: series.collect() }
+    Chart::new(scene, "processor time, s", what, series.collect())
 }
 
 /// Processor, cores, system, compiler and optimisation.

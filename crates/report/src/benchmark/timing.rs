@@ -36,19 +36,19 @@ pub(super) struct SolverRun {
 
 /// The measurements of all solvers on one scene.
 pub(super) struct SceneBenchmark<'a> {
-    name: &'a str,
-    scene: &'a Scene,
-    radii: &'a [f64],
-    reference: &'a SolverRun,
+    pub(super) name: &'a str,
+    pub(super) scene: &'a Scene,
+    pub(super) radii: &'a [f64],
+    pub(super) reference: &'a SolverRun,
     /// Units of the errors: of force, N, and of stress, Pa.
-    units: (f64, f64),
-    repetition_time: Duration,
+    pub(super) units: (f64, f64),
+    pub(super) repetition_time: Duration,
     /// When the scene is to be finished.
-    deadline: Option<Instant>,
-    rows: Vec<Row>,
-    missing: Vec<Missing>,
+    pub(super) deadline: Option<Instant>,
+    pub(super) rows: Vec<Row>,
+    pub(super) missing: Vec<Missing>,
     /// Time of the last run of each solver, s.
-    last_seconds: HashMap<String, f64>,
+    pub(super) last_seconds: HashMap<String, f64>,
 }
 
 /// Processor time of this thread, s: on a busy machine, wall-clock time grows for long runs and not for short ones, which fit
@@ -89,23 +89,7 @@ fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     [last / 4, last / 2, (3 * last).div_ceil(4)].map(|index| values[index])
 }
 
-impl<'a> SceneBenchmark<'a> {
-    #[expect(clippy::too_many_arguments, reason = "one for each field")]
-    pub(super) fn new(
-        name: &'a str,
-        scene: &'a Scene,
-        radii: &'a [f64],
-        reference: &'a SolverRun,
-        units: (f64, f64),
-        repetition_time: Duration,
-        share: Option<Duration>,
-        begin: Instant,
-    ) -> SceneBenchmark<'a> {
-        let deadline = share.map(|share| begin + share);
-        let (rows, missing, last_seconds) = (Vec::new(), Vec::new(), HashMap::new());
-        SceneBenchmark { name, scene, radii, reference, units, repetition_time, deadline, rows, missing, last_seconds }
-    }
-
+impl SceneBenchmark<'_> {
     /// The exact solver, and springs from few to many by every kernel.
     pub(super) fn run_own_solvers(&mut self, max_springs: usize) -> io::Result<()> {
         let (scene, radii) = (self.scene, self.radii);

@@ -120,26 +120,26 @@ fn positions(path: &NormalisedPath) -> Chart {
     });
     let position = position.chain(turns.last().copied()).collect();
     let marked = vec![turns[5], (6.5, 0.0)];
-    Chart {
-        title: "Figure 1: position of the indenter, 20 reversals".into(),
-        x: "reversal point k".into(),
-        y: "u / u_max".into(),
-        series: vec![
+    Chart::new(
+        "Figure 1: position of the indenter, 20 reversals",
+        "reversal point k",
+        "u / u_max",
+        vec![
             Series::dots("A and B of figure 3", marked),
             Series::dots("reversal points", turns),
             Series::line("position", position),
         ],
-    }
+    )
 }
 
 fn forces(path: &NormalisedPath) -> Chart {
     let sizes: Vec<f64> = path.forces().iter().map(|force| force.abs()).collect();
-    Chart {
-        title: "Figure 2: tangential force at the reversal points".into(),
-        x: "reversal point k".into(),
-        y: "|F| / (mu F_N)".into(),
-        series: vec![Series::dots("|F| / (mu F_N)", numbered(&sizes))],
-    }
+    Chart::new(
+        "Figure 2: tangential force at the reversal points",
+        "reversal point k",
+        "|F| / (mu F_N)",
+        vec![Series::dots("|F| / (mu F_N)", numbered(&sizes))],
+    )
 }
 
 /// The friction bound behind the curves that it bounds.
@@ -156,22 +156,22 @@ fn shear_partway() -> Result<Chart, Error> {
     path.move_to(0.0)?;
     let back = path.shear();
     let curves = [Series::line("A: reversal 6", at_reversal), Series::line("B: back at u = 0", back)];
-    Ok(Chart {
-        title: "Figure 3: shear stress after 6 and 6.5 of 20 reversals".into(),
-        x: "r / a".into(),
-        y: "tau / (mu p_max)".into(),
-        series: with_bound(&path, curves),
-    })
+    Ok(Chart::new(
+        "Figure 3: shear stress after 6 and 6.5 of 20 reversals",
+        "r / a",
+        "tau / (mu p_max)",
+        with_bound(&path, curves),
+    ))
 }
 
 fn remaining_shear() -> Result<Chart, Error> {
     let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
-    Ok(Chart {
-        title: "Figure 4: shear stress that remains after 20 reversals".into(),
-        x: "r / a".into(),
-        y: "tau / (mu p_max)".into(),
-        series: vec![Series::line("tau / (mu p_max)", path.shear())],
-    })
+    Ok(Chart::new(
+        "Figure 4: shear stress that remains after 20 reversals",
+        "r / a",
+        "tau / (mu p_max)",
+        vec![Series::line("tau / (mu p_max)", path.shear())],
+    ))
 }
 
 fn remaining_peaks() -> Result<Chart, Error> {
@@ -187,12 +187,12 @@ fn remaining_peaks() -> Result<Chart, Error> {
         smallest.extend(residual.min.map(|value| (x, value / unit)));
         mean.extend(residual.mean.map(|value| (x, value / unit)));
     }
-    Ok(Chart {
-        title: "Figure 5: peaks of the remaining shear stress".into(),
-        x: "number of reversals".into(),
-        y: "|tau| / (mu p_max)".into(),
-        series: vec![Series::dots("maximum", largest), Series::dots("mean", mean), Series::dots("minimum", smallest)],
-    })
+    Ok(Chart::new(
+        "Figure 5: peaks of the remaining shear stress",
+        "number of reversals",
+        "|tau| / (mu p_max)",
+        vec![Series::dots("maximum", largest), Series::dots("mean", mean), Series::dots("minimum", smallest)],
+    ))
 }
 
 /// One row a point: series, x, y, each number as short as it can be and exact.

@@ -52,12 +52,12 @@ fn reduction() -> Result<Chart, Error> {
         let point = |reversals| Ok((reversals as f64, designed(&contact, kind, reversals)?.largest / unit(&contact)));
         Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
     });
-    Ok(Chart {
-        title: "Figure 6: largest remaining stress, profile z ~ r^4".into(),
-        x: "number of reversals".into(),
-        y: "max |tau| / (mu p_max)".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 6: largest remaining stress, profile z ~ r^4",
+        "number of reversals",
+        "max |tau| / (mu p_max)",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }
 
 fn over_radius() -> Result<Chart, Error> {
@@ -71,12 +71,12 @@ fn over_radius() -> Result<Chart, Error> {
         let curve = radii.iter().map(|&r| (r / edge, left.contact.shear(r) / unit(&contact)));
         Ok(Series::line(name, curve.collect()))
     });
-    Ok(Chart {
-        title: "Figure 7: stress after 20 reversals, profile z ~ r^4".into(),
-        x: "r / a".into(),
-        y: "tau / (mu p_max)".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 7: stress after 20 reversals, profile z ~ r^4",
+        "r / a",
+        "tau / (mu p_max)",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }
 
 fn shapes() -> Result<Chart, Error> {
@@ -94,12 +94,12 @@ fn shapes() -> Result<Chart, Error> {
         };
         Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
     });
-    Ok(Chart {
-        title: "Figure 8: remaining stress of minimax over that of linear".into(),
-        x: "number of reversals".into(),
-        y: "max |tau|, minimax / linear".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 8: remaining stress of minimax over that of linear",
+        "number of reversals",
+        "max |tau|, minimax / linear",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }
 
 fn robustness() -> Result<Chart, Error> {
@@ -114,10 +114,10 @@ fn robustness() -> Result<Chart, Error> {
         };
         Ok(Series::line(name, (0..=8).map(point).collect::<Result<_, Error>>()?))
     });
-    Ok(Chart {
-        title: "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4".into(),
-        x: "standard deviation of each amplitude, %".into(),
-        y: "max |tau| / (mu p_max)".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4",
+        "standard deviation of each amplitude, %",
+        "max |tau| / (mu p_max)",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }

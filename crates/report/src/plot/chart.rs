@@ -50,6 +50,11 @@ impl Series {
 }
 
 impl Chart {
+    /// A chart with its title, the labels of abscissa and ordinate, and its series.
+    pub fn new(title: &str, x: &str, y: &str, series: Vec<Series>) -> Chart {
+        Chart { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), series }
+    }
+
     /// The chart as an SVG document.
     pub fn svg(&self) -> Result<String, String> {
         let mut text = String::new();
@@ -154,8 +159,7 @@ mod tests {
     #[test]
     fn decades_are_labelled_and_what_has_no_logarithm_is_left_out() {
         let points = vec![(1e-5, 1e-3), (0.0, 1.0), (1e-3, 1e-9)];
-        let text = |text: &str| text.to_owned();
-        let chart = Chart { title: text("t"), x: text("x"), y: text("y"), series: vec![Series::line("a", points)] };
+        let chart = Chart::new("t", "x", "y", vec![Series::line("a", points)]);
         let svg = chart.svg_over_decades().unwrap();
         for label in ["1e-5", "1e-4", "1e-3", "1e-9", "1e-6"] {
             assert!(svg.contains(label), "{label}");
