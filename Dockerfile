@@ -1,17 +1,17 @@
-# Build: a static program; the toolchain stays behind in this stage.
+# Build: a static program; the toolchain stays in this stage.
 FROM rust:1.95-bookworm AS build
 RUN apt-get update && apt-get install --yes --no-install-recommends musl-tools ca-certificates
 WORKDIR /src
 COPY Cargo.toml Cargo.lock build.rs image ./
 COPY .cargo ./.cargo
+COPY crates ./crates
 COPY src ./src
-COPY benches ./benches
 COPY openapi ./openapi
-# What /metrics says that it was built from.
+# The commit that /metrics shows.
 ARG BUILD_COMMIT=unknown
 RUN ./image /image
 
-# Run: one program and the certificates of public authorities. No shell, not root, nothing to write but the volume.
+# Run: one program and the certificates of public authorities. No shell, not root, only the volume is writable.
 FROM scratch
 COPY --from=build /image /
 COPY --from=build --chown=65532:65532 /image/data /data
@@ -19,8 +19,8 @@ USER 65532:65532
 WORKDIR /data
 VOLUME /data
 EXPOSE 8080
-# Others can reach it there, so that it starts with keys alone: -v …/keys:/keys:ro -e STICKSLIP_KEYS=/keys. In a closed network,
-# -e STICKSLIP_INSECURE=true does without.
+# Others can reach this address, so the service does not start without keys: -v …/keys:/keys:ro -e STICKSLIP_KEYS=/keys.
+# In a closed network, -e STICKSLIP_INSECURE=true allows it.
 ENV STICKSLIP_LISTEN=0.0.0.0:8080
 HEALTHCHECK --interval=10s --timeout=3s --start-period=2s CMD ["/stickslip", "healthcheck"]
 ENTRYPOINT ["/stickslip"]

@@ -1,4 +1,4 @@
-//! Tells the program which compiler made it, and packs the files of the page.
+//! Passes the version of the compiler to the program, and compresses the files of the page.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -9,15 +9,15 @@ use std::process::Command;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-/// Where they are.
+/// The folder of the page.
 const PAGE: &str = "src/page";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={PAGE}");
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let said = Command::new(compiler).arg("--version").output();
-    let version = said.ok().and_then(|output| String::from_utf8(output.stdout).ok());
+    let output = Command::new(compiler).arg("--version").output();
+    let version = output.ok().and_then(|output| String::from_utf8(output.stdout).ok());
     // "rustc 1.95.0 (…)": the number alone.
     let number = version.as_deref().and_then(|line| line.split_whitespace().nth(1)).unwrap_or("unknown");
     println!("cargo::rustc-env=BUILD_COMPILER={number}");

@@ -1,34 +1,36 @@
-//! How cost grows: `cargo bench --bench growth`. Moves with the length of their path, stresses with radii and pieces, the service with
-//! its sessions; what a session and a piece of memory take, and how long a start lasts. Cores: `cargo bench --bench sweep`.
+//! How cost grows: `cargo bench --bench growth`. For cores see `cargo bench --bench sweep`.
+//!
+//! Moves with the length of the path, stresses with radii and pieces of slip history, the service with its contacts; the memory
+//! of a contact and of a piece of history; the time to start.
 
 mod load;
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use load::{Connection, Process, median, served};
+use load::{Connection, Process, join, median, serve};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
-/// Work that is shorter than this is repeated until it is not.
-const ENOUGH: Duration = Duration::from_millis(20);
-const TIMES: usize = 7;
+/// Shorter work is repeated for this time.
+const MIN_TIME: Duration = Duration::from_millis(20);
+const MEASUREMENTS: usize = 7;
 const CONNECTIONS: usize = 16;
-/// How long moves are made on so many sessions.
+/// How long moves are made on so many contacts.
 const ROUND: Duration = Duration::from_secs(2);
-const SESSIONS: [usize; 6] = [1, 10, 100, 1_000, 10_000, 100_000];
+const CONTACT_COUNTS: [usize; 6] = [1, 10, 100, 1_000, 10_000, 100_000];
 
 /// The median time of one call, in seconds.
 fn seconds(mut work: impl FnMut()) -> f64 {
     let mut once = || {
         let (begin, mut count) = (Instant::now(), 0_u32);
-        while count == 0 || begin.elapsed() < ENOUGH {
+        while count == 0 || begin.elapsed() < MIN_TIME {
             work();
             count += 1;
         }
         begin.elapsed().as_secs_f64() / f64::from(count)
     };
-    median(&(0..TIMES).map(|_| once()).collect::<Vec<_>>())
+    median(&(0..MEASUREMENTS).map(|_| once()).collect::<Vec<_>>())
 }
 
 fn virgin() -> Contact {
@@ -48,8 +50,8 @@ fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
     }
 }
 
-/// The contact after so many reversals of falling amplitude: as many pieces, and one or two.
-fn deep(reversals: usize) -> Contact {
+/// The contact after so many reversals of falling amplitude: about as many pieces of slip history.
+fn after_reversals(reversals: usize) -> Contact {
     let mut contact = virgin();
     let amplitude = contact.summary().gross_slip_displacement;
     follow(&mut contact, falling_amplitude(reversals, amplitude));
@@ -75,21 +77,21 @@ fn paths() {
 fn radii() {
     println!("\n| radii | pieces | time | of a radius and piece |\n|---|---|---|---|");
     for (count, reversals) in [(1, 20), (10, 20), (100, 20), (1_000, 20), (10_000, 20), (100_000, 20), (1_000, 1_000)] {
-        let contact = deep(reversals);
+        let contact = after_reversals(reversals);
         let (edge, pieces) = (contact.contact_radius(), contact.memory_depth());
         let radii: Vec<f64> = (0..count).map(|index| edge * f64::from(index) / f64::from(count)).collect();
         let time = seconds(|| drop(black_box(contact.shears(&radii))));
         let each = 1e9 * time / f64::from(count) / pieces as f64;
         println!("| {count} | {pieces} | {:.1} us | {each:.2} ns |", 1e6 * time);
     }
-    let (shallow, thousand) = (virgin(), deep(1_000));
+    let (shallow, thousand) = (virgin(), after_reversals(1_000));
     let pieces = thousand.memory_depth() - shallow.memory_depth();
     let bytes = (thousand.memory_bytes() - shallow.memory_bytes()) as f64 / pieces as f64;
     println!("\nA contact takes {} bytes, and {bytes:.0} for each piece more.", shallow.memory_bytes());
 }
 
-/// The paths of so many new sessions.
-async fn sessions(address: &str, count: usize) -> Vec<String> {
+/// Creates so many contacts; the paths of their moves.
+async fn create_contacts(address: &str, count: usize) -> Vec<String> {
     let workers = (0..CONNECTIONS).map(|worker| {
         let (address, own) = (address.to_owned(), (count + worker) / CONNECTIONS);
         tokio::spawn(async move {
@@ -101,11 +103,10 @@ async fn sessions(address: &str, count: usize) -> Vec<String> {
             paths
         })
     });
-    let made = futures::future::join_all(workers.collect::<Vec<_>>()).await;
-    made.into_iter().flat_map(|paths| paths.expect("a worker that ends well")).collect()
+    join(workers).await.into_iter().flatten().collect()
 }
 
-/// Moves a second, one session after the other.
+/// Moves a second, one contact after the other.
 async fn rate(address: &str, paths: &[String]) -> f64 {
     let begin = Instant::now();
     let workers = (0..CONNECTIONS).map(|worker| {
@@ -122,36 +123,34 @@ async fn rate(address: &str, paths: &[String]) -> f64 {
             count
         })
     });
-    let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
-    counts.into_iter().map(|count| count.expect("a worker that ends well") as f64).sum::<f64>()
-        / begin.elapsed().as_secs_f64()
+    join(workers).await.into_iter().sum::<usize>() as f64 / begin.elapsed().as_secs_f64()
 }
 
-async fn grow(name: &str, store: &str) {
-    println!("\n| sessions, {name} | moves a second | bytes of memory a session |\n|---|---|---|");
-    let process = Process::start(served(store));
+async fn contacts(name: &str, store: &str) {
+    println!("\n| contacts, {name} | moves a second | bytes of memory a contact |\n|---|---|---|");
+    let process = Process::start(serve(store));
     let before = process.resident();
     let mut paths = Vec::new();
-    for count in SESSIONS {
-        paths.extend(sessions(&process.address, count - paths.len()).await);
+    for count in CONTACT_COUNTS {
+        paths.extend(create_contacts(&process.address, count - paths.len()).await);
         let held = (process.resident() - before) / count as i64;
         let rate = rate(&process.address, &paths).await;
-        // Below some thousand sessions it is the pool, the buffers and the store that one sees.
+        // With fewer contacts, the pool, the buffers and the store dominate.
         let held = if count < 1_000 { "".to_owned() } else { held.to_string() };
         println!("| {count} | {rate:.0} | {held} |");
     }
 }
 
-/// The median time until the service says where it listens.
+/// The median time until the service listens, s.
 fn start(store: &str) -> f64 {
     let once = || {
         let begin = Instant::now();
-        let process = Process::start(served(store));
+        let process = Process::start(serve(store));
         let time = begin.elapsed().as_secs_f64();
         drop(process);
         time
     };
-    median(&(0..TIMES).map(|_| once()).collect::<Vec<_>>())
+    median(&(0..MEASUREMENTS).map(|_| once()).collect::<Vec<_>>())
 }
 
 #[tokio::main]
@@ -162,7 +161,7 @@ async fn main() {
     let file = format!("sqlite:{}", folder.path().join("growth.db").display());
     println!("\nFrom the start of the process to listening: {:.1} ms with memory:", 1e3 * start("memory:"));
     println!("{:.1} ms with an SQLite file that holds nothing", 1e3 * start(&file));
-    grow("memory:", "memory:").await;
-    grow("sqlite:", &file).await;
+    contacts("memory:", "memory:").await;
+    contacts("sqlite:", &file).await;
     println!("\n{:.1} ms with that file", 1e3 * start(&file));
 }

@@ -1,8 +1,8 @@
-//! What a whole request costs, and where it goes: `cargo bench --bench request`.
+//! The cost of a whole request and of its parts: `cargo bench --bench request`.
 //!
-//! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, beside two handlers in a process of their own:
-//! one parses the same body and writes the same reply, computed once; one returns the finished bytes. All take turns in every
-//! round. Then, without HTTP, what parsing, solving and writing take of it, and what a number costs to write.
+//! `POST /simulate` of 20 reversals with the stress at 200 radii, at 8 connections, against two baseline handlers in another
+//! process: one parses the same body and writes the same reply, computed once; one returns finished bytes. All take turns in
+//! every round. Then, without HTTP, the cost of parsing, solving and writing, and of writing a number.
 
 mod load;
 
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use axum::Router;
 use axum::body::Bytes;
 use axum::routing::post;
-use load::{Connection, Process, itself, median, served};
+use load::{Connection, Process, baseline, join, median, serve};
 use stickslip::admission::Stop;
 use stickslip::simulation::simulate;
 use stickslip_wire::{SimulateReply, SimulateRequest, read};
@@ -25,17 +25,17 @@ const BODY: &str = r#"{"contact":{"profile":{"type":"sphere","radius":0.01},"mat
 const CONNECTIONS: usize = 8;
 const ROUNDS: usize = 7;
 const ROUND: Duration = Duration::from_secs(2);
-/// How often each part is done for one of its times, and how many times are taken.
-const OFTEN: usize = 200;
-const TIMES: usize = 31;
+/// Calls in one measurement of a part, and number of measurements.
+const CALLS: usize = 200;
+const MEASUREMENTS: usize = 31;
 
 fn reply() -> SimulateReply {
     let request = read::<SimulateRequest>(BODY.as_bytes()).expect("a sound request");
     simulate(&request, &Stop::default()).expect("a reply")
 }
 
-/// Parses and writes, and writes alone.
-async fn bare() {
+/// Serves the two baseline handlers.
+async fn serve_baseline() {
     let reply = Arc::new(reply());
     let finished = Bytes::from(serde_json::to_vec(&*reply).expect("a reply as JSON"));
     let json = [("content-type", "application/json")];
@@ -46,13 +46,13 @@ async fn bare() {
     let finished = move |_: Bytes| async move { (json, finished) };
     let router = Router::new().route("/both", post(both)).route("/finished", post(finished));
     let listener = TcpListener::bind("127.0.0.1:0").await.expect("a free port");
-    println!("bare on http://{}", listener.local_addr().expect("an address"));
+    println!("baseline on http://{}", listener.local_addr().expect("an address"));
     axum::serve(listener, router).await.expect("a server");
 }
 
-/// Requests a second, and the seconds of processor time that each took of the process.
+/// Requests a second, and the processor time of the server a request, s.
 async fn round(process: &Process, path: &'static str) -> (f64, f64) {
-    let (start, used, address) = (Instant::now(), process.used(), &process.address);
+    let (start, used, address) = (Instant::now(), process.processor_seconds(), &process.address);
     let workers = (0..CONNECTIONS).map(|_| {
         let address = address.to_owned();
         tokio::spawn(async move {
@@ -65,16 +65,15 @@ async fn round(process: &Process, path: &'static str) -> (f64, f64) {
             count
         })
     });
-    let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
-    let count: u32 = counts.into_iter().map(|count| count.expect("a worker that ends well")).sum();
-    (f64::from(count) / start.elapsed().as_secs_f64(), (process.used() - used) / f64::from(count))
+    let count: u32 = join(workers).await.into_iter().sum();
+    (f64::from(count) / start.elapsed().as_secs_f64(), (process.processor_seconds() - used) / f64::from(count))
 }
 
-async fn whole() {
-    let (bare, service) = (Process::start(itself()), Process::start(served("memory:")));
+async fn whole_requests() {
+    let (other, service) = (Process::start(baseline()), Process::start(serve("memory:")));
     let targets = [
-        ("parses and writes", &bare, "/both"),
-        ("finished bytes", &bare, "/finished"),
+        ("parses and writes", &other, "/both"),
+        ("finished bytes", &other, "/finished"),
         ("stickslip", &service, "/simulate"),
     ];
     let (mut rates, mut costs) = ([const { Vec::new() }; 3], [const { Vec::new() }; 3]);
@@ -94,15 +93,15 @@ async fn whole() {
     }
 }
 
-/// Microseconds that something takes, in the middle of its times.
+/// Median time of a call, us.
 fn time<T>(mut work: impl FnMut() -> T) -> f64 {
-    let times: Vec<f64> = (0..TIMES)
+    let times: Vec<f64> = (0..MEASUREMENTS)
         .map(|_| {
             let start = Instant::now();
-            for _ in 0..OFTEN {
+            for _ in 0..CALLS {
                 black_box(work());
             }
-            start.elapsed().as_secs_f64() * 1e6 / OFTEN as f64
+            start.elapsed().as_secs_f64() * 1e6 / CALLS as f64
         })
         .collect();
     median(&times)
@@ -128,10 +127,10 @@ fn parts() {
 
 #[tokio::main]
 async fn main() {
-    if std::env::args().any(|argument| argument == "bare") {
-        bare().await;
+    if std::env::args().any(|argument| argument == "baseline") {
+        serve_baseline().await;
     } else {
-        whole().await;
+        whole_requests().await;
         parts();
     }
 }

@@ -1,11 +1,10 @@
-//! What the service costs beside a bare handler: `cargo bench --bench service`. Needs PostgreSQL, as the tests do.
+//! Moves a second by store, against a bare handler: `cargo bench --bench service`. Needs PostgreSQL, as the tests do.
 //!
-//! `POST /contacts/{id}/move` at 32 connections over 256 sessions, by each store, as a ratio to an axum handler in a process of its
-//! own that parses the same body and writes a reply of the same shape. All take turns in every round, so that a busy machine
-//! slows them alike; the load is made by plain sockets, since it shares the processors with the service.
+//! `POST /contacts/{id}/move` at 32 connections over 256 contacts, by each store, as a ratio to the baseline: an axum handler in
+//! its own process that parses the same body and writes a reply of the same shape. All take turns in every round, so that a
+//! busy machine slows them alike. The load comes from plain sockets, because it shares the processors with the service.
 
-// Made for the tests, of which this uses a part.
-#[allow(dead_code)]
+#[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]
 mod postgres;
 
@@ -17,23 +16,23 @@ use std::time::{Duration, Instant};
 use axum::extract::Path;
 use axum::routing::post;
 use axum::{Json, Router};
-use load::{CONTACT, Connection, Process, itself, median, served};
+use load::{CONTACT, Connection, Process, baseline, join, median, serve};
 use stickslip_wire::{MoveReply, MoveRequest};
 use tokio::net::TcpListener;
 use uuid::Uuid;
 
 const CONNECTIONS: usize = 32;
-const SESSIONS: usize = 256;
+const CONTACTS: usize = 256;
 const ROUNDS: usize = 5;
 const ROUND: Duration = Duration::from_secs(3);
 
-/// What serves moves, with what was measured of it.
+/// A server of moves, and its measurements.
 struct Service {
     name: &'static str,
     process: Process,
     paths: Vec<String>,
     rates: Vec<f64>,
-    /// Seconds of processor time that a move took of the process, round by round.
+    /// Processor time of the server a move, s, by round.
     costs: Vec<f64>,
 }
 
@@ -42,8 +41,8 @@ impl Service {
         let process = Process::start(command);
         let mut service = Service { name, process, paths: Vec::new(), rates: Vec::new(), costs: Vec::new() };
         let mut connection = Connection::open(&service.process.address).await;
-        for _ in 0..SESSIONS {
-            let id = if name == "bare" { Uuid::now_v7() } else { connection.create().await };
+        for _ in 0..CONTACTS {
+            let id = if name == "baseline" { Uuid::now_v7() } else { connection.create().await };
             service.paths.push(format!("/contacts/{id}/move"));
         }
         service
@@ -51,8 +50,8 @@ impl Service {
 
     /// Makes moves over all connections for a while.
     async fn round(&mut self) {
-        let (start, used) = (Instant::now(), self.process.used());
-        let workers = self.paths.chunks(SESSIONS / CONNECTIONS).map(|paths| {
+        let (start, used) = (Instant::now(), self.process.processor_seconds());
+        let workers = self.paths.chunks(CONTACTS / CONNECTIONS).map(|paths| {
             let (paths, address) = (paths.to_vec(), self.process.address.clone());
             tokio::spawn(async move {
                 let mut connection = Connection::open(&address).await;
@@ -68,15 +67,14 @@ impl Service {
                 count
             })
         });
-        let counts = futures::future::join_all(workers.collect::<Vec<_>>()).await;
-        let count: u32 = counts.into_iter().map(|count| count.expect("a worker that ends well")).sum();
+        let count: u32 = join(workers).await.into_iter().sum();
         self.rates.push(f64::from(count) / start.elapsed().as_secs_f64());
-        self.costs.push((self.process.used() - used) / f64::from(count));
+        self.costs.push((self.process.processor_seconds() - used) / f64::from(count));
     }
 }
 
-/// The same body in and the same shape out, with nothing between.
-async fn bare() {
+/// Serves the baseline: parses the same body and writes a reply of the same shape.
+async fn serve_baseline() {
     let reply = stickslip::simulation::simulate(
         &stickslip_wire::read::<stickslip_wire::SimulateRequest>(
             format!(r#"{{"contact":{CONTACT},"path":{{"displacement":[1e-7]}}}}"#).as_bytes(),
@@ -98,7 +96,7 @@ async fn bare() {
     };
     let router = Router::new().route("/contacts/{id}/move", post(handler));
     let listener = TcpListener::bind("127.0.0.1:0").await.expect("a free port");
-    println!("bare on http://{}", listener.local_addr().expect("an address"));
+    println!("baseline on http://{}", listener.local_addr().expect("an address"));
     axum::serve(listener, router).await.expect("a server");
 }
 
@@ -108,21 +106,21 @@ async fn compare() {
     let file = format!("sqlite:{}", folder.join("bench.db").display());
     let cluster = postgres::Cluster::shared();
     let mut services = vec![
-        Service::start("bare", itself()).await,
-        Service::start("memory", served("memory:")).await,
-        Service::start("sqlite", served(&file)).await,
-        Service::start("postgres", served(&cluster.database().await)).await,
+        Service::start("baseline", baseline()).await,
+        Service::start("memory", serve("memory:")).await,
+        Service::start("sqlite", serve(&file)).await,
+        Service::start("postgres", serve(&cluster.database().await)).await,
     ];
     for _ in 0..ROUNDS {
         for service in &mut services {
             service.round().await;
         }
     }
-    let bare = services[0].rates.clone();
-    println!("| store | moves a second | ratio to bare | of rounds | processor time a move |");
+    let baseline_rates = services[0].rates.clone();
+    println!("| store | moves a second | ratio to the baseline | of rounds | processor time a move |");
     println!("|---|---|---|---|---|");
     for Service { name, rates, costs, .. } in &services {
-        let ratios: Vec<f64> = rates.iter().zip(&bare).map(|(rate, bare)| rate / bare).collect();
+        let ratios: Vec<f64> = rates.iter().zip(&baseline_rates).map(|(rate, baseline)| rate / baseline).collect();
         let (least, most) =
             (ratios.iter().copied().fold(f64::INFINITY, f64::min), ratios.iter().copied().fold(0.0, f64::max));
         let (rate, ratio, cost) = (median(rates), median(&ratios), 1e6 * median(costs));
@@ -134,8 +132,8 @@ async fn compare() {
 
 #[tokio::main]
 async fn main() {
-    if std::env::args().any(|argument| argument == "bare") {
-        bare().await;
+    if std::env::args().any(|argument| argument == "baseline") {
+        serve_baseline().await;
     } else {
         compare().await;
     }

@@ -1,10 +1,10 @@
-//! What a sweep costs: `cargo bench --bench sweep`. A million points of a sphere after 20 reversals, on one thread and on
-//! more, up to one a core; how much of it is the simulation itself; and the same as a job that replicas share over PostgreSQL,
-//! each of them bound to a core of its own. Needs PostgreSQL, as the tests do.
+//! The cost of a sweep, and how it scales with cores and replicas: `cargo bench --bench sweep`. Needs PostgreSQL.
+//!
+//! A million points of a sphere after 20 reversals: the simulation alone, the sweep on one thread up to one a core, and as a
+//! job that replicas share over PostgreSQL, each of them bound to one core.
 
 mod load;
-// Made for the tests, of which this uses a part.
-#[allow(dead_code)]
+#[allow(dead_code, reason = "the benchmark uses a part of it")]
 #[path = "../tests/common/postgres.rs"]
 mod postgres;
 
@@ -12,15 +12,15 @@ use std::hint::black_box;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use load::{Connection, Process, served};
+use load::{Connection, Process, serve};
 use serde_json::json;
 use stickslip::admission::Stop;
 use stickslip::simulation::{Rows, Sweep, Workers, simulate};
 use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
-/// Simulations that are timed for comparison.
-const ALONE: u32 = 20_000;
+/// Number of single simulations, for comparison.
+const SIMULATIONS: u32 = 20_000;
 
 fn base() -> serde_json::Value {
     json!({
@@ -44,7 +44,7 @@ fn plan() -> Sweep {
     Sweep::plan(draft).expect("a sweep with outputs")
 }
 
-fn timed(threads: usize) -> (Rows, Duration) {
+fn time_of_sweep(threads: usize) -> (Rows, Duration) {
     let (plan, workers) = (plan(), Workers::new(threads).expect("threads"));
     let (mut rows, begin) = (Rows::default(), Instant::now());
     while rows.values.len() < POINTS {
@@ -55,17 +55,17 @@ fn timed(threads: usize) -> (Rows, Duration) {
 }
 
 /// The service on one core, with a store.
-fn confined(core: usize, store: &str) -> Command {
-    let service = served(store);
+fn serve_on_core(core: usize, store: &str) -> Command {
+    let service = serve(store);
     let mut command = Command::new("taskset");
     command.args(["--cpu-list", &core.to_string()]).arg(service.get_program()).args(service.get_args());
     command
 }
 
-/// The time of the job, shared by so many replicas.
-async fn shared(replicas: usize) -> Duration {
+/// The time of the job with so many replicas.
+async fn time_of_job(replicas: usize) -> Duration {
     let store = postgres::Cluster::shared().database().await;
-    let processes: Vec<Process> = (0..replicas).map(|core| Process::start(confined(core, &store))).collect();
+    let processes: Vec<Process> = (0..replicas).map(|core| Process::start(serve_on_core(core, &store))).collect();
     let mut connection = Connection::open(&processes[0].address).await;
     let begin = Instant::now();
     let reply: serde_json::Value =
@@ -84,15 +84,15 @@ async fn shared(replicas: usize) -> Duration {
 fn main() {
     let checked = wire::read::<SimulateRequest>(base().to_string().as_bytes()).expect("a valid simulation");
     let begin = Instant::now();
-    for _ in 0..ALONE {
+    for _ in 0..SIMULATIONS {
         black_box(simulate(black_box(&checked), &Stop::default()).expect("an answer"));
     }
-    let alone = begin.elapsed() / ALONE;
+    let alone = begin.elapsed() / SIMULATIONS;
     println!("the simulation alone: {:.2} µs", alone.as_secs_f64() * 1e6);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut first: Option<(Rows, Duration)> = None;
     for threads in [1, 2, 4, 8, 16].into_iter().filter(|threads| *threads <= cores) {
-        let (rows, time) = timed(threads);
+        let (rows, time) = time_of_sweep(threads);
         let rate = POINTS as f64 / time.as_secs_f64();
         let speedup = first.as_ref().map_or(1.0, |(_, alone)| alone.as_secs_f64() / time.as_secs_f64());
         println!(
@@ -107,7 +107,7 @@ fn main() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     let mut one: Option<Duration> = None;
     for replicas in [1, 2, 4].into_iter().filter(|replicas| *replicas <= cores) {
-        let time = runtime.block_on(shared(replicas));
+        let time = runtime.block_on(time_of_job(replicas));
         let (rate, speedup) = (
             POINTS as f64 / time.as_secs_f64(),
             one.map_or(1.0, |alone: Duration| alone.as_secs_f64() / time.as_secs_f64()),

@@ -21,21 +21,21 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A contact is made, moved, looked at and deleted; what came of it, line by line.
+/// Creates a contact, moves it, reads it and deletes it; the results, line by line.
 pub async fn life(service: &str) -> Result<Vec<String>, Box<dyn std::error::Error>> {
     let client = Client::new(service);
     let ball: CreateRequest = serde_json::from_str(BALL)?;
     let made = client.create(&ball, &Options::default()).await?;
     let mut lines = vec![format!("{} slips as a whole at {} N", made.id, made.contact.gross_slip_force)];
 
-    // Under a name a move may be repeated: it is made once.
+    // With an idempotency key a repeated move is made once.
     let once = Options { idempotency_key: Some("first-move".to_owned()), ..Options::default() };
     for _ in 0..2 {
         let moved = client.apply(made.id, &Move { force: Some(1.5), ..Move::default() }.into(), &once).await?;
         lines.push(format!("move {}: {:e} m", moved.sequence, moved.state.displacement));
     }
 
-    // A refusal says where and why.
+    // A refused move: the problem says where and why.
     let too_much = Move { force: Some(4.0), ..Move::default() };
     if let Err(Error::Problem(problem)) = client.apply(made.id, &too_much.into(), &Options::default()).await {
         lines.push(format!("{}: {}", problem.code, problem.detail));

@@ -16,22 +16,22 @@ made=$(post /contacts '{
 id=$(sed 's/.*"id":"\([^"]*\)".*/\1/' <<<"$made")
 echo "contact $id"
 
-# To a force, back by half of it, and then along a path that leaves little stress.
+# Move to a force, back by half of it, and then along a path that leaves little stress.
 post "/contacts/$id/move" '{"force": 1.5}' >/dev/null
 post "/contacts/$id/move" '{"force": -0.75, "relative": true}' >/dev/null
 post "/contacts/$id/path" '{"path": {"falling_amplitude": {"reversals": 5}}, "steps": "last"}' >/dev/null
 
-# What has happened, as a table; and the stress, as rows for a spreadsheet.
+# The history as a table, and the stress as rows for a spreadsheet.
 curl -sSf "$service/contacts/$id/history?format=csv" | cut -d, -f1,3,4
 curl -sSf "$service/contacts/$id/stress?points=5&format=csv"
 
-# Plots, ready for a report.
+# Plots.
 folder=$(mktemp -d)
 curl -sSf "$service/contacts/$id/stress?format=png" -o "$folder/stress.png"
 curl -sSf "$service/contacts/$id/loop?points_per_move=40&format=svg" -o "$folder/loop.svg"
 echo "plots in $folder"
 
-# Who has this version already is told so, without a body.
+# A client that has this version already gets a reply without a body.
 tag=$(curl -sSf -o /dev/null -D - "$service/contacts/$id" | sed -n 's/^etag: \(.*\)\r$/\1/p')
 curl -sSf -o /dev/null -w 'unchanged: %{http_code}\n' "$service/contacts/$id" -H "if-none-match: $tag"
 

@@ -1,4 +1,4 @@
-//! What the benchmarks of the service need: a process that serves, and a client that costs little.
+//! Shared by the benchmarks of the service: a server process, and a client that needs little processor time.
 
 #![allow(dead_code, reason = "each benchmark uses a part of it")]
 
@@ -7,23 +7,24 @@ use std::process::{Child, Command, Stdio};
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
+use tokio::task::JoinHandle;
 use uuid::Uuid;
 
 /// A ball under load, as the body of `POST /contacts`.
 pub const CONTACT: &str = r#"{"profile":{"type":"sphere","radius":0.01},"material":{"effective":{"e_star":1.15e11,"g_star":8.5e10}},"friction":0.3,"preload":{"normal_force":10}}"#;
 
-/// Parts of a second that Linux counts processor time in.
-const TICKS: f64 = 100.0;
+/// Ticks of the processor time a second, on Linux.
+const TICKS_PER_SECOND: f64 = 100.0;
 
-/// A process that serves, ended when dropped.
+/// A server process, ended when dropped.
 pub struct Process {
     process: Child,
-    /// Where it listens.
+    /// Its address.
     pub address: String,
 }
 
 impl Process {
-    /// Starts it and reads where it listens from its first line.
+    /// Starts it and reads its address from its first line.
     pub fn start(mut command: Command) -> Process {
         let mut process =
             command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the service should start");
@@ -40,12 +41,12 @@ impl Process {
     }
 
     /// Processor time that the process has used, in seconds.
-    pub fn used(&self) -> f64 {
+    pub fn processor_seconds(&self) -> f64 {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).expect("a process that runs");
         // The name of the program stands in brackets, and may hold blanks.
         let fields = stat.rsplit_once(')').expect("a name in brackets").1.split_ascii_whitespace();
         let ticks: f64 = fields.skip(11).take(2).map(|ticks| ticks.parse::<f64>().expect("a number")).sum();
-        ticks / TICKS
+        ticks / TICKS_PER_SECOND
     }
 }
 
@@ -64,42 +65,49 @@ pub fn resident(process: &str) -> i64 {
     line.trim().trim_end_matches(" kB").parse::<i64>().expect("a number") * 1024
 }
 
-/// The service with a store, as little in the log as it can.
-pub fn served(store: &str) -> Command {
+/// The command that serves with a store and logs warnings alone.
+pub fn serve(store: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
     command.args(["serve", "--listen", "127.0.0.1:0", "--log", "warn", "--store", store]);
     command
 }
 
-/// This benchmark again, as the bare server to compare with.
-pub fn itself() -> Command {
+/// The command that runs this benchmark as its baseline server.
+pub fn baseline() -> Command {
     let mut command = Command::new(std::env::current_exe().expect("the path of this program"));
-    command.arg("bare");
+    command.arg("baseline");
     command
 }
 
-/// What lies in the middle.
+/// Waits for all tasks.
+pub async fn join<T>(tasks: impl Iterator<Item = JoinHandle<T>>) -> Vec<T> {
+    // Collected first, so that all of them run.
+    let ended = futures::future::join_all(tasks.collect::<Vec<_>>()).await;
+    ended.into_iter().map(|result| result.expect("a task that does not panic")).collect()
+}
+
+/// The median of some values.
 pub fn median(values: &[f64]) -> f64 {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
-/// As little of HTTP as a load generator needs.
+/// A minimal HTTP client.
 pub struct Connection {
     stream: TcpStream,
     buffer: Vec<u8>,
 }
 
 impl Connection {
-    /// A new one.
+    /// Opens a connection.
     pub async fn open(address: &str) -> Connection {
         let stream = TcpStream::connect(address).await.expect("the service should accept");
         stream.set_nodelay(true).expect("TCP_NODELAY");
         Connection { stream, buffer: Vec::new() }
     }
 
-    /// Makes a contact of [`CONTACT`].
+    /// Creates a contact of [`CONTACT`].
     pub async fn create(&mut self) -> Uuid {
         let reply: serde_json::Value =
             serde_json::from_slice(self.post("/contacts", CONTACT.as_bytes()).await).expect("a contact");

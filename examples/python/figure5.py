@@ -19,7 +19,7 @@ CONTACT = {
 
 
 def remaining(service, reversals):
-    """Largest, mean and smallest peak of what remains after so many reversals, over mu p_max."""
+    """Largest, mean and smallest peak of the remaining stress after so many reversals, over mu p_max."""
     reply = requests.post(
         f"{service}/simulate",
         json={

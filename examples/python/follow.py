@@ -1,8 +1,8 @@
-"""Follow a contact live: a row of CSV for each new state, by whomever it was moved.
+"""Follow a contact live: a row of CSV for each new state, whoever moves it.
 
     python follow.py URL ID [STATES]
 
-Needs `requests` and `pandas`. After a broken connection it goes on with the next state; none is left out.
+Needs `requests` and `pandas`. After a lost connection it continues with the next state; none is left out.
 """
 
 import itertools

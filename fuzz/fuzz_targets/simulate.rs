@@ -1,4 +1,4 @@
-//! Any bytes as the body of `POST /simulate`, with the laws of `tests/fuzz.rs`.
+//! Any bytes as the body of `POST /simulate`, with the laws of `tests/harness`.
 
 #![no_main]
 

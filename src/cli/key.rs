@@ -1,43 +1,43 @@
-//! Keys: `stickslip key new` makes one, and the service reads its own.
+//! `stickslip key new` makes a key; `serve` reads the keys of its setting.
 
 use clap::{Subcommand, ValueEnum};
 use stickslip::access::{Keys, Role, new_key};
 
-use super::print;
-use super::settings::shown;
+use super::io::print;
+use super::settings::masked;
 
-/// What tells an entry from the path of a file.
+/// Distinguishes an entry from the path of a file.
 const ENTRY: &str = ":sha256:";
 
-/// What can be done with keys.
+/// Commands about keys.
 #[derive(Subcommand)]
 pub enum Key {
-    /// Make a key: prints it, once and for all, and the entry that makes it known to a service.
+    /// Make a key: print it, which happens only once, and its entry for --keys of the service.
     New {
-        /// Whose key it is, or what for.
+        /// Name of the owner or the purpose.
         #[arg(long)]
         name: String,
-        /// What it allows; several with commas between them.
+        /// Roles of the key, separated by commas.
         #[arg(long, value_enum, required = true, value_delimiter = ',')]
         role: Vec<RoleName>,
-        /// Whose contacts it shows; left out, those of the tenant without a name.
+        /// Tenant whose contacts it can access [default: the tenant without a name].
         #[arg(long, default_value = "")]
         tenant: String,
     },
 }
 
-/// A role, as it is written.
+/// The roles by name.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum RoleName {
-    /// Make, move, fork and delete contacts, and all that `read` allows.
+    /// Create, move, fork and delete contacts, and all that `read` allows.
     Write,
-    /// Look at contacts, and simulate.
+    /// Read contacts, and simulate.
     Read,
     /// Read the metrics, and nothing else.
     Metrics,
 }
 
-/// Does it.
+/// Makes a key and prints it.
 pub fn key(key: Key) -> Result<(), String> {
     let Key::New { name, role, tenant } = key;
     let roles: Vec<Role> = role
@@ -52,9 +52,9 @@ pub fn key(key: Key) -> Result<(), String> {
     print(format_args!("key   {}\nentry {}", new.key, new.entry))
 }
 
-/// The keys of a setting: entries, or files with entries. None if the setting is not there; no entry at all is an error, so
-/// that an empty file does not open the service to everybody.
-pub fn known(setting: &[String]) -> Result<Option<Keys>, String> {
+/// The keys of a setting: entries, or files with entries. `None` without the setting. A setting without an entry is an error,
+/// so that an empty file does not open the service to everybody.
+pub fn read_keys(setting: &[String]) -> Result<Option<Keys>, String> {
     if setting.is_empty() {
         return Ok(None);
     }
@@ -63,14 +63,14 @@ pub fn known(setting: &[String]) -> Result<Option<Keys>, String> {
         if part.contains(ENTRY) {
             keys.add(part).map_err(|wrong| format!("--keys: {}", wrong.why))?;
         } else {
-            let file = shown(part);
+            let file = masked(part);
             let text = std::fs::read_to_string(part)
                 .map_err(|error| format!("--keys {file}: neither a file that can be read nor an entry: {error}"))?;
             keys.add(&text).map_err(|wrong| format!("--keys {file}: {wrong}"))?;
         }
     }
     if keys.count() == 0 {
-        return Err("--keys: there is no key in it".to_owned());
+        return Err("--keys: no key is given".to_owned());
     }
     Ok(Some(keys))
 }

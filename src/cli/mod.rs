@@ -1,18 +1,18 @@
-//! The command line: what can be asked for, and who does it.
+//! The command line: parses it and runs one command.
 
+mod backup;
+mod check;
 mod healthcheck;
+mod io;
 mod key;
-mod overload;
+mod limits;
 mod protocol;
 mod report;
 mod serve;
 mod settings;
 mod simulate;
 mod sweep;
-mod upkeep;
 
-use std::fmt::Display;
-use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,16 +20,18 @@ use clap::{Parser, Subcommand};
 use stickslip::api;
 use stickslip_report::figures;
 
+use backup::Backup;
+use check::Check;
 use healthcheck::Healthcheck;
+use io::print;
 use key::Key;
 use protocol::Protocol;
 use report::Report;
 use serve::Serve;
-use settings::{Refusal, Settings};
+use settings::{Settings, SettingsError};
 use sweep::Sweep;
-use upkeep::{Backup, Check};
 
-/// Frictional contact with memory, exactly: a service, and the same on the command line.
+/// Simulate the frictional contact of two elastic bodies exactly: as a service, or from the command line.
 #[derive(Parser)]
 #[command(version, about, args_conflicts_with_subcommands = true)]
 struct Cli {
@@ -43,29 +45,29 @@ struct Cli {
 enum Command {
     /// Serve HTTP; the same as no command at all.
     Serve(Serve),
-    /// Print the settings that `serve` would run with, and where each comes from; secrets are masked.
+    /// Print the settings of `serve` with the source of each; secrets are masked.
     Config(Serve),
     /// Run the body of POST /simulate from a file and print the reply.
     Simulate {
         /// The file, or - for standard input.
         file: PathBuf,
     },
-    /// Find a path that leaves little shear stress, and print the reply of POST /protocols.
+    /// Find a protocol that leaves little shear stress, and print the reply of POST /protocols.
     Protocol(Protocol),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
     Openapi,
-    /// Ask a running service whether it is well; for container health checks.
+    /// Check that a running service is healthy, for containers.
     Healthcheck(Healthcheck),
-    /// Keys for those who may use a service.
+    /// Make API keys.
     #[command(subcommand)]
     Key(Key),
     /// Copy the store to a file, while the service runs or not.
     Backup(Backup),
-    /// Look whether a store is sound: make every contact again from its moves, and compare. Nothing is written.
+    /// Verify a store: replay the moves of every contact, and compare the states. Nothing is written.
     Check(Check),
-    /// Measure what each solver costs and how wrong it is, on this machine.
+    /// Measure speed against error of each solver on this machine.
     Report(Report),
     /// Draw the figures of the paper, as SVG and CSV.
     Figures {
@@ -75,17 +77,17 @@ enum Command {
     },
 }
 
-/// The exit code of a command that was not understood.
-const NOT_UNDERSTOOD: u8 = 2;
+/// The exit code of an invalid command line or setting.
+const USAGE_ERROR: u8 = 2;
 
-/// Does what the command line asks for.
+/// Runs the command that the command line names.
 pub fn run() -> ExitCode {
     let (cli, settings) = match settings::read::<Cli>(std::env::args_os().collect()) {
         Ok(read) => read,
-        Err(Refusal::Asked(help)) => help.exit(),
-        Err(Refusal::Wrong(line)) => {
+        Err(SettingsError::Help(help)) => help.exit(),
+        Err(SettingsError::Invalid(line)) => {
             eprintln!("{line}");
-            return ExitCode::from(NOT_UNDERSTOOD);
+            return ExitCode::from(USAGE_ERROR);
         }
     };
     match cli.command.unwrap_or(Command::Serve(cli.serve)).run(&settings) {
@@ -115,14 +117,5 @@ impl Command {
                 figures::write(&out).map_err(|error| format!("cannot write figures to {}: {error}", out.display()))
             }
         }
-    }
-}
-
-/// A line on standard output.
-fn print(text: impl Display) -> Result<(), String> {
-    match writeln!(io::stdout(), "{text}") {
-        // A reader that has seen enough, such as `head`, is no failure.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
-        _ => Ok(()),
     }
 }

@@ -6,14 +6,13 @@ use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
 use stickslip::admission::Stop;
 use stickslip::api::problem::{Kind, Problem};
-use stickslip::simulation::{self, Failure};
+use stickslip::simulation;
 use stickslip_wire::protocol::ProtocolSubject;
 use stickslip_wire::{self as wire, ProtocolReply, ProtocolRequest};
 
-use super::print;
-use super::simulate::{json, read};
+use super::io::{json, print, problem, read};
 
-/// What to find: the body of POST /protocols, or its parts; a part given by a flag goes before that in the file.
+/// The body of POST /protocols, or its members as flags; a flag replaces the member of the file.
 #[derive(Args)]
 pub struct Protocol {
     /// A file with the body of POST /protocols, or - for standard input.
@@ -25,28 +24,28 @@ pub struct Protocol {
     /// Number of reversals.
     #[arg(long, conflicts_with = "target")]
     reversals: Option<usize>,
-    /// The largest shear stress that may remain, over mu times the largest pressure; the fewest reversals are found.
+    /// Find the fewest reversals after which at most this shear stress remains, over mu times the largest pressure.
     #[arg(long)]
     target: Option<f64>,
-    /// The law of the amplitudes.
+    /// Kind of protocol.
     #[arg(long)]
-    kind: Option<Law>,
+    kind: Option<KindName>,
     /// Where the path ends.
     #[arg(long)]
     end: Option<End>,
-    /// The first displacement, m, instead of that of gross slip.
+    /// First displacement, m [default: that of gross slip].
     #[arg(long)]
     start: Option<f64>,
-    /// Standard deviation of each displacement, relative to itself: asks what remains then.
+    /// Estimate the robustness against errors of the displacements: their relative standard deviation.
     #[arg(long)]
     amplitude_error: Option<f64>,
-    /// The fraction that the coefficient of friction may be off: asks what remains then.
+    /// Estimate the robustness against errors of the coefficient of friction: their largest relative size.
     #[arg(long)]
     friction_error: Option<f64>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Law {
+enum KindName {
     Linear,
     EqualPeaks,
     Minimax,
@@ -60,31 +59,23 @@ enum End {
 }
 
 impl Protocol {
-    /// Finds it and prints the reply.
+    /// Finds the protocol and prints the reply.
     pub fn run(self) -> Result<(), String> {
-        let body = self.body()?;
-        let reply = wire::read::<ProtocolRequest>(&body)
-            .map_err(Problem::from)
-            .and_then(|(subject, task)| match subject {
-                ProtocolSubject::Virgin(made, first) => {
-                    let found: Result<ProtocolReply, Failure> =
-                        simulation::protocol_for(&made.0, &made.1, first, &task, &Stop::default());
-                    Ok(found?)
-                }
-                ProtocolSubject::Living(..) => {
-                    Err(Problem::at(Kind::InvalidInput, "/start/contact_id", "needs a running service"))
-                }
-            })
-            .map_err(|problem| json(&problem.document("command line")))?;
+        let (subject, task) = wire::read::<ProtocolRequest>(&self.body()?).map_err(problem)?;
+        let ProtocolSubject::Virgin(made, first) = subject else {
+            return Err(problem(Problem::at(Kind::InvalidInput, "/start/contact_id", "needs a running service")));
+        };
+        let reply: ProtocolReply =
+            simulation::protocol_for(&made.0, &made.1, first, &task, &Stop::default()).map_err(problem)?;
         print(json(&reply))
     }
 
-    /// The file with what the flags say put over it.
+    /// The body: the file, with the members that flags replace.
     fn body(&self) -> Result<Vec<u8>, String> {
         let file = self.file.as_deref().map(read).transpose()?;
         let mut body = match file {
-            // As it is, so that what is wrong with it is told by its place.
-            Some(file) if !self.says_more() => return Ok(file),
+            // Unchanged, so that a fault is reported at its place.
+            Some(file) if !self.has_flags() => return Ok(file),
             Some(file) => parsed(&file)?,
             None => Value::Object(Map::new()),
         };
@@ -103,18 +94,18 @@ impl Protocol {
                 members.insert("robustness".to_owned(), robustness.clone());
             }
         }
-        let said = [
+        let flags = [
             ("reversals", self.reversals.map(|value| json!(value))),
             ("target", self.target.map(|value| json!(value))),
             ("kind", self.kind.and_then(|kind| kind.to_possible_value()).map(name)),
             ("end", self.end.and_then(|end| end.to_possible_value()).map(name)),
             ("start", self.start.map(|value| json!({"displacement": value}))),
         ];
-        members.extend(said.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
+        members.extend(flags.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
         serde_json::to_vec(&body).map_err(|error| error.to_string())
     }
 
-    fn says_more(&self) -> bool {
+    fn has_flags(&self) -> bool {
         let numbers = [self.target, self.start, self.amplitude_error, self.friction_error];
         self.contact.is_some()
             || self.reversals.is_some()

@@ -20,23 +20,24 @@ use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 use tracing_subscriber::{EnvFilter, Layer as _, fmt};
 
-use super::overload::Overload;
+use super::io::print;
+use super::key;
+use super::limits::Limits;
 use super::settings::ConfigFile;
-use super::{key, print};
 
-/// How long work that does not look at its flag may hold up the end of the process.
-const LAST_WORK: Duration = Duration::from_millis(500);
+/// How long work that does not check for cancellation may delay the end of the process.
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// How long the parts of jobs under way may take to be given back at the end.
-const GIVE_BACK: Duration = Duration::from_secs(2);
+/// How long the process may take at its end to release the chunks of jobs under way.
+const JOB_RELEASE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// The shortest time after which an idle contact may expire.
 const SHORTEST_IDLE_TIME: Duration = Duration::from_secs(1);
 
-/// The shortest lease on a part of a job: a renewal must come in time.
+/// The shortest lease on a chunk of a job: it must be renewed in time.
 const SHORTEST_LEASE: Duration = Duration::from_secs(1);
 
-/// The settings. Each comes as a flag, from the environment or from the file, whatever it is: `settings` sees to that.
+/// The settings. Each can be a flag, a variable or an entry of the configuration file (`settings`).
 #[derive(Args)]
 pub struct Serve {
     #[command(flatten)]
@@ -44,36 +45,35 @@ pub struct Serve {
     /// Address and port to listen on; port 0 takes a free one.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Keys of those who may use the service: the path of a file with entries as `stickslip key new` prints them, or such entries
-    /// themselves, with commas between them.
+    /// API keys: entries as `stickslip key new` prints them, or files with such entries, separated by commas.
     #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
     keys: Vec<String>,
-    /// Listen on an address that others can reach although everybody who reaches it may do everything: true or false.
+    /// Allow a service without keys on an address that others can reach: true or false.
     #[arg(long, env = "STICKSLIP_INSECURE", num_args = 0..=1, require_equals = true, action = ArgAction::Set,
         default_value_t = false, default_missing_value = "true")]
     insecure: bool,
-    /// Origins whose pages a browser may let in, such as https://lab.example, with commas between them.
+    /// Origins of web pages that may call the service (CORS), such as https://lab.example, separated by commas.
     #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
     cors_origins: Vec<Origin>,
-    /// Where contacts are kept: `sqlite:PATH` in a file, `postgres://…` in a database that several processes share,
-    /// `memory:` in this process until it ends.
+    /// Store of the contacts: `sqlite:PATH` for a file, `postgres://…` for a database that several processes can share,
+    /// `memory:` for this process until it ends.
     #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
     store: String,
-    /// Bytes of memory for the states of contacts, such as 64MiB. A state that is not at hand is replayed when needed.
+    /// Bytes of memory to cache the states of contacts, such as 64MiB. Other states are replayed when needed.
     #[arg(long, env = "STICKSLIP_CACHE_BYTES", default_value_t = ByteSize::b(sessions::CAPACITY as u64))]
     cache_bytes: ByteSize,
-    /// Delete contacts that have not moved for so long, such as 30d or 12h; left out, they stay.
+    /// Delete contacts that have not moved for this time, such as 30d or 12h [default: never].
     #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = idle_time)]
     expire_after: Option<Duration>,
-    /// How long a process may be silent before others on the same database take the parts of jobs that it works on.
+    /// How long a process may be silent before others on the same database take over its chunks of jobs.
     #[arg(long, env = "STICKSLIP_JOB_LEASE", default_value_t = humantime::Duration::from(jobs::LEASE), value_parser = lease)]
     job_lease: humantime::Duration,
     #[command(flatten)]
-    overload: Overload,
+    limits: Limits,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
     #[arg(long, env = "STICKSLIP_LOG", default_value = "info", value_parser = filter)]
     log: String,
-    /// How to log it.
+    /// Format of the log.
     #[arg(long, env = "STICKSLIP_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
     /// Send a trace of each request to an OpenTelemetry collector, such as `http://localhost:4318` (OTLP over HTTP).
@@ -87,7 +87,7 @@ enum LogFormat {
     Json,
 }
 
-/// Serves until it is told to stop.
+/// Serves until a signal stops it.
 pub fn serve(options: Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
@@ -119,8 +119,8 @@ pub fn serve(options: Serve) -> Result<(), String> {
     if let Some(exporter) = exporter {
         runtime.block_on(exporter.finish());
     }
-    runtime.shutdown_timeout(LAST_WORK);
-    // The last handle, now that no request holds one: the store is closed before the process ends.
+    runtime.shutdown_timeout(SHUTDOWN_TIMEOUT);
+    // The last handle: dropping it closes the store before the process ends.
     drop(store);
     if served.is_ok() {
         tracing::info!("stopped");
@@ -128,7 +128,7 @@ pub fn serve(options: Serve) -> Result<(), String> {
     served
 }
 
-/// Sends panics to the log, with their place. The request that one of them ends is told by the line of that request.
+/// Logs panics with their location. The line of the failed request is logged separately.
 fn log_panics() {
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string);
@@ -139,13 +139,13 @@ fn log_panics() {
 fn collector(text: &str) -> Result<String, String> {
     match text.strip_prefix("http://") {
         Some(place) if !place.is_empty() => Ok(text.to_owned()),
-        _ => Err("expected http:// and the place of a collector".to_owned()),
+        _ => Err("expected http:// and the address of a collector".to_owned()),
     }
 }
 
-/// Who may use the service. Without keys nobody else may reach it, unless that is wanted.
+/// Who may use the service. Without keys it listens on loopback addresses only, unless --insecure is given.
 fn access(options: &Serve) -> Result<Access, String> {
-    let keys = key::known(&options.keys)?;
+    let keys = key::read_keys(&options.keys)?;
     let listen = options.listen;
     if keys.is_none() && !listen.ip().to_canonical().is_loopback() {
         if !options.insecure {
@@ -192,8 +192,8 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
             _ = interrupt.recv() => {}
         }
     };
-    let pool = Pool::new(options.overload.capacity());
-    let limiter = ConnectionLimiter::new(options.overload.connections());
+    let pool = Pool::new(options.limits.capacity());
+    let limiter = ConnectionLimiter::new(options.limits.connections());
     let memory_bound = memory_budget::memory(limiter.limits(), pool.capacity(), options.cache_bytes.as_u64());
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
@@ -204,7 +204,7 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     let app = App { sessions, jobs, pool, access };
     api::serve_within(limiter, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
-    // Others wait for a lease where a store out of reach takes nothing back.
-    let _ = tokio::time::timeout(GIVE_BACK, working).await;
+    // If the store is unreachable, other processes take over when the leases expire.
+    let _ = tokio::time::timeout(JOB_RELEASE_TIMEOUT, working).await;
     Ok(())
 }

@@ -5,33 +5,32 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use stickslip::admission::Stop;
-use stickslip::api::Problem;
 use stickslip::api::formats::Format;
 use stickslip::api::formats::sheet::Table;
 use stickslip::simulation::{Rows, Sweep as Plan, Workers};
 use stickslip_wire::{self as wire, SweepRequest};
 
-use super::simulate::{json, read};
+use super::io::{json, problem, read, write};
 
-/// Characters of the bar.
-const BAR: usize = 40;
+/// Width of the progress bar, characters.
+const BAR_WIDTH: usize = 40;
 
-/// Run the body of POST /sweep from a file and print the table.
+/// The sweep, and how to run it.
 #[derive(Args)]
 pub struct Sweep {
     /// The file, or - for standard input.
     file: PathBuf,
-    /// How to print it.
-    #[arg(long, value_enum, default_value_t = Written::Csv)]
-    format: Written,
-    /// How many threads to use; left out, as many as there are cores.
+    /// Format of the table.
+    #[arg(long, value_enum, default_value_t = OutputFormat::Csv)]
+    format: OutputFormat,
+    /// Number of threads [default: the number of cores].
     #[arg(long)]
     threads: Option<usize>,
 }
 
-/// A format by its name.
+/// The formats by name.
 #[derive(Clone, Copy, ValueEnum)]
-enum Written {
+enum OutputFormat {
     Columns,
     Rows,
     Csv,
@@ -40,49 +39,42 @@ enum Written {
 }
 
 impl Sweep {
-    /// Computes and prints; shows on a terminal how far it has come.
+    /// Computes and prints the table, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
-        let body = read(&self.file)?;
-        let refused = |problem: Problem| json(&problem.document("command line"));
-        let plan = wire::read::<SweepRequest>(&body).and_then(Plan::plan).map_err(|error| refused(error.into()))?;
+        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(Plan::plan).map_err(problem)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
-        let workers = Workers::new(threads).map_err(|why| format!("no threads for the sweep: {why}"))?;
+        let workers = Workers::new(threads).map_err(|why| format!("cannot start threads for the sweep: {why}"))?;
         let (points, outputs) = (plan.points(), plan.numbers(1));
         let (mut rows, mut done) = (Rows::default(), 0);
         while done < points {
             let slice = plan.slice(done..points, &workers, threads, &Stop::default(), None);
-            rows.append(slice.map_err(|failure| refused(failure.into()))?);
+            rows.append(slice.map_err(problem)?);
             done = rows.values.len() / outputs;
-            show(done, points);
+            show_progress(done, points);
         }
         if rows.failed > 0 {
-            eprintln!("{} of {points} points have no answer; the first: {}", rows.failed, json(&rows.failures[0]));
+            eprintln!("{} of {points} points failed; the first: {}", rows.failed, json(&rows.failures[0]));
         }
         let format = match self.format {
-            Written::Columns => Format::Columns,
-            Written::Rows => Format::Rows,
-            Written::Csv => Format::Csv,
-            Written::Ndjson => Format::Ndjson,
-            Written::Arrow => Format::Arrow,
+            OutputFormat::Columns => Format::Columns,
+            OutputFormat::Rows => Format::Rows,
+            OutputFormat::Csv => Format::Csv,
+            OutputFormat::Ndjson => Format::Ndjson,
+            OutputFormat::Arrow => Format::Arrow,
         };
-        let mut out = io::BufWriter::new(io::stdout().lock());
         let mut pieces = Table::new(plan.draft(), rows).pieces(format);
-        match pieces.try_for_each(|piece| out.write_all(&piece)).and_then(|()| out.flush()) {
-            // A reader that has seen enough, such as `head`, is no failure.
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
-            _ => Ok(()),
-        }
+        write(|out| pieces.try_for_each(|piece| out.write_all(&piece)))
     }
 }
 
-/// The bar on standard error, if somebody can see it there.
-fn show(done: usize, points: usize) {
+/// Draws the progress bar if standard error is a terminal.
+fn show_progress(done: usize, points: usize) {
     let mut err = io::stderr().lock();
     if err.is_terminal() {
-        let full = BAR * done / points.max(1);
+        let full = BAR_WIDTH * done / points.max(1);
         let (bar, end) = ("=".repeat(full), if done == points { "\n" } else { "" });
-        // Nobody is told of a bar that cannot be shown.
-        let _ = write!(err, "\r[{bar:BAR$}] {done} of {points}{end}").and_then(|()| err.flush());
+        // Progress that cannot be shown is no error.
+        let _ = write!(err, "\r[{bar:BAR_WIDTH$}] {done} of {points}{end}").and_then(|()| err.flush());
     }
 }

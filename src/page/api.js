@@ -17,7 +17,7 @@ export class Refusal extends Error {
 
 export const hasKey = () => sessionStorage.getItem(KEY) !== null;
 
-/** Asks for a key; whoever asks meanwhile waits for the same answer. */
+/** Asks for a key; concurrent callers get the same answer. */
 function askForKey() {
   asking ??= new Promise((resolve) => {
     const dialog = document.getElementById("key");
@@ -53,7 +53,7 @@ async function send(method, path, { body, headers = {}, signal } = {}) {
   }
 }
 
-/** One call; the JSON of its reply. Work that is refused for want of room is tried again a few times. */
+/** One call; the JSON of its reply. A call that is refused because of overload is tried again a few times. */
 export async function call(method, path, body, signal) {
   for (let attempt = 0; ; attempt += 1) {
     try {
@@ -89,7 +89,7 @@ export async function pages(path, most, after) {
   return items;
 }
 
-/** Follows a contact until `signal` or the end: `take` gets each state, `report` what becomes of the connection. */
+/** Follows a contact until `signal` or the end: `take` gets each state, `report` the state of the connection. */
 export async function follow(id, last, take, report, signal) {
   for (let wait = 500; !signal.aborted; wait = Math.min(2 * wait, 15000)) {
     try {
@@ -114,7 +114,7 @@ export async function follow(id, last, take, report, signal) {
   }
 }
 
-/** The events of a stream; comments and what has no data are passed over. */
+/** The events of a stream; comments, and events without data, are skipped. */
 async function* events(body) {
   const reader = body.pipeThrough(new TextDecoderStream()).getReader();
   let buffer = "";

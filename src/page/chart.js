@@ -1,18 +1,18 @@
-// Lines over two axes, as SVG: with values under the pointer, zoom, the keyboard, and a menu to save.
-import { keys, point } from "./cursor.js";
-import { el, svg, words } from "./dom.js";
-import { bands, grid, level, line } from "./parts.js";
-import { pointing } from "./pointing.js";
-import { menu } from "./save.js";
-import { Axis, around } from "./scale.js";
-import { shown } from "./units.js";
+// A plot of lines over two axes, as SVG: values under the pointer, zoom, keyboard, and a menu to save it.
+import { Axis, dataRange } from "./axis.js";
+import { drawLegend, drawCursor } from "./chart_cursor.js";
+import { handleInput } from "./chart_input.js";
+import { menu } from "./chart_menu.js";
+import { drawBands, drawGrid, drawLevel, drawSeries } from "./chart_parts.js";
+import { el, svg, withSubscripts } from "./dom.js";
+import { formatQuantity } from "./units.js";
 
 const PAD = { left: 62, right: 14, top: 12, bottom: 46 };
 let count = 0;
 
-/** A plot. `draw` gives it something to show; `onhover` tells where the pointer is. */
+/** A plot. `draw` sets its data; `onhover` is called with what is under the pointer. */
 export class Chart {
-  /** `mode`: whether the pointer looks for the nearest value of `x`, the `nearest` point, or what the owner `reads`. */
+  /** `mode`: whether the pointer selects all series at its `x`, the `nearest` point, or a `radius` that `read` finds. */
   constructor({ name, title, x, y, mode = "x", square = false, height = 300, note }) {
     Object.assign(this, { name, title, mode, square, height, x: new Axis(x), y: new Axis(y) });
     this.clip = `clip-${(count += 1)}`;
@@ -28,22 +28,22 @@ export class Chart {
     });
     this.legend = el("div", { class: "legend" });
     this.said = el("output", { class: "said", "aria-live": "polite" });
-    this.note = el("p", { class: "note" }, words(note ?? ""));
+    this.note = el("p", { class: "note" }, withSubscripts(note ?? ""));
     this.element = el(
       "figure",
       { class: "plot", id: `plot-${name}` },
-      el("figcaption", {}, el("h3", {}, words(title)), menu(this)),
+      el("figcaption", {}, el("h3", {}, withSubscripts(title)), menu(this)),
       this.legend,
       this.svg,
       this.said,
       this.note,
     );
     new ResizeObserver(() => this.redraw()).observe(this.element);
-    pointing(this);
+    handleInput(this);
   }
 
-  /** Shows data: `series`, and if wanted `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
-   *  `layer` below, a `table`, and words for when it is `empty`. */
+  /** Shows data: `series`, and optionally `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
+   *  `layer` below, a `table`, and a text for when it is `empty`. */
   draw(data) {
     this.data = data;
     this.redraw();
@@ -65,10 +65,10 @@ export class Chart {
     if (this.view) return this.view;
     const points = this.visible().flatMap((series) => series.points);
     const { range: own = {}, least = {} } = this.data;
-    const x = own.x ?? around(points.map((point) => point[0]).concat(least.x ?? []), this.x.log);
+    const x = own.x ?? dataRange(points.map((point) => point[0]).concat(least.x ?? []), this.x.log);
     const y =
       own.y ??
-      around(
+      dataRange(
         points
           .map((point) => point[1])
           .filter((value) => value !== null)
@@ -97,8 +97,8 @@ export class Chart {
     this.svg.replaceChildren(
       svg("defs", {}, svg("clipPath", { id: this.clip }, svg("rect", size))),
       svg("rect", { class: "field", ...size }),
-      bands(this),
-      grid(this),
+      drawBands(this),
+      drawGrid(this),
       inside,
       svg("rect", { class: "frame", ...size }),
       this.cursor,
@@ -113,8 +113,8 @@ export class Chart {
         ),
       );
     }
-    for (const one of this.data.levels ?? []) inside.append(level(this, one));
-    for (const series of this.visible()) inside.append(...line(this, series));
+    for (const one of this.data.levels ?? []) inside.append(drawLevel(this, one));
+    for (const series of this.visible()) inside.append(...drawSeries(this, series));
     for (const mark of this.data.marks ?? []) {
       inside.append(
         svg("circle", {
@@ -126,7 +126,7 @@ export class Chart {
       );
     }
     if (this.data.note) this.note.textContent = this.data.note;
-    keys(this);
+    drawLegend(this);
     this.refresh();
   }
 
@@ -138,13 +138,13 @@ export class Chart {
     return [middle - half, middle + half];
   }
 
-  /** Marks a place, with lines of text beside it: `{ x, y, dots, lines, ring }`, or nothing. */
-  point(hit) {
-    point(this, hit);
+  /** Marks a position, with lines of text beside it: `{ x, y, dots, lines, ring }`, or nothing. */
+  showCursor(hit) {
+    drawCursor(this, hit);
   }
 
-  /** A value of an axis as people read it. */
-  reading(axis, value) {
-    return shown(value, axis.unit);
+  /** A value of an axis as text. */
+  formatted(axis, value) {
+    return formatQuantity(value, axis.unit);
   }
 }

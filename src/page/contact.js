@@ -1,20 +1,20 @@
-// One contact: what it does, what it remembers, and what moves it.
+// The view of one contact: loads it, follows its events, and redraws.
 import { call, follow, pages } from "./api.js";
-import { FIELDS, layout } from "./bench.js";
-import { latest, notice, settled } from "./dom.js";
-import { curved, cuts, straight } from "./replay.js";
+import { FIELDS, contactView } from "./contact_view.js";
+import { curvedPath, stepCounts, straightPath } from "./curved_path.js";
+import { latestOnly, notice, debounce } from "./dom.js";
 
-const KEPT = 1000;
+const MAX_HISTORY = 1000;
 
 /** Shows a contact in `main`, until `signal`. */
-export async function contact(main, id, signal) {
-  const [session, definition] = await Promise.all([
+export async function showContact(main, id, signal) {
+  const [contact, definition] = await Promise.all([
     call("GET", `/contacts/${id}`),
     call("GET", `/contacts/${id}/definition`),
   ]);
-  const begin = Math.max(0, session.sequence - KEPT);
-  const history = await pages(`/contacts/${id}/history`, KEPT, begin || undefined);
-  const { contact: figures } = session;
+  const begin = Math.max(0, contact.sequence - MAX_HISTORY);
+  const history = await pages(`/contacts/${id}/history`, MAX_HISTORY, begin || undefined);
+  const { contact: figures } = contact;
   const virgin = {
     displacement: 0,
     force: 0,
@@ -27,81 +27,81 @@ export async function contact(main, id, signal) {
     elastic_energy: 0,
     memory_depth: 0,
   };
-  // What is known of it. A long past begins in the middle, and its way is drawn straight.
-  const about = {
+  // A long history is cut at its beginning, and its path is drawn straight.
+  const model = {
     id,
     definition,
     figures,
     history,
     signal,
     friction: definition.friction,
-    state: history.at(-1)?.state ?? session.state,
+    state: history.at(-1)?.state ?? contact.state,
     first: begin ? history.shift() : { sequence: 0, state: virgin },
-    whole: begin === 0,
+    isComplete: begin === 0,
     stress: null,
     path: [],
   };
-  const ratio = (about.friction * figures.e_star) / figures.g_star;
-  about.slip = (state) => ratio * Math.max(0, state.indentation);
-  about.reach = (state) => 1.5 * (Math.max(about.slip(state), figures.gross_slip_displacement) || 1e-7);
-  about.move = latest((body) => call("POST", `/contacts/${id}/move`, body, signal));
+  const ratio = (model.friction * figures.e_star) / figures.g_star;
+  model.slip = (state) => ratio * Math.max(0, state.indentation);
+  model.reach = (state) => 1.5 * (Math.max(model.slip(state), figures.gross_slip_displacement) || 1e-7);
+  model.move = latestOnly((body) => call("POST", `/contacts/${id}/move`, body, signal));
 
-  const view = layout(about, session);
-  // However many moves come, there is one drawing a frame.
+  const view = contactView(model, contact);
+  // At most one redraw a frame, however many moves arrive.
   let frame = null;
   const redraw = () => {
     frame ??= requestAnimationFrame(() => {
       frame = null;
-      view.plots.draw(about);
-      view.show(about.state);
+      view.plots.draw(model);
+      view.show(model.state);
     });
   };
-  const look = latest(async () => {
+  const loadStress = latestOnly(async () => {
     const stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal);
-    about.stress = stress;
+    model.stress = stress;
     redraw();
   });
-  const bend = latest(async () => {
+  const refinePath = latestOnly(async () => {
     const past = [...history];
-    const counts = cuts(about.first, past, span(about));
-    if (!about.whole || counts.every((count) => count === 1)) return;
-    const path = await curved(definition, about.first, past, counts, signal);
-    // What has come meanwhile goes on from there.
-    about.path = [...path, ...straight(about.first, history.slice(past.length)).slice(1)];
+    const counts = stepCounts(model.first, past, span(model));
+    if (!model.isComplete || counts.every((count) => count === 1)) return;
+    const path = await curvedPath(definition, model.first, past, counts, signal);
+    // Moves that arrived meanwhile are appended.
+    model.path = [...path, ...straightPath(model.first, history.slice(past.length)).slice(1)];
     redraw();
   });
-  const excuse = (error) => {
+  const showError = (error) => {
     if (!signal.aborted) notice(error.message, true);
   };
-  // A way that the service cannot compute in small steps stays straight.
-  const bent = () => bend().catch((error) => error.status === 422 || excuse(error));
-  const later = settled(bent, 120);
-  about.path = straight(about.first, history);
+  // A path that the service cannot compute in small steps stays straight.
+  const refine = () => refinePath().catch((error) => error.status === 422 || showError(error));
+  const refineLater = debounce(refine, 120);
+  model.path = straightPath(model.first, history);
   redraw();
-  look().catch(excuse);
-  bent();
+  loadStress().catch(showError);
+  refine();
 
-  const take = (event) => {
-    if (event.sequence <= (history.at(-1)?.sequence ?? about.first.sequence)) return;
-    about.state = event.state;
+  const addMove = (event) => {
+    if (event.sequence <= (history.at(-1)?.sequence ?? model.first.sequence)) return;
+    model.state = event.state;
     history.push({ sequence: event.sequence, move: event.move ?? {}, state: event.state, at: event.at });
-    about.path.push([event.state.displacement, event.state.force, event.sequence]);
-    if (history.length > 2 * KEPT) {
-      about.first = history[history.length - KEPT - 1];
-      history.splice(0, history.length - KEPT);
-      about.whole = false;
-      about.path = straight(about.first, history);
+    model.path.push([event.state.displacement, event.state.force, event.sequence]);
+    if (history.length > 2 * MAX_HISTORY) {
+      model.first = history[history.length - MAX_HISTORY - 1];
+      history.splice(0, history.length - MAX_HISTORY);
+      model.isComplete = false;
+      model.path = straightPath(model.first, history);
     }
     redraw();
-    look().catch(excuse);
-    later();
+    loadStress().catch(showError);
+    refineLater();
   };
-  follow(id, history.at(-1)?.sequence ?? about.first.sequence, take, view.report, signal);
+  follow(id, history.at(-1)?.sequence ?? model.first.sequence, addMove, view.report, signal);
   main.replaceChildren(view.element);
   view.plots.all.forEach((plot) => plot.redraw());
 }
 
-/** The size of what the loop shows. */
+/** The largest displacement and force of the loop. */
 function span({ first, history, figures }) {
   const states = [first, ...history].map(({ state }) => state);
   const most = (name) => states.reduce((most, state) => Math.max(most, Math.abs(state[name])), 0);

@@ -1,4 +1,4 @@
-// A few words for making elements, and for telling people something.
+// Helpers that make elements, show notices, and limit how often work runs.
 
 /** An element: attributes, handlers (`onclick`), properties (`value`), then children. */
 export function el(name, attributes = {}, ...children) {
@@ -22,11 +22,11 @@ export function svg(name, attributes, ...children) {
 }
 
 /** A text whose `_x` are indices, as children of an element. */
-export const words = (text) =>
+export const withSubscripts = (text) =>
   text.split(/(_\w+)/).map((part) => (part.startsWith("_") ? el("sub", {}, part.slice(1)) : part));
 
 /** The same as children of a text in a drawing. */
-export function drawnWords(text) {
+export function svgWithSubscripts(text) {
   return text
     .split(/_(\w+)/)
     .map((part, index) =>
@@ -34,7 +34,7 @@ export function drawnWords(text) {
     );
 }
 
-let silence;
+let noticeTimer;
 
 /** Shows a message for a while. */
 export function notice(text, fault = false) {
@@ -42,14 +42,14 @@ export function notice(text, fault = false) {
   box.textContent = text;
   box.classList.toggle("fault", fault);
   box.hidden = false;
-  clearTimeout(silence);
-  silence = setTimeout(() => {
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => {
     box.hidden = true;
   }, 6000);
 }
 
-/** Runs `work` again and again when asked, never twice at a time; of requests meanwhile the last counts. */
-export function latest(work) {
+/** Runs `work` on each call, one run at a time; of the calls during a run only the last is kept. */
+export function latestOnly(work) {
   let busy = false;
   let next = null;
   return async function ask(...args) {
@@ -75,8 +75,8 @@ export function latest(work) {
   };
 }
 
-/** Calls `work` once nothing has been asked for `time` ms. */
-export function settled(work, time) {
+/** Calls `work` once there was no call for `time` ms. */
+export function debounce(work, time) {
   let timer;
   return (...args) => {
     clearTimeout(timer);
@@ -98,7 +98,7 @@ export const pause = (time, signal) =>
     );
   });
 
-/** Hands a text over as a file. */
+/** Saves a text as a file. */
 export function save(name, type, text) {
   const url = URL.createObjectURL(new Blob([text], { type }));
   el("a", { href: url, download: name }).click();

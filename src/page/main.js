@@ -1,8 +1,8 @@
-// The page: which view the address names.
-import { contact } from "./contact.js";
+// The page: shows the view that the address names.
+import { showContact } from "./contact.js";
+import { contactList } from "./contact_list.js";
+import { createForm } from "./create_form.js";
 import { el } from "./dom.js";
-import { create } from "./form.js";
-import { list } from "./list.js";
 
 const main = document.getElementById("main");
 let leave = new AbortController();
@@ -13,17 +13,17 @@ async function route(event) {
   const { signal } = leave;
   const [, id] = location.hash.match(/^#\/contacts\/([\w-]+)$/) ?? [];
   document.title = id ? "Contact – stickslip" : location.hash === "#/new" ? "New contact – stickslip" : "stickslip";
-  // What is made for a view that has been left goes nowhere.
+  // A view that was left meanwhile is not shown.
   const view = el("div", {});
   main.replaceChildren(view);
   try {
-    if (id) await contact(view, id, signal);
-    else if (location.hash === "#/new") create(view, signal);
-    else await list(view);
+    if (id) await showContact(view, id, signal);
+    else if (location.hash === "#/new") createForm(view, signal);
+    else await contactList(view);
   } catch (error) {
     if (!signal.aborted)
       view.replaceChildren(
-        el("h1", {}, "That did not work"),
+        el("h1", {}, "This view could not be loaded"),
         el("p", { role: "alert" }, error.message),
         el("p", {}, el("a", { href: "#/" }, "To the list of contacts")),
       );

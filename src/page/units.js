@@ -1,4 +1,4 @@
-// Numbers with their units, as people read them.
+// Numbers with their units as text, and back.
 
 const PREFIXES = [
   [1e12, "T"],
@@ -13,15 +13,15 @@ const PREFIXES = [
   [1e-15, "f"],
 ];
 
-/** The unit with the prefix that suits a value: how much it is, and its name. */
-export function scaled(value, unit) {
+/** The unit with the prefix that fits a value: its factor and its name. */
+export function unitScale(value, unit) {
   const size = Math.abs(value);
   const [factor, prefix] = PREFIXES.find(([factor]) => size >= factor * 0.9999) || (size ? PREFIXES.at(-1) : [1, ""]);
   return { factor, unit: prefix + unit };
 }
 
 /** A number with `digits` significant digits, and a true minus. */
-export function plain(value, digits = 4) {
+export function formatNumber(value, digits = 4) {
   if (value === null || value === undefined) return "∞";
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -33,15 +33,15 @@ export function plain(value, digits = 4) {
 }
 
 /** A value with its unit: `160.2 nm`. */
-export function shown(value, unit, digits = 4) {
+export function formatQuantity(value, unit, digits = 4) {
   if (value === null || value === undefined) return "∞";
-  if (!unit) return plain(value, digits);
-  const scale = scaled(value, unit);
-  return `${plain(value / scale.factor, digits)} ${scale.unit}`.trim();
+  if (!unit) return formatNumber(value, digits);
+  const scale = unitScale(value, unit);
+  return `${formatNumber(value / scale.factor, digits)} ${scale.unit}`.trim();
 }
 
-/** What is written in a field of so many powers of ten: a number in SI, or the text itself for the service to refuse. */
-export function written(text, power = 0) {
+/** The text of a field in units of 10^power: a number in SI units, or the text itself for the service to refuse. */
+export function parseNumber(text, power = 0) {
   const trimmed = text.trim().replace("−", "-").replace(",", ".");
   if (trimmed === "") return undefined;
   const parts = trimmed.match(/^([+-]?(?:\d+\.?\d*|\.\d+))(?:e([+-]?\d+))?$/i);

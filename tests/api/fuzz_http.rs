@@ -1,18 +1,19 @@
-//! Anything at all over HTTP, against the real binary: no 5xx but for overload, no panic, and every refusal a document that
-//! names its place in the body.
+//! Random requests over HTTP to the real binary: no 5xx but for overload, no panic, and each refusal is a problem document
+//! that names the place of the fault in the body.
 //!
-//! Requests are made from the schemas and examples of the OpenAPI document, for every path and method, and damaged; the
-//! sockets get requests whose bytes are. Each kind is tried for [`SECONDS`], up to so many cases that a fast machine sees no
-//! others than a slow one; `STICKSLIP_FUZZ_SECONDS` asks for a longer time and lifts that bound. Case n is the same on every
-//! run; `STICKSLIP_FUZZ_SEED` asks for other cases.
+//! Requests are generated from the schemas and examples of the OpenAPI document, for every path and method, and damaged; raw
+//! sockets get requests with random bytes. The number of cases is fixed, and case n is the same on every run and every
+//! machine, as is the order of cases on each contact. `STICKSLIP_FUZZ_CASES` asks for another number of each kind,
+//! `STICKSLIP_FUZZ_SEED` for other cases.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::common::kill::Random;
 use crate::common::raw::{PATIENCE, Service};
 use crate::common::{ball, create};
+use crate::fuzz_bodies::{case_count, seed};
 use crate::schema::{Schemas, damage, garble, pick, word};
 use futures::future::join_all;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
@@ -22,52 +23,39 @@ use serde_json::Value;
 use stickslip_wire::ProblemDocument;
 use stickslip_wire::client::Options;
 
-/// How long each kind of input is tried, s.
-const SECONDS: u64 = 60;
-/// Requests and connections at a time.
-const AT_ONCE: u64 = 8;
-/// Cases of each kind.
-const CASES: (u64, u64) = (110_000, 170_000);
+/// Tasks that send requests at the same time. Each has its own contacts.
+const TASKS: u64 = 8;
+const CONTACTS_PER_TASK: usize = 2;
 
-fn asked(name: &str) -> Option<u64> {
-    std::env::var(name).ok().and_then(|text| text.parse().ok())
-}
-
-/// Runs cases from a few tasks at a time until the time is up or, unless a time is asked for, `most` are done.
-async fn run(most: u64, case: impl AsyncFn(u64, &mut Random) + Clone) {
-    let longer = asked("STICKSLIP_FUZZ_SECONDS");
-    let (time, seed) = (Duration::from_secs(longer.unwrap_or(SECONDS)), asked("STICKSLIP_FUZZ_SEED").unwrap_or(0));
-    let most = if longer.is_some() { u64::MAX } else { most };
-    let (start, next) = (Instant::now(), AtomicU64::new(0));
-    let workers = (0..AT_ONCE).map(|_| async {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= most || start.elapsed() >= time {
-                break;
-            }
+/// Runs so many cases in several tasks; `case` gets the index of its task and the number of the case.
+async fn run(usual: u64, case: impl AsyncFn(usize, u64, &mut Random) + Clone) {
+    let (cases, seed, start) = (case_count(usual), seed(), Instant::now());
+    let tasks = (0..TASKS).map(async |task| {
+        // Every task has cases of its own, so that the speed of the others does not change their order.
+        for number in (task..cases).step_by(TASKS as usize) {
             let mut random = Random(seed.wrapping_mul(0x9e37_79b9).wrapping_add(number << 20));
-            case(number, &mut random).await;
+            case(task as usize, number, &mut random).await;
         }
     });
-    join_all(workers).await;
-    println!("seed {seed}: {} cases in {:?}", next.into_inner().min(most), start.elapsed());
+    join_all(tasks).await;
+    println!("seed {seed}: {cases} cases in {:?}", start.elapsed());
 }
 
-/// A request as it is sent.
+/// A request to send.
 #[derive(Debug)]
 struct Request {
     method: String,
     target: String,
     headers: Vec<(&'static str, String)>,
     body: Option<String>,
-    /// Whether a fault can only be in the body.
-    plain: bool,
+    /// Whether only the body can be at fault, and is JSON.
+    body_alone: bool,
 }
 
 fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Request {
     let operations = schemas.operations();
     let (path, method, operation) = pick(&operations, random);
-    let mut plain = true;
+    let mut body_alone = true;
     let id = match random.below(8) {
         0 => "01890a5d-ac96-774b-bcce-b302099a8057".to_owned(),
         1 => utf8_percent_encode(word(&["", "..", "é", "\0", "a b", "7"], random), NON_ALPHANUMERIC).to_string(),
@@ -96,7 +84,7 @@ fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Reque
         }
     }
     headers.retain(|(_, value)| reqwest::header::HeaderValue::from_str(value).is_ok());
-    plain &= headers.is_empty();
+    body_alone &= headers.is_empty();
     if !query.is_empty() {
         target = format!("{target}?{}", query.join("&"));
     }
@@ -112,15 +100,15 @@ fn request(schemas: &Schemas, contacts: &[String], random: &mut Random) -> Reque
     });
     if let Some(text) = body.as_mut().filter(|_| random.below(5) == 0) {
         garble(text, random);
-        plain = false;
+        body_alone = false;
     }
     let mut method = method.clone();
     if random.below(20) == 0 {
         method =
             pick(&["GET", "POST", "PUT", "DELETE", "PATCH", "HEAD", "OPTIONS", "TRACE", "FROB"], random).to_string();
-        plain = false;
+        body_alone = false;
     }
-    Request { method, target, headers, body, plain }
+    Request { method, target, headers, body, body_alone }
 }
 
 /// Checks a reply; the request is for the message.
@@ -149,7 +137,7 @@ async fn examine(request: &Request, response: Response, number: u64) {
     if problem.code == "not_json" {
         assert!(serde_json::from_str::<IgnoredAny>(text).is_err(), "JSON, and refused as none: {}", shown());
     }
-    if request.plain && request.body.is_some() && status == 422 {
+    if request.body_alone && request.body.is_some() && status == 422 {
         assert!(!problem.errors.is_empty(), "no place in {problem:?} for {}", shown());
         let body: Value = serde_json::from_str(text).unwrap();
         for fault in &problem.errors {
@@ -165,26 +153,27 @@ fn service() -> Arc<Service> {
     Arc::new(Service::start(&["--log", "error", "--deadline", "2s", "--cache-bytes", "32MiB", "--body-time", "2s"]))
 }
 
-/// The log has a line for each 5xx.
-fn is_well(service: &Service) {
+/// Fails if the log has an error: it has a line for each 5xx but those of overload.
+fn assert_log_is_clean(service: &Service) {
     let log = service.log();
-    let bad: Vec<&str> = log.lines().filter(|line| !line.contains("overloaded")).take(5).collect();
-    assert!(bad.is_empty(), "{bad:#?}");
-    println!("at most {} MiB", service.peak() >> 20);
+    let errors: Vec<&str> = log.lines().filter(|line| !line.contains("overloaded")).take(5).collect();
+    assert!(errors.is_empty(), "{errors:#?}");
+    println!("peak memory {} MiB", service.peak() >> 20);
 }
 
 #[tokio::test]
 async fn requests_by_the_schemas() {
     let (service, schemas) = (service(), Schemas::new(stickslip::api::document()));
     let mut contacts = Vec::new();
-    for _ in 0..10 {
+    for _ in 0..TASKS as usize * CONTACTS_PER_TASK {
         contacts.push(service.client.create(&create(), &Options::default()).await.unwrap().id.to_string());
     }
     let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
     let base = format!("http://{}", service.address);
-    run(CASES.0, async |number, random| {
-        // Deleting is allowed, but not all of them all the time.
-        let request = request(&schemas, &contacts, random);
+    let contacts: Vec<&[String]> = contacts.chunks(CONTACTS_PER_TASK).collect();
+    run(20_000, async |task, number, random| {
+        let request = request(&schemas, contacts[task], random);
+        // Most cases should find their contact.
         if request.method == "DELETE" && number % 50 != 0 {
             return;
         }
@@ -196,7 +185,7 @@ async fn requests_by_the_schemas() {
         if let Some(body) = &request.body {
             call = call.header("content-type", "application/json").body(body.clone());
         }
-        // A server may close a connection whose request it did not read to the end, just when the next one is sent on it.
+        // The server closes a connection whose request it did not read to the end, perhaps as the next one is sent on it.
         let mut sent = call.try_clone().unwrap().send().await;
         for _ in 0..3 {
             if sent.is_err() {
@@ -216,7 +205,7 @@ async fn requests_by_the_schemas() {
     let (answered, refused) = (answered.into_inner(), refused.into_inner());
     println!("{answered} answered, {refused} refused");
     assert!(answered > 0 && refused > 0);
-    is_well(&service);
+    assert_log_is_clean(&service);
 }
 
 #[tokio::test]
@@ -234,13 +223,13 @@ async fn bytes_on_the_socket() {
          5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
             .to_owned(),
     ];
-    run(CASES.1, async |number, random| {
+    run(40_000, async |_, number, random| {
         let mut bytes = pick(&sound, random).clone().into_bytes();
         if random.below(6) == 0 {
             bytes = (0..random.below(3_000)).map(|_| random.next() as u8).collect();
         }
         for _ in 0..1 + random.below(4) {
-            spoil(&mut bytes, random);
+            damage_bytes(&mut bytes, random);
         }
         let answer = service.send_all(&bytes).await;
         let shown = || format!("case {number}: {}", String::from_utf8_lossy(&bytes));
@@ -253,10 +242,10 @@ async fn bytes_on_the_socket() {
     })
     .await;
     assert!(service.client.contact(id).await.is_ok());
-    is_well(&service);
+    assert_log_is_clean(&service);
 }
 
-fn spoil(bytes: &mut Vec<u8>, random: &mut Random) {
+fn damage_bytes(bytes: &mut Vec<u8>, random: &mut Random) {
     let place = random.below(bytes.len().max(1) as u64) as usize;
     let end = (place + 1 + random.below(40) as usize).min(bytes.len());
     match random.below(7) {

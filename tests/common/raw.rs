@@ -38,6 +38,9 @@ impl Service {
         let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
             .args(["serve", "--listen", "127.0.0.1:0", "--store", "memory:"])
             .args(arguments)
+            // Not settings of the service, which refuses unknown ones.
+            .env_remove("STICKSLIP_FUZZ_CASES")
+            .env_remove("STICKSLIP_FUZZ_SEED")
             .stdout(Stdio::piped())
             .stderr(log)
             .spawn()

@@ -1,4 +1,4 @@
-//! Whoever connects without the page: generated clients, examples, dashboards.
+//! The documentation and what it promises: examples, generated clients, dashboards and the report.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! `stickslip report`: its columns, and errors that fall as they must. Times are never judged.
+//! `stickslip report`: its columns, and errors of the expected order. No assertion depends on a time.
 
 use serde_json::{Value, json};
 
@@ -8,13 +8,13 @@ const SCENES: &str = "first_loading,reversals_20,oblique,cone,power_4,exact_sphe
 fn the_report_finds_the_known_orders_of_error() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let ended =
+    let output =
         crate::common::run(&["report", "--out", out, "--scenes", SCENES, "--largest", "1000", "--budget", "3600"]);
-    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     let report: Value = serde_json::from_str(&read("report.json")).unwrap();
     let rows = report["rows"].as_array().unwrap();
-    // Exact and reference, and three kernels on 10, 100 and 1000 springs.
+    // Exact and reference, and three kernels with 10, 100 and 1000 springs.
     assert_eq!(rows.len(), SCENES.split(',').count() * 11);
     let csv = read("report.csv");
     assert_eq!(csv.lines().count(), rows.len() + 1);
@@ -27,7 +27,7 @@ fn the_report_finds_the_known_orders_of_error() {
         for named in ["exact", "springs_arcosh", "springs_level", "recipe", "time, s"] {
             assert!(chart.contains(named), "{scene} {kind} {named}");
         }
-        // Three springs on each of three lines, and the exact solver; the reference is the zero of error.
+        // Three springs on each of three lines, and the exact solver; the reference has no error.
         assert_eq!(chart.matches("<circle").count(), 10, "{scene} {kind}");
     }
     for row in rows {
@@ -67,12 +67,12 @@ fn the_report_finds_the_known_orders_of_error() {
 }
 
 #[test]
-fn what_there_is_no_time_for_is_named_and_not_made_up() {
+fn solvers_without_time_left_are_listed_and_not_estimated() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let ended =
+    let output =
         crate::common::run(&["report", "--out", out, "--scenes", "reversal", "--largest", "100", "--budget", "0"]);
-    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: Value =
         serde_json::from_str(&std::fs::read_to_string(folder.path().join("report.json")).unwrap()).unwrap();
     let named = |list: &str| -> Vec<String> {
@@ -95,17 +95,17 @@ fn what_there_is_no_time_for_is_named_and_not_made_up() {
 fn a_python_that_does_not_exist_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let asked = ["report", "--out", out, "--scenes", "reversal", "--largest", "10", "--peers", "/no/such/python"];
-    let ended = crate::common::run(&asked);
-    assert!(!ended.status.success());
-    assert!(String::from_utf8_lossy(&ended.stderr).contains("/no/such/python does not run"));
+    let arguments = ["report", "--out", out, "--scenes", "reversal", "--largest", "10", "--peers", "/no/such/python"];
+    let output = crate::common::run(&arguments);
+    assert!(!output.status.success());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("/no/such/python does not run"));
 }
 
 #[test]
 fn an_unknown_scene_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    let ended = crate::common::run(&["report", "--out", folder.path().to_str().unwrap(), "--scenes", "third_loading"]);
-    assert!(!ended.status.success());
-    let said = String::from_utf8_lossy(&ended.stderr);
+    let output = crate::common::run(&["report", "--out", folder.path().to_str().unwrap(), "--scenes", "third_loading"]);
+    assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("third_loading") && said.contains("first_loading"), "{said}");
 }

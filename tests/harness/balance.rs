@@ -8,15 +8,15 @@ use stickslip_wire::{Path, SimulateReply, SimulateRequest, SolverKind, State};
 
 use super::laws::{again, largest_load};
 
-/// Moves that are looked at, from the first.
+/// How many moves are checked, from the first.
 const MOVES: usize = 5;
-/// Parts of each.
+/// Into how many parts each is split.
 const PARTS: usize = 12;
-/// What a balance may be off by, relative to the friction limit times the way and the displacement of gross slip.
+/// The allowed error of the balance, relative to the friction limit times the sum of the distance and the gross-slip displacement.
 const BALANCE: f64 = 1e-9;
 
 /// # Panics
-/// If the work of the tangential force is not what has been stored and lost.
+/// If the work of the tangential force is not the energy stored and dissipated.
 pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &SimulateReply) {
     let displaced = match &request.path {
         Path::Moves(moves) => moves
@@ -46,7 +46,7 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
     let mut from =
         State { displacement: 0.0, force: 0.0, dissipated_energy: 0.0, elastic_energy: 0.0, ..split.steps[0] };
     for (index, parts) in split.steps.chunks(PARTS).enumerate() {
-        let (mut low, mut high, mut way) = (0.0, 0.0, 0.0);
+        let (mut low, mut high, mut distance) = (0.0, 0.0, 0.0);
         let mut here = from;
         let mut soft = stiffness * edge;
         for part in parts {
@@ -54,7 +54,7 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
             let sign = (parts[PARTS - 1].displacement - from.displacement).signum();
             let (f0, f1) = (here.force * sign, part.force * sign);
             let softer = stiffness * part.stick_radius.min(edge);
-            way += step;
+            distance += step;
             low += 0.5 * step * (f0 + f1);
             high += below_tangents(step, f0, f1, soft, softer);
             here = *part;
@@ -63,7 +63,7 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
         let stored = here.elastic_energy - from.elastic_energy;
         let lost = here.dissipated_energy - from.dissipated_energy;
         let sums = here.elastic_energy + here.dissipated_energy;
-        let allowed = BALANCE * limit * (way + full) + 8.0 * f64::EPSILON * sums + f64::MIN_POSITIVE;
+        let allowed = BALANCE * limit * (distance + full) + 8.0 * f64::EPSILON * sums + f64::MIN_POSITIVE;
         let work = stored + lost;
         assert!(
             work >= low - allowed && work <= high + allowed,

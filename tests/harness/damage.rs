@@ -1,21 +1,21 @@
-//! Requests that have been damaged, and bytes that never were one.
+//! Damaged requests, and random bytes.
 
 use proptest::prelude::*;
 use proptest::sample::select;
 use serde_json::Value;
 
-use super::requests::scene;
+use super::requests::random_request;
 
 /// A damage to the text of a request.
 #[derive(Clone, Debug)]
 pub enum Damage {
-    /// Another byte at a place, a part of the whole.
+    /// Another byte at a place, given as a fraction of the length.
     Byte(f64, u8),
     /// A stretch is cut out.
     Cut(f64, usize),
-    /// A stretch is there twice.
-    DoubleDouble(f64, usize),
-    /// A word is put in.
+    /// A stretch is duplicated.
+    Duplicate(f64, usize),
+    /// A word is inserted.
     Insert(f64, &'static str),
     /// The n-th number becomes something else.
     Number(usize, &'static str),
@@ -58,7 +58,7 @@ fn damage() -> impl Strategy<Value = Damage> {
     prop_oneof![
         2 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
         1 => (place(), 1..20_usize).prop_map(|(place, length)| Damage::Cut(place, length)),
-        1 => (place(), 1..40_usize).prop_map(|(place, length)| Damage::DoubleDouble(place, length)),
+        1 => (place(), 1..40_usize).prop_map(|(place, length)| Damage::Duplicate(place, length)),
         1 => (place(), word()).prop_map(|(place, word)| Damage::Insert(place, word)),
         4 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Number(index, word)),
         3 => (0..60_usize, word()).prop_map(|(index, word)| Damage::Replace(index, word)),
@@ -66,23 +66,23 @@ fn damage() -> impl Strategy<Value = Damage> {
     ]
 }
 
-/// A request with a few damages.
+/// The text of a request with one to three damages.
 pub fn damaged() -> impl Strategy<Value = Vec<u8>> {
-    (scene(), prop::collection::vec(damage(), 1..4)).prop_map(|(scene, damages)| {
-        let text = scene.write().to_string().into_bytes();
-        damages.iter().fold(text, |text, damage| damage.done_to(text))
+    (random_request(), prop::collection::vec(damage(), 1..4)).prop_map(|(request, damages)| {
+        let text = request.to_json().to_string().into_bytes();
+        damages.iter().fold(text, |text, damage| damage.apply(text))
     })
 }
 
 impl Damage {
-    fn done_to(&self, mut text: Vec<u8>) -> Vec<u8> {
+    fn apply(&self, mut text: Vec<u8>) -> Vec<u8> {
         let length = text.len();
         let at = |place: f64| ((place * length as f64) as usize).min(length.saturating_sub(1));
         match *self {
             _ if text.is_empty() => {}
             Damage::Byte(place, byte) => text[at(place)] = byte,
             Damage::Cut(place, count) => drop(text.drain(at(place)..(at(place) + count).min(length))),
-            Damage::DoubleDouble(place, count) => {
+            Damage::Duplicate(place, count) => {
                 let stretch = text[at(place)..(at(place) + count).min(length)].to_vec();
                 text.splice(at(place)..at(place), stretch);
             }
@@ -112,7 +112,7 @@ impl Damage {
     }
 }
 
-/// Where the numbers of a text are.
+/// The ranges of the numbers in a text.
 fn numbers(text: &[u8]) -> Vec<std::ops::Range<usize>> {
     let belongs = |byte: u8| byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.' | b'e');
     let mut found = Vec::new();
@@ -135,7 +135,7 @@ fn count(value: &Value) -> usize {
     }
 }
 
-/// Replaces the value of that number, or leaves it out; says whether it was the one.
+/// Replaces the value at index `left` of a depth-first walk, or removes it if `by` is `None`; true once that is done.
 fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
     if *left == 0 {
         *value = by.take().unwrap_or(Value::Null);
@@ -171,7 +171,7 @@ fn change(value: &mut Value, left: &mut usize, by: &mut Option<Value>) -> bool {
     false
 }
 
-/// Bytes of no kind, and words of JSON in no order.
+/// Random bytes, and words of JSON in random order.
 pub fn raw() -> impl Strategy<Value = Vec<u8>> {
     const NAMES: [&str; 24] = [
         "{",

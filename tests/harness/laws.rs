@@ -1,31 +1,31 @@
-//! Laws of answers: what holds for every contact after every path, whatever the profile.
+//! Laws that the reply for every contact and path obeys, whatever the profile.
 
 use serde_json::Value;
 use stickslip::simulation::Failure;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{Move, Path, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps};
 
-use super::{Refusal, ask, balance};
+use super::{Refusal, balance, run};
 
-/// What forces may be off by, relative to mu F_N, beyond the estimate that comes with them.
+/// The allowed error of forces beyond their estimate, relative to mu F_N.
 const FORCE: f64 = 1e-10;
-/// What stresses may be off by, relative to mu p_max: a cusp takes the root of what its radius is rounded by.
+/// The allowed error of stresses, relative to mu p_max: at a cusp it is the root of the rounding error of the radius.
 const STRESS: f64 = 1e-6;
 
 /// Contact radii, m, and normal forces, N, below which products of a few of them lose their digits, and then themselves.
 const SMALLEST: f64 = 1e-100;
 
-/// Pieces of memory that curved moves alone leave: what left them is too slow to be repeated with variations.
-const DEEP: usize = 200;
+/// A longer slip history is left by curved moves alone: such a request is too slow to be repeated with variations.
+const LONG_HISTORY: usize = 200;
 
 /// # Panics
 /// If a law does not hold for the answer to a request.
 pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &SimulateReply) {
-    if reply.steps.iter().any(vanishing) {
+    if reply.steps.iter().any(underflows) {
         return;
     }
     numbers(simulation, reply);
-    if reply.steps.iter().any(|state| state.memory_depth > DEEP) {
+    if reply.steps.iter().any(|state| state.memory_depth > LONG_HISTORY) {
         return;
     }
     let request = &SimulateRequest { steps: Steps::All, ..request.clone() };
@@ -36,7 +36,7 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
     assert!(same(&last, &all) && same(reply, &all), "the same request, another answer");
 
     numbers(simulation, &all);
-    if all.steps.iter().any(vanishing) || below_table(&request.contact.profile, &all) {
+    if all.steps.iter().any(underflows) || below_table(&request.contact.profile, &all) {
         return;
     }
     states(simulation, &all);
@@ -44,28 +44,28 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
     stresses(simulation, &all);
     residual(simulation, &all);
     mirror(request, &all);
-    repeat(request, &all);
-    if !upright(&request.contact.profile, &all) {
+    repeat_last_move(request, &all);
+    if !near_equator(&request.contact.profile, &all) {
         balance::check(request, simulation, &all);
     }
 }
 
 /// A variation of a request that has been answered must be answered too.
 pub fn again(request: &SimulateRequest, how: &str) -> SimulateReply {
-    match ask(request) {
+    match run(request) {
         Ok(reply) => reply,
         Err(refusal) => panic!("{how}: {refusal:?}"),
     }
 }
 
 /// Whether a contact is so small that doubles run out beneath it.
-fn vanishing(state: &State) -> bool {
+fn underflows(state: &State) -> bool {
     let small = state.contact_radius < SMALLEST || state.normal_force < SMALLEST;
     (state.indentation > 0.0 || state.normal_force > 0.0) && (small || state.indentation < SMALLEST)
 }
 
-/// Whether the contact stays so far below the first point of a table, or of a part of a sum, that rounding of its heights
-/// is all there is.
+/// Whether the contact stays so far inside the first point of a table, or of a part of a sum, that its heights
+/// are rounding errors alone.
 fn below_table(profile: &Profile, reply: &SimulateReply) -> bool {
     let least = reply.steps.iter().map(|state| state.contact_radius).filter(|radius| *radius > 0.0).reduce(f64::min);
     match profile {
@@ -75,11 +75,11 @@ fn below_table(profile: &Profile, reply: &SimulateReply) -> bool {
     }
 }
 
-/// Whether the contact comes so close to the equator of an exact sphere, where it stands upright, that energies lose digits.
-fn upright(profile: &Profile, reply: &SimulateReply) -> bool {
+/// Whether the contact comes so close to the equator of an exact sphere, where it stands near_equator, that energies lose digits.
+fn near_equator(profile: &Profile, reply: &SimulateReply) -> bool {
     match profile {
         Profile::ExactSphere(sphere) => reply.contact.contact_radius > 0.99 * sphere.radius,
-        Profile::Sum(sum) => sum.parts.iter().any(|part| upright(part, reply)),
+        Profile::Sum(sum) => sum.parts.iter().any(|part| near_equator(part, reply)),
         _ => false,
     }
 }
@@ -97,7 +97,7 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
     let spikes = profile.singular_radii();
     let rim = profile.rim_radius();
     let spike = |radius: f64, edge: f64| {
-        // A radius whose square is nought is the centre.
+        // A radius whose square is zero is the centre.
         let radius = if radius * radius > 0.0 { radius } else { 0.0 };
         radius <= edge && spikes.iter().chain(&rim).any(|spike| same_number(*spike, radius))
     };
@@ -148,7 +148,7 @@ fn find_nulls(value: &Value, place: String, found: &mut Vec<String>) {
     }
 }
 
-/// The bounds of a state, and what never falls.
+/// The bounds of each state; the friction work never decreases.
 fn states(simulation: &Simulation, reply: &SimulateReply) {
     let friction = simulation.setup.friction;
     let mut dissipated = 0.0;
@@ -162,7 +162,7 @@ fn states(simulation: &Simulation, reply: &SimulateReply) {
         );
         assert!(state.normal_force >= 0.0 && state.contact_radius >= 0.0, "step {index}: {state:?}");
         assert!((0.0..=state.contact_radius).contains(&state.stick_radius), "step {index}: {state:?}");
-        assert!(state.dissipated_energy >= dissipated, "step {index}: friction gave work back: {state:?}");
+        assert!(state.dissipated_energy >= dissipated, "step {index}: the friction work decreases: {state:?}");
         assert!(state.elastic_energy >= 0.0, "step {index}: {state:?}");
         dissipated = state.dissipated_energy;
         let known = match state.regime {
@@ -233,14 +233,14 @@ fn targets(request: &SimulateRequest, reply: &SimulateReply) {
     }
 }
 
-/// What stresses are measured by: mu p_max or, where that is infinite, mu times the mean pressure, Pa.
+/// The unit of stresses: mu p_max or, where that is infinite, mu times the mean pressure, Pa.
 fn stress_unit(simulation: &Simulation, reply: &SimulateReply) -> f64 {
     let end = &reply.steps[reply.steps.len() - 1];
     let mean = end.normal_force / (std::f64::consts::PI * end.contact_radius * end.contact_radius);
     if end.normal_force > 0.0 { simulation.setup.friction * mean } else { 0.0 }
 }
 
-/// Friction bounds the shear stress everywhere, and nothing is carried outside the contact.
+/// Friction bounds the shear stress everywhere, and stresses outside the contact are zero.
 fn stresses(simulation: &Simulation, reply: &SimulateReply) {
     let Some(stress) = &reply.stress else { return };
     let end = &reply.steps[reply.steps.len() - 1];
@@ -314,8 +314,8 @@ fn mirror(request: &SimulateRequest, reply: &SimulateReply) {
     assert_eq!(image.displacement, negative(&stress.displacement), "the mirror image of the displacement");
 }
 
-/// To go where one is changes nothing.
-fn repeat(request: &SimulateRequest, reply: &SimulateReply) {
+/// Repeating the last move changes nothing.
+fn repeat_last_move(request: &SimulateRequest, reply: &SimulateReply) {
     let mut path = moves(request, reply);
     let last = path[path.len() - 1];
     let still = |target: Option<f64>| target.map(|target| if last.relative { 0.0 } else { target });
@@ -327,10 +327,10 @@ fn repeat(request: &SimulateRequest, reply: &SimulateReply) {
         relative: last.relative,
     });
     let request = SimulateRequest { path: Path::Moves(path), ..request.clone() };
-    let longer = match ask(&request) {
+    let longer = match run(&request) {
         Ok(longer) => longer,
         // In gross slip a force is at its limit to round-off, on either side of it.
-        Err(Refusal::ByTheEngine(Failure::Refused {
+        Err(Refusal::Failed(Failure::Refused {
             error: stickslip_mechanics::Error::ForceExceedsFriction { .. },
             ..
         })) if last.relative && last.force.is_some() => {

@@ -1,4 +1,4 @@
-//! What must hold for any bytes whatever that come as the body of `POST /simulate`: shared by `tests/fuzz.rs` and `fuzz/`.
+//! What must hold for any bytes as the body of `POST /simulate`: shared by `tests/api/fuzz_bodies.rs` and `fuzz/`.
 
 mod balance;
 mod laws;
@@ -8,21 +8,21 @@ use stickslip::admission::Stop;
 use stickslip::simulation::{Failure, cost, simulate};
 use stickslip_wire::{Document as _, Profile, Rejection, SimulateReply, SimulateRequest, parse};
 
-/// What a body may cost to be tried, estimated nanoseconds: each that is answered runs several times.
-const DEAREST: stickslip::admission::Nanoseconds = 30_000_000;
+/// The largest estimated cost of a body that is run: each that is answered runs several times.
+const MAX_COST: stickslip::admission::Nanoseconds = 30_000_000;
 
-/// What came of a body.
+/// The fate of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// It was answered, and all laws hold.
     Answered,
     /// It was refused as it should be.
     Refused,
-    /// It is sound, but asks for more work than there is time for.
-    Dear,
+    /// It is sound, but costs more than `MAX_COST`.
+    TooExpensive,
 }
 
-/// Sends a body through both gates and the engine.
+/// Parses, checks and simulates a body.
 ///
 /// # Panics
 /// If a law does not hold.
@@ -35,15 +35,14 @@ pub fn examine(body: &[u8]) -> Outcome {
         Ok(simulation) => simulation,
         Err(rejection) => return refused(body, rejection.into()),
     };
-    // Curved moves leave a memory that is not known beforehand, of which the search for extrema costs the square; and where a
+    // Curved moves leave a slip history whose length is not known beforehand, of which the search for extrema costs the square; and where a
     // load has no closed inverse, each of their many chords costs a search.
     let searched = matches!(request.contact.profile, Profile::Sum(_) | Profile::Tabulated(_));
     let slow = simulation.plan.curved() > 0 && (simulation.residual || searched);
-    if slow || cost::of_simulation(&simulation) > DEAREST {
-        return Outcome::Dear;
+    if slow || cost::of_simulation(&simulation) > MAX_COST {
+        return Outcome::TooExpensive;
     }
-    let (stop, _guard) = Stop::guarded();
-    match simulate(&simulation, &stop) {
+    match simulate(&simulation, &Stop::default()) {
         Ok(reply) => {
             laws::check(&request, &simulation, &reply);
             Outcome::Answered
@@ -57,17 +56,16 @@ fn refused(body: &[u8], problem: stickslip::api::Problem) -> Outcome {
     Outcome::Refused
 }
 
-/// Asks the engine the way that the service does.
-fn ask(request: &SimulateRequest) -> Result<SimulateReply, Refusal> {
-    let simulation = request.clone().check().map_err(Refusal::AtTheGate)?;
-    let (stop, _guard) = Stop::guarded();
-    simulate(&simulation, &stop).map_err(Refusal::ByTheEngine)
+/// Checks and simulates a request as the service does.
+fn run(request: &SimulateRequest) -> Result<SimulateReply, Refusal> {
+    let simulation = request.clone().check().map_err(Refusal::Rejected)?;
+    simulate(&simulation, &Stop::default()).map_err(Refusal::Failed)
 }
 
-/// Why a variation of a sound request is refused.
+/// Why a variation of a sound request is refused: by its check, or by the solver.
 #[derive(Debug)]
 #[expect(dead_code, reason = "shown in full when a law is broken")]
 enum Refusal {
-    AtTheGate(Rejection),
-    ByTheEngine(Failure),
+    Rejected(Rejection),
+    Failed(Failure),
 }

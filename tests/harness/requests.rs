@@ -1,4 +1,4 @@
-//! Random requests, shrinkable: scenes over all that can be asked for, written down.
+//! Random requests that proptest can shrink, over all members of `POST /simulate`. Sizes are kept in units of the contact.
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -8,45 +8,45 @@ use stickslip::simulation::simulate;
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::{SimulateRequest, read};
 
-/// A number of a path, in units of what the contact at hand can bear, or as it stands.
+/// A number of a path.
 #[derive(Clone, Copy, Debug)]
 pub enum Target {
-    /// So many units.
-    Units(f64),
-    /// As it stands.
-    Plain(f64),
-    /// The number so many numbers ago.
-    Again(usize),
-    /// Its negative.
-    Mirror(usize),
-    /// So many units in the last place off it.
+    /// In units of what the contact can bear.
+    Scaled(f64),
+    /// In SI units.
+    Absolute(f64),
+    /// The number so many numbers before.
+    Repeated(usize),
+    /// The negative of that.
+    Negated(usize),
+    /// That, off by so many units in the last place.
     Near(usize, i64),
 }
 
-/// A move of a scene.
+/// A move of a path.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct RandomMove {
     /// Whether the tangential target is a force, and what it is.
     tangential: Option<(bool, Target)>,
     normal: Option<(bool, Target)>,
     relative: bool,
 }
 
-/// A path of a scene.
+/// A path.
 #[derive(Clone, Debug)]
-pub enum Way {
-    Moves(Vec<Step>),
+pub enum RandomPath {
+    Moves(Vec<RandomMove>),
     Displacement(Vec<Target>),
     Force(Vec<Target>),
-    Falling(usize, Option<Target>),
-    Equal(usize, Option<f64>),
+    FallingAmplitude(usize, Option<Target>),
+    EqualPeaks(usize, Option<f64>),
 }
 
-/// All of a request.
+/// A whole request.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct RandomRequest {
     contact: Value,
-    way: Way,
+    path: RandomPath,
     /// Radii in units of the contact radius, or a number of points.
     radii: Option<Result<Vec<f64>, usize>>,
     fields: Option<Vec<&'static str>>,
@@ -57,14 +57,14 @@ pub struct Scene {
 }
 
 /// Any magnitude that a double has.
-fn wild() -> impl Strategy<Value = f64> {
+fn any_magnitude() -> impl Strategy<Value = f64> {
     let special =
         select(vec![0.0, -0.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, -1.0, 1.0, f64::EPSILON, 1e300, 1e-300, -1e-300]);
     let power = (any::<bool>(), -300.0..300.0_f64);
     prop_oneof![special, power.prop_map(|(up, power)| 10_f64.powf(power).copysign(if up { 1.0 } else { -1.0 }))]
 }
 
-/// A quantity of a definition: mostly of ordinary size, now and then from one end of its range to the other, or none at all.
+/// A quantity of a definition: mostly of ordinary size, sometimes anywhere in its range, rarely outside of it.
 fn quantity(range: &'static Range, low: f64, high: f64) -> impl Strategy<Value = f64> {
     let (least, most) = (range.min.max(1e-300).log10(), range.max.log10());
     let ends = vec![range.min, range.max, range.min.next_up(), range.max.next_down(), range.max.next_up()];
@@ -72,7 +72,7 @@ fn quantity(range: &'static Range, low: f64, high: f64) -> impl Strategy<Value =
         30 => (low..high).prop_map(|power| 10_f64.powf(power)),
         8 => (least..most).prop_map(|power| 10_f64.powf(power)),
         1 => select(ends),
-        1 => wild(),
+        1 => any_magnitude(),
     ]
 }
 
@@ -136,7 +136,7 @@ fn profile() -> impl Strategy<Value = Value> {
 }
 
 fn contact() -> impl Strategy<Value = Value> {
-    let poisson = || prop_oneof![6 => 0.0..0.5_f64, 2 => -0.99..0.0_f64, 1 => Just(0.5), 1 => wild()];
+    let poisson = || prop_oneof![6 => 0.0..0.5_f64, 2 => -0.99..0.0_f64, 1 => Just(0.5), 1 => any_magnitude()];
     let body = || {
         (quantity(&range::YOUNGS_MODULUS, 6.0, 12.0), poisson())
             .prop_map(|(e, nu)| json!({"youngs_modulus": e, "poisson_ratio": nu}))
@@ -167,27 +167,27 @@ fn contact() -> impl Strategy<Value = Value> {
 fn target() -> impl Strategy<Value = Target> {
     let tiny = (any::<bool>(), -18.0..-1.0_f64);
     prop_oneof![
-        12 => (-1.2..1.2_f64).prop_map(Target::Units),
-        2 => select(vec![0.0, 1.0, -1.0, 0.5, 2.0, 1.0 - 1e-15, 1.0 - f64::EPSILON, 1.0 + 1e-12]).prop_map(Target::Units),
-        2 => tiny.prop_map(|(up, power)| Target::Units(10_f64.powf(power).copysign(if up { 1.0 } else { -1.0 }))),
-        1 => (1.0..1e6_f64).prop_map(Target::Units),
-        3 => (1..6_usize).prop_map(Target::Again),
-        2 => (1..6_usize).prop_map(Target::Mirror),
+        12 => (-1.2..1.2_f64).prop_map(Target::Scaled),
+        2 => select(vec![0.0, 1.0, -1.0, 0.5, 2.0, 1.0 - 1e-15, 1.0 - f64::EPSILON, 1.0 + 1e-12]).prop_map(Target::Scaled),
+        2 => tiny.prop_map(|(up, power)| Target::Scaled(10_f64.powf(power).copysign(if up { 1.0 } else { -1.0 }))),
+        1 => (1.0..1e6_f64).prop_map(Target::Scaled),
+        3 => (1..6_usize).prop_map(Target::Repeated),
+        2 => (1..6_usize).prop_map(Target::Negated),
         2 => (1..6_usize, -3..4_i64).prop_map(|(ago, off)| Target::Near(ago, off)),
-        1 => wild().prop_map(Target::Plain),
+        1 => any_magnitude().prop_map(Target::Absolute),
     ]
 }
 
 /// A normal target: mostly a load that presses.
 fn load() -> impl Strategy<Value = Target> {
     prop_oneof![
-        6 => (0.05..1.8_f64).prop_map(Target::Units),
+        6 => (0.05..1.8_f64).prop_map(Target::Scaled),
         3 => target(),
-        1 => select(vec![0.0, 1.0, 1e-9, 3.0]).prop_map(Target::Units),
+        1 => select(vec![0.0, 1.0, 1e-9, 3.0]).prop_map(Target::Scaled),
     ]
 }
 
-fn step() -> impl Strategy<Value = Step> {
+fn step() -> impl Strategy<Value = RandomMove> {
     let tangential = prop_oneof![
         5 => target().prop_map(|target| Some((false, target))),
         3 => target().prop_map(|target| Some((true, target))),
@@ -198,31 +198,31 @@ fn step() -> impl Strategy<Value = Step> {
         3 => load().prop_map(|target| Some((false, target))),
         2 => load().prop_map(|target| Some((true, target))),
     ];
-    (tangential, normal, prop::bool::weighted(0.25)).prop_map(|(tangential, normal, relative)| Step {
+    (tangential, normal, prop::bool::weighted(0.25)).prop_map(|(tangential, normal, relative)| RandomMove {
         tangential,
         normal,
         relative,
     })
 }
 
-fn way() -> impl Strategy<Value = Way> {
+fn path() -> impl Strategy<Value = RandomPath> {
     prop_oneof![
-        6 => prop::collection::vec(step(), 1..7).prop_map(Way::Moves),
-        4 => prop::collection::vec(target(), 1..12).prop_map(Way::Displacement),
-        2 => prop::collection::vec(target(), 1..8).prop_map(Way::Force),
-        2 => (1..30_usize, prop::option::of(target())).prop_map(|(count, size)| Way::Falling(count, size)),
-        1 => (1..20_usize, prop::option::of(prop_oneof![4 => 0.0..1.0_f64, 1 => wild()]))
-            .prop_map(|(count, cutoff)| Way::Equal(count, cutoff)),
+        6 => prop::collection::vec(step(), 1..7).prop_map(RandomPath::Moves),
+        4 => prop::collection::vec(target(), 1..12).prop_map(RandomPath::Displacement),
+        2 => prop::collection::vec(target(), 1..8).prop_map(RandomPath::Force),
+        2 => (1..30_usize, prop::option::of(target())).prop_map(|(count, size)| RandomPath::FallingAmplitude(count, size)),
+        1 => (1..20_usize, prop::option::of(prop_oneof![4 => 0.0..1.0_f64, 1 => any_magnitude()]))
+            .prop_map(|(count, cutoff)| RandomPath::EqualPeaks(count, cutoff)),
     ]
 }
 
-/// A scene.
-pub fn scene() -> impl Strategy<Value = Scene> {
+/// A random request.
+pub fn random_request() -> impl Strategy<Value = RandomRequest> {
     let radius = prop_oneof![
         6 => 0.0..1.2_f64,
         2 => select(vec![0.0, 1.0, 1.0 - f64::EPSILON, 1.0 + f64::EPSILON, 1e-12, 0.5]),
         1 => (-17.0..3.0_f64).prop_map(|power| 10_f64.powf(power)),
-        1 => wild(),
+        1 => any_magnitude(),
     ];
     let radii =
         prop::option::of(prop_oneof![prop::collection::vec(radius, 1..8).prop_map(Ok), (2..8_usize).prop_map(Err),]);
@@ -239,10 +239,10 @@ pub fn scene() -> impl Strategy<Value = Scene> {
         1 => Just(Some(1e-11)),
     ];
     let asked = (radii, fields, prop::bool::weighted(0.3), any::<bool>());
-    (contact(), way(), asked, solver, tolerance).prop_map(
-        |(contact, way, (radii, fields, residual, last), solver, tolerance)| Scene {
+    (contact(), path(), asked, solver, tolerance).prop_map(
+        |(contact, path, (radii, fields, residual, last), solver, tolerance)| RandomRequest {
             contact,
-            way,
+            path,
             radii,
             fields,
             residual,
@@ -260,24 +260,25 @@ fn units(contact: &Value) -> [f64; 5] {
     let figures =
         simulation.and_then(|simulation| simulate(&simulation, &Stop::default()).ok()).map(|reply| reply.contact);
     let units = figures.map_or([1e-6, 1.0, 1e-6, 1.0, 1e-4], |figures| {
-        let (slide, sink) = (figures.gross_slip_displacement, figures.indentation);
-        [slide, figures.gross_slip_force, sink, figures.normal_force, figures.contact_radius]
+        let tangential = [figures.gross_slip_displacement, figures.gross_slip_force];
+        let [displacement, force] = tangential;
+        [displacement, force, figures.indentation, figures.normal_force, figures.contact_radius]
     });
     units.map(|unit| if unit > 0.0 { unit } else { 1e-6 })
 }
 
-impl Scene {
-    /// The scene as a request.
-    pub fn write(&self) -> Value {
-        let [slide, push, sink, press, radius] = units(&self.contact);
+impl RandomRequest {
+    /// The request in SI units, as its JSON body.
+    pub fn to_json(&self) -> Value {
+        let [displacement, force, indentation, normal_force, radius] = units(&self.contact);
         let mut past: Vec<f64> = Vec::new();
         let mut number = |target: Target, unit: f64| {
             let ago = |count: usize, past: &[f64]| past.len().checked_sub(count).map_or(unit, |index| past[index]);
             let value = match target {
-                Target::Units(units) => units * unit,
-                Target::Plain(value) => value,
-                Target::Again(count) => ago(count, &past),
-                Target::Mirror(count) => -ago(count, &past),
+                Target::Scaled(units) => units * unit,
+                Target::Absolute(value) => value,
+                Target::Repeated(count) => ago(count, &past),
+                Target::Negated(count) => -ago(count, &past),
                 Target::Near(count, off) => {
                     let value = ago(count, &past);
                     (0..off.abs()).fold(value, |value, _| if off > 0 { value.next_up() } else { value.next_down() })
@@ -287,37 +288,37 @@ impl Scene {
             past.push(value);
             value
         };
-        let path = match &self.way {
-            Way::Displacement(targets) => {
-                json!({"displacement": targets.iter().map(|target| number(*target, slide)).collect::<Vec<_>>()})
+        let path = match &self.path {
+            RandomPath::Displacement(targets) => {
+                json!({"displacement": targets.iter().map(|target| number(*target, displacement)).collect::<Vec<_>>()})
             }
-            Way::Force(targets) => {
-                json!({"force": targets.iter().map(|target| number(*target, push)).collect::<Vec<_>>()})
+            RandomPath::Force(targets) => {
+                json!({"force": targets.iter().map(|target| number(*target, force)).collect::<Vec<_>>()})
             }
-            Way::Falling(count, size) => {
+            RandomPath::FallingAmplitude(count, size) => {
                 let mut fall = json!({"reversals": count});
                 if let Some(size) = size {
-                    fall["amplitude"] = json!(number(*size, slide));
+                    fall["amplitude"] = json!(number(*size, displacement));
                 }
                 json!({"falling_amplitude": fall})
             }
-            Way::Equal(count, cutoff) => {
+            RandomPath::EqualPeaks(count, cutoff) => {
                 let mut equal = json!({"reversals": count});
                 if let Some(part) = cutoff {
                     equal["cutoff_radius"] = json!(part * radius);
                 }
                 json!({"equal_peaks": equal})
             }
-            Way::Moves(steps) => {
+            RandomPath::Moves(steps) => {
                 let moves = steps.iter().map(|step| {
                     let mut written = Map::new();
                     let pairs = [
-                        (step.tangential, ["displacement", "force"], [slide, push]),
-                        (step.normal, ["indentation", "normal_force"], [sink, press]),
+                        (step.tangential, ["displacement", "force"], [displacement, force]),
+                        (step.normal, ["indentation", "normal_force"], [indentation, normal_force]),
                     ];
                     for (target, names, units) in pairs {
-                        if let Some((force, target)) = target {
-                            let index = usize::from(force);
+                        if let Some((is_force, target)) = target {
+                            let index = usize::from(is_force);
                             written.insert(names[index].to_owned(), json!(number(target, units[index])));
                         }
                     }

@@ -1,4 +1,4 @@
-//! A real browser: Debian's Chromium without a window, driven by its WebDriver program.
+//! Chromium without a window, driven over WebDriver.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 /// The variable that names a folder for screenshots.
 const SCREENSHOTS: &str = "PAGE_SCREENSHOTS";
-/// How long something may take to appear; against hanging alone.
+/// How long to wait for something to appear: only a hang takes longer.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A browser; it ends when it is dropped.
@@ -25,8 +25,8 @@ pub struct Browser {
     http: reqwest::Client,
 }
 
-/// A driver and its port. It looks for one that is free on IPv6 and then takes the same on IPv4, where somebody else may be; it
-/// ends then, and another one is started.
+/// A driver and its port. It looks for a free port on IPv6 and then takes the same on IPv4, where it may be in use; then
+/// the driver ends, and another one is started.
 fn driver() -> (Child, String) {
     let started = (0..10).find_map(|_| {
         let mut driver = Command::new("chromedriver")
@@ -67,7 +67,7 @@ impl Browser {
         browser
     }
 
-    /// Another size of the window, and another scheme of colours.
+    /// Sets the size of the window and the colour scheme.
     pub async fn look(&self, width: u32, height: u32, dark: bool) {
         let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
         self.command("Emulation.setDeviceMetricsOverride", &size).await;
@@ -93,8 +93,8 @@ impl Browser {
         self.post("se/log", &json!({"type": kind})).await.as_array().unwrap().clone()
     }
 
-    /// Nothing was complained about since the last call but what holds one of the `known` words, and nobody was asked but the
-    /// host of `base`.
+    /// Asserts that since the last call the browser logged nothing but lines with one of the `known` words, and sent requests to
+    /// the host of `base` alone.
     pub async fn stayed_quiet_and_at(&self, base: &str, known: &[&str]) {
         for complaint in self.log("browser").await {
             let text = complaint["message"].as_str().unwrap();
@@ -182,7 +182,7 @@ impl Browser {
         self.page.perform_actions(mouse.then(PointerAction::Up { button: MOUSE_BUTTON_LEFT })).await.unwrap();
     }
 
-    /// Ends it.
+    /// Ends the browser.
     pub async fn close(self) {
         self.page.clone().close().await.unwrap();
     }
@@ -195,7 +195,7 @@ impl Browser {
         self.page.execute(script, vec![json!(label), json!(value)]).await.unwrap();
     }
 
-    /// Clicks on an element, wherever on the page it is.
+    /// Scrolls to an element and clicks on it.
     pub async fn click(&self, css: &str) {
         self.find(css).await;
         self.value(&format!("document.querySelector({css:?}).click() ?? null")).await;
@@ -209,7 +209,7 @@ impl Browser {
         focused.send_keys(keys).await.unwrap();
     }
 
-    /// Writes a picture of the whole page to the folder that is named by [`SCREENSHOTS`], if one is.
+    /// Saves a screenshot of the whole page in the folder that [`SCREENSHOTS`] names, if it is set.
     pub async fn picture(&self, name: &str) {
         let Some(folder) = std::env::var_os(SCREENSHOTS) else { return };
         let picture = self.page.screenshot().await.unwrap();

@@ -31,7 +31,7 @@ async fn moved(server: &Binary, session: &NewSession, parts: &[f64]) {
     }
 }
 
-/// A number of one to a thousand with four digits, without noughts at its end.
+/// A number of one to a thousand with four digits, without trailing zeros.
 fn four(value: f64) -> String {
     let places = 3 - value.log10().floor() as usize;
     format!("{value:.places$}").parse::<f64>().unwrap().to_string()
@@ -43,7 +43,7 @@ fn hertz(force: f64, radius: f64, modulus: f64) -> String {
 }
 
 const E_STAR: f64 = 2.1e11 / (1.0 - 0.3 * 0.3);
-/// The way as it is drawn: `[x, y]` in pixels.
+/// The drawn path of the loop: `[x, y]` in pixels.
 const WAY: &str = "document.querySelector('#plot-loop .line.past').getAttribute('d').slice(1).split('L').map((p) => p.split(',').map(Number))";
 
 #[tokio::test]
@@ -54,7 +54,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     browser.until("document.body.innerText.includes('No contact yet')").await;
     browser.click("#new").await;
 
-    // What follows is shown as one types, and what is wrong stands beside its field.
+    // Figures are shown as one types, and a fault is shown at its field.
     let figures = "document.querySelector('.derived').innerText";
     browser.until(&format!("{figures}.includes({:?})", hertz(10.0, 0.01, E_STAR))).await;
     let radius = "form .card:first-child input";
@@ -70,10 +70,10 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     browser.write("input[maxlength]", "Steel ball").await;
     browser.click("#create").await;
     browser.until("document.querySelector('.badge.on') !== null").await;
-    // The browser itself says that a reply was a refusal.
+    // The browser logs that a reply was an error.
     browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
 
-    // Pulled to one side and back, it comes back another way.
+    // Pulled to one side and back, the force returns along another path.
     browser.drag("#slide-displacement", 0.5, 0.8).await;
     browser.until(&format!("{WAY}.length > 5")).await;
     browser.drag("#slide-displacement", 0.8, 0.35).await;
@@ -85,7 +85,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     );
     browser.until(&turned).await;
     let id = server.client.contacts(None, None).await.unwrap().items[0].id;
-    // The last places of the slider may still be on their way.
+    // The last moves of the slider may still be under way.
     let agree = async {
         loop {
             let force = server.client.contact(id).await.unwrap().state.force;
@@ -98,7 +98,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     timeout(PATIENCE, agree).await.expect("the page shows what the server has");
     browser.picture("turned").await;
 
-    // The past is still there after a reload.
+    // The history is still there after a reload.
     let moves = server.client.contact(id).await.unwrap().sequence;
     browser.page.refresh().await.unwrap();
     browser.until("document.querySelector('.badge.on') !== null").await;
@@ -106,7 +106,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     browser.until(&format!("{WAY}.length > {moves}")).await;
     assert_eq!(browser.value("document.querySelector('h1').innerText").await, "Steel ball");
 
-    // What somebody else does is seen at once.
+    // Moves by another client are shown at once.
     let step = Move { normal_force: Some(15.0), displacement: Some(5e-8), ..Move::default() };
     server.client.apply(id, &MoveRequest::from(step), &Options::default()).await.unwrap();
     browser.until("document.querySelector('#box-displacement').value === '50'").await;
@@ -194,7 +194,7 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
 }
 
 #[tokio::test]
-async fn a_guided_run_takes_the_stress_out_and_tells_how_much() {
+async fn a_protocol_run_reduces_the_stress_and_shows_how_much() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;
     moved(&server, &session, &[1.0, 0.0]).await;
@@ -202,13 +202,13 @@ async fn a_guided_run_takes_the_stress_out_and_tells_how_much() {
     browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
     browser.write("#reversals", "4").await;
     browser.click("#run").await;
-    let told = "document.querySelector('#run-told').innerText";
-    browser.until(&format!("{told}.startsWith('Move')")).await;
+    let status = "document.querySelector('#run-status').innerText";
+    browser.until(&format!("{status}.startsWith('Move')")).await;
     // One reversal leaves sqrt(1/2) of mu p_max, and more of them (2 - sqrt(3/2)) / sqrt(N_R).
     let left = 100.0 * (2.0 - 1.5_f64.sqrt()) / 2.0;
     let before = 100.0 * 0.5_f64.sqrt();
-    browser.until(&format!("{told}.includes('Now')")).await;
-    let said = browser.value(told).await;
+    browser.until(&format!("{status}.includes('Now')")).await;
+    let said = browser.value(status).await;
     let said = said.as_str().unwrap();
     assert!(said.contains(&format!("({before:.1} %")) && said.contains(&format!("({left:.1} %")), "{said}");
     let now = server.client.contact(session.id).await.unwrap();
@@ -228,7 +228,7 @@ async fn a_guided_run_takes_the_stress_out_and_tells_how_much() {
 async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;
-    // A history that no law starts from.
+    // A history that no closed-form protocol starts from.
     moved(&server, &session, &[0.9, -0.3, 0.5]).await;
     let relax = format!("{}/contacts/{}/relax", server.address, session.id);
     let dry = reqwest::Client::new().post(relax).json(&json!({"reversals": 3, "dry_run": true})).send().await.unwrap();
@@ -239,9 +239,9 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     browser.value("document.querySelector('#protocol').value = 'relax'").await;
     browser.write("#reversals", "3").await;
     browser.click("#run").await;
-    let told = "document.querySelector('#run-told').innerText";
-    browser.until(&format!("{told}.includes('Now')")).await;
-    let said = browser.value(told).await;
+    let status = "document.querySelector('#run-status').innerText";
+    browser.until(&format!("{status}.includes('Now')")).await;
+    let said = browser.value(status).await;
     let now = said.as_str().unwrap().split("Now: up to").nth(1).unwrap();
     let share = 100.0 * promised / (0.3 * session.contact.max_pressure.unwrap());
     assert!(now.contains(&format!("({share:.1} % of")), "{said} instead of {share}");
@@ -255,7 +255,7 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     browser.close().await;
 }
 
-/// The file that the page saves, once it is whole.
+/// The file that the page saves, once it is complete.
 async fn saved(path: &Path) -> Vec<u8> {
     for _ in 0..600 {
         if let Ok(bytes) = std::fs::read(path)
@@ -278,7 +278,7 @@ async fn what_is_on_screen_can_be_taken_away() {
     browser.save_in(folder.path()).await;
     browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
     browser.until("document.querySelectorAll('#plot-loop .line').length === 2").await;
-    // A part of a plot is shown by itself, and all of it again.
+    // Zoom to a part of a plot, and back to all of it.
     let ticks = "[...document.querySelectorAll('#plot-loop .grid text')].map((text) => text.textContent).join()";
     let all = browser.value(ticks).await;
     browser.drag("#plot-loop svg", 0.6, 0.7).await;

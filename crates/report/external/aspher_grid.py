@@ -1,7 +1,7 @@
 """ASPHER (https://pypi.org/project/aspher), a boundary-element package, on the scenes of a parabola at constant load.
 
 The contact is meshed with N x N squares over 2.4 contact radii, pressed with the force of Hertz, and moved sideways by the
-displacements of the scene. Lengths are in contact radii and stresses in E*. It talks as numpy_springs.py does.
+displacements of the scene. Lengths are in contact radii and stresses in E*. It reads and replies as numpy_springs.py does.
 """
 
 import json
@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 
-# Grids along one side, and how many moves are not too many for it.
+# Squares along one side, and the most moves that it can take in a reasonable time.
 GRIDS = [32, 64, 128, 256]
 MOVES = 21
 SIDE = 2.4
@@ -48,9 +48,9 @@ def main():
     scene = json.loads(sys.stdin.readline())
     refused, version, aspher = None, None, None
     if scene["profile"] != "parabola":
-        refused = "the script knows the parabola alone"
+        refused = "the script supports the parabola alone"
     elif any(d != scene["indentation"] for d, _ in scene["moves"]):
-        refused = "the script knows a constant load alone"
+        refused = "the script supports a constant load alone"
     elif len(scene["moves"]) > MOVES:
         refused = f"more than {MOVES} moves would take hours"
     else:

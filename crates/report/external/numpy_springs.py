@@ -1,8 +1,8 @@
-"""The spring foundation of Kraft & Pohrt (2016) as one would write it down in NumPy.
+"""The spring foundation of Kraft & Pohrt (2016) in plain NumPy.
 
 A row of springs over the contact, clamped to mu times the normal load of each after every move; the shear stress by
-differences between neighbours. It reads a scene as one line of JSON, then {"count": N} line by line, and answers each with
-forces, stresses, and the seconds of processor time that they took. `stickslip report --peers PYTHON` talks to it.
+differences between neighbours. It reads a scene as one line of JSON, then {"count": N} line by line, and replies to each with
+forces, stresses, and the seconds of processor time that they took. `stickslip report --peers PYTHON` runs it.
 """
 
 import json
@@ -13,7 +13,7 @@ import numpy as np
 
 
 def plane_profile(scene):
-    """The one-dimensional profile g(x) and the radius that belongs to an indentation."""
+    """The one-dimensional profile g(x) and its inverse: the contact radius of an indentation."""
     kind, radius = scene["profile"], scene["radius"]
     if kind == "parabola":
         return lambda x: x**2 / radius, lambda d: np.sqrt(radius * d)
@@ -68,7 +68,7 @@ def main():
     g, inverse = plane_profile(scene)
     greeting = {"version": f"NumPy {np.__version__} on Python {sys.version.split()[0]}"}
     if g is None:
-        greeting["refused"] = "the script knows no tables"
+        greeting["refused"] = "the script does not support tables"
     print(json.dumps(greeting), flush=True)
     for line in sys.stdin:
         begin = time.process_time()

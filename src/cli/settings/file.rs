@@ -1,4 +1,4 @@
-//! The file with settings: TOML, a key for each by the name of its flag.
+//! The configuration file: TOML, with the names of the flags as keys.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,48 +6,48 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, Command};
 use toml::{Table, Value};
 
-use super::refusal::{Refusal, unknown};
-use super::{everywhere, shown};
+use super::error::{SettingsError, unknown_setting};
+use super::{all_settings, masked};
 
-/// What a file says.
+/// The settings of a file.
 pub struct ConfigValues {
     /// The file.
     pub path: PathBuf,
-    // As they would stand on the command line.
+    // As on the command line.
     values: BTreeMap<String, String>,
 }
 
 impl ConfigValues {
-    /// Reads a file. Whether a value suits its key is seen later; here every key must be known, and have one value.
-    pub fn read(path: &Path, command: &Command) -> Result<ConfigValues, Refusal> {
+    /// Reads a file. Every key must be known and have one value; the parser of the command line validates the values later.
+    pub fn read(path: &Path, command: &Command) -> Result<ConfigValues, SettingsError> {
         let place = path.display();
         let text = std::fs::read_to_string(path)
-            .map_err(|error| Refusal::Wrong(format!("cannot read the configuration file {place}: {error}")))?;
+            .map_err(|error| SettingsError::Invalid(format!("cannot read the configuration file {place}: {error}")))?;
         let table: Table = text.parse().map_err(|error: toml::de::Error| {
             let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
             let line = before.matches('\n').count() + 1;
-            Refusal::Wrong(format!("{place}, line {line}: {}", shown(error.message())))
+            SettingsError::Invalid(format!("{place}, line {line}: {}", masked(error.message())))
         })?;
-        let known = || everywhere(command).filter(|arg| arg.get_id() != "config");
+        let known = || all_settings(command).filter(|arg| arg.get_id() != "config");
         let mut values = BTreeMap::new();
         for (key, value) in &table {
-            let written = || format!("{place}: {} = {}", shown(key), shown(&value.to_string()));
+            let written = || format!("{place}: {} = {}", masked(key), masked(&value.to_string()));
             let Some(arg) = known().find(|arg| arg.get_long() == Some(key)) else {
-                return Err(unknown(&written(), known().filter_map(Arg::get_long)));
+                return Err(unknown_setting(&written(), known().filter_map(Arg::get_long)));
             };
-            let value = plain(value, arg).map_err(|why| Refusal::Wrong(format!("{}: {why}", written())))?;
+            let value = plain(value, arg).map_err(|why| SettingsError::Invalid(format!("{}: {why}", written())))?;
             values.insert(key.clone(), value);
         }
         Ok(ConfigValues { path: path.to_owned(), values })
     }
 
-    /// What stands under a key.
+    /// The value of a key.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.values.get(key).map(String::as_str)
     }
 }
 
-/// A value as it would stand on the command line.
+/// A value as on the command line.
 fn plain(value: &Value, arg: &Arg) -> Result<String, String> {
     match (value, arg.get_value_delimiter()) {
         (Value::String(text), _) => Ok(text.clone()),

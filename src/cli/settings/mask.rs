@@ -1,23 +1,23 @@
-//! Values as they may be shown: in one line, and without secrets.
+//! Values as they are printed: in one line, without secrets.
 
-/// What stands in the place of a secret.
+/// The replacement of a secret.
 const MASK: &str = "***";
-/// Characters of a value that are shown.
+/// Most characters of a value that are printed.
 const LONGEST: usize = 200;
-/// What a key for the service begins with, and the least that follows.
+/// The prefix of an API key, and the fewest characters after it.
 const KEY: (&str, usize) = ("stickslip_", 32);
-/// Parameters of a URL whose values are no secrets.
-const HARMLESS: [&str; 6] =
+/// Parameters of a URL whose values are printed.
+const PUBLIC_PARAMETERS: [&str; 6] =
     ["sslmode", "sslrootcert", "application_name", "connect_timeout", "target_session_attrs", "options"];
 
-/// A value without the passwords and keys in it. Rather too much is hidden than too little.
-pub fn shown(value: &str) -> String {
+/// A value without the passwords and keys in it. In doubt, a part is masked.
+pub fn masked(value: &str) -> String {
     let masked = without_hashes(&without_keys(&without_parameters(&without_password(value))));
     let short = masked.chars().take(LONGEST);
     short.map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
-/// `scheme://user:password@host`: up to the last @, as people forget to encode theirs.
+/// `scheme://user:password@host`: up to the last @, because passwords with an unescaped @ are common.
 fn without_password(value: &str) -> String {
     let Some((before, host)) = value.rsplit_once('@') else {
         return value.to_owned();
@@ -29,13 +29,13 @@ fn without_password(value: &str) -> String {
     }
 }
 
-/// `scheme://…?name=value`: all values that are not known to be harmless.
+/// `scheme://…?name=value`: masks all values but those of public parameters.
 fn without_parameters(value: &str) -> String {
     let Some((before, parameters)) = value.split_once('?').filter(|(before, _)| before.contains("://")) else {
         return value.to_owned();
     };
     let parameters = parameters.split('&').map(|parameter| match parameter.split_once('=') {
-        Some((name, _)) if !HARMLESS.contains(&name) => format!("{name}={MASK}"),
+        Some((name, _)) if !PUBLIC_PARAMETERS.contains(&name) => format!("{name}={MASK}"),
         _ => parameter.to_owned(),
     });
     format!("{before}?{}", parameters.collect::<Vec<_>>().join("&"))
@@ -54,7 +54,7 @@ fn without_keys(value: &str) -> String {
     masked
 }
 
-/// A hash betrays nothing, but need not be shown either.
+/// A hash is no secret, but nobody needs to see it.
 fn without_hashes(value: &str) -> String {
     let mut parts = value.split("sha256:");
     let mut masked = parts.next().unwrap_or_default().to_owned();
@@ -68,10 +68,10 @@ fn without_hashes(value: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::shown;
+    use super::masked;
 
     #[test]
-    fn secrets_are_hidden_and_the_rest_is_not() {
+    fn secrets_are_masked_and_the_rest_is_not() {
         let key = format!("stickslip_{}", "0a".repeat(32));
         for (value, expected) in [
             ("sqlite:/data/a.db", "sqlite:/data/a.db"),
@@ -85,7 +85,7 @@ mod tests {
             ("two\nlines", "two lines"),
             (&format!("a {key} b"), "a stickslip_*** b"),
         ] {
-            assert_eq!(shown(value), expected);
+            assert_eq!(masked(value), expected);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The settings in force, printed as a file that could be given back, with the source of each beside it.
+//! Prints the settings as a configuration file, with the source of each.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -6,12 +6,12 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction};
 use toml::Value;
 
-use super::{Settings, known, shown};
+use super::{Settings, masked, settings_of};
 
 impl Display for Settings {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         write!(out, "# flag before environment before file before default")?;
-        for arg in known(&self.command).filter(|arg| arg.get_id() != "config") {
+        for arg in settings_of(&self.command).filter(|arg| arg.get_id() != "config") {
             let key = arg.get_long().unwrap_or_default();
             match self.value(arg) {
                 Some(value) => write!(out, "\n{key} = {value} # {}", self.source(arg))?,
@@ -23,9 +23,9 @@ impl Display for Settings {
 }
 
 impl Settings {
-    /// The value in force as TOML, masked.
+    /// The value as TOML, masked.
     fn value(&self, arg: &Arg) -> Option<String> {
-        let mut values = self.matches.get_raw(arg.get_id().as_str())?.map(|raw| shown(&raw.to_string_lossy()));
+        let mut values = self.matches.get_raw(arg.get_id().as_str())?.map(|raw| masked(&raw.to_string_lossy()));
         if arg.get_value_delimiter().is_some() {
             return Some(Value::Array(values.map(Value::String).collect()).to_string());
         }
@@ -42,7 +42,7 @@ impl Settings {
                 format!("environment {}", arg.get_env().unwrap_or_default().to_string_lossy())
             }
             (_, Some(file)) if arg.get_long().is_some_and(|key| file.get(key).is_some()) => {
-                format!("file {}", shown(&file.path.to_string_lossy()))
+                format!("file {}", masked(&file.path.to_string_lossy()))
             }
             _ => "default".to_owned(),
         }

@@ -1,28 +1,29 @@
 //! Speed against error: what each solver costs on a few scenes, and how wrong it is.
 //!
-//! Errors are against a reference of its own (`reference`). Times are of the processor, and every run of a solver has one of the exact
-//! one just before it, so that the ratio of the two holds even where the machine is busy with other things (`timing`). Programs that others use may
-//! run beside ours (`external_solver`).
+//! Errors are measured against an independent solver in double-double arithmetic (`reference`). Times are processor times,
+//! and the exact solver runs just before each run of another, so that the ratio of the two holds on a busy machine too
+//! (`timing`). Solvers by others can be measured as well (`external_solver`).
 
 mod external_solver;
-mod page;
+mod output;
 mod reference;
 mod scenes;
 mod shape;
 mod timing;
 
+use std::collections::HashMap;
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use external_solver::Peer;
-use reference::Truth;
+use external_solver::{ExternalSolver, SCRIPTS};
+use reference::Reference;
 use scenes::{E_STAR, FRICTION, G_STAR, Scene};
-use timing::{Contest, Timed};
+use timing::{SceneBenchmark, SolverRun};
 
-pub use page::write;
+pub use output::write;
 pub use scenes::NAMES;
 
 /// Radii at which stresses are compared, beside the kinks.
@@ -34,15 +35,15 @@ pub struct Options {
     /// Names out of [`NAMES`].
     pub scenes: Vec<String>,
     /// The largest number of springs.
-    pub largest: usize,
-    /// How long the repetitions of one solver on one scene go on once there are three.
-    pub patience: Duration,
-    /// How long all of it may take, or nearly; solvers that would take longer are left out, and named.
+    pub max_springs: usize,
+    /// How long one solver on one scene is repeated once there are three runs.
+    pub repetition_time: Duration,
+    /// About how long all of it may take; solvers that would take longer are listed as missing.
     pub budget: Option<Duration>,
     /// The version of the compiler that built this, for the description of the machine.
     pub compiler: &'static str,
-    /// The Python that runs the peers, if they are to run.
-    pub peers: Option<PathBuf>,
+    /// The Python that runs the external solvers, if they are wanted.
+    pub python: Option<PathBuf>,
 }
 
 /// One solver on one scene.
@@ -50,9 +51,9 @@ pub struct Options {
 pub struct Row {
     /// The scene.
     pub scene: String,
-    /// `exact`, `springs_arcosh`, `springs_level`, `recipe`, `reference`, or the name of a peer.
+    /// `exact`, `springs_arcosh`, `springs_level`, `recipe`, `reference`, or the name of an external solver.
     pub solver: String,
-    /// Springs, or the points of a peer's grid along one side, where there are any.
+    /// Springs, or points of the grid along one side, where there are any.
     pub springs: Option<usize>,
     /// Largest error of the force over the path, over the largest mu F_N of it.
     pub force_error: f64,
@@ -62,7 +63,7 @@ pub struct Row {
     pub kink_error: f64,
     /// Median of the processor times, s.
     pub median: f64,
-    /// Quartiles and smallest of the times, s.
+    /// Lower quartile, s.
     pub lower: f64,
     /// Upper quartile, s.
     pub upper: f64,
@@ -78,7 +79,7 @@ pub struct Row {
     pub ratio_upper: f64,
 }
 
-/// What was not measured, and why.
+/// A solver that was not measured, and why.
 #[derive(Clone, Debug, Serialize)]
 pub struct Missing {
     /// The scene.
@@ -91,86 +92,102 @@ pub struct Missing {
 
 /// All that was measured.
 #[derive(Clone, Debug, Serialize)]
-pub struct Measured {
+pub struct Report {
     /// Processor, cores, system, compiler and optimisation.
     pub machine: String,
-    /// The peers with their versions.
-    pub peers: Vec<String>,
+    /// The external solvers with their versions.
+    #[serde(rename = "peers")]
+    pub external_solvers: Vec<String>,
     /// How long it took, s.
     pub seconds: f64,
     /// One row a solver and scene.
     pub rows: Vec<Row>,
-    /// What was left out.
+    /// What was not measured.
     pub missing: Vec<Missing>,
 }
 
 /// Measures every solver on the scenes.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidInput`] for a scene that does not exist; whatever the mechanics refuses as other.
-pub fn measure(options: &Options) -> io::Result<Measured> {
+/// [`io::ErrorKind::InvalidInput`] for a scene that does not exist; an error of the mechanics as [`io::ErrorKind::Other`].
+pub fn measure(options: &Options) -> io::Result<Report> {
     let begin = Instant::now();
-    let mut measured = Measured {
-        machine: page::machine(options.compiler),
-        peers: Vec::new(),
+    let mut report = Report {
+        machine: output::describe_machine(options.compiler),
+        external_solvers: Vec::new(),
         seconds: 0.0,
         rows: Vec::new(),
         missing: Vec::new(),
     };
     for (index, name) in options.scenes.iter().enumerate() {
-        let unknown =
-            || io::Error::new(io::ErrorKind::InvalidInput, format!("no scene `{name}`: {}", NAMES.join(", ")));
-        let scene = Scene::of(name).ok_or_else(unknown)?.map_err(io::Error::other)?;
-        let left = options.budget.map(|budget| budget.saturating_sub(begin.elapsed()));
-        let share = left.map(|left| left / (options.scenes.len() - index) as u32);
-        on(name, &scene, options, share, &mut measured)?;
+        let unknown = || {
+            io::Error::new(
+                io::ErrorKind::InvalidInput,
+                format!("there is no scene `{name}`; the scenes are {}", NAMES.join(", ")),
+            )
+        };
+        let scene = Scene::by_name(name).ok_or_else(unknown)?.map_err(io::Error::other)?;
+        let time_left = options.budget.map(|budget| budget.saturating_sub(begin.elapsed()));
+        let share = time_left.map(|left| left / (options.scenes.len() - index) as u32);
+        measure_scene(name, &scene, options, share, &mut report)?;
     }
-    measured.seconds = begin.elapsed().as_secs_f64();
-    Ok(measured)
+    report.seconds = begin.elapsed().as_secs_f64();
+    Ok(report)
 }
 
-fn on(
+fn measure_scene(
     name: &str,
     scene: &Scene,
     options: &Options,
     share: Option<Duration>,
-    measured: &mut Measured,
+    report: &mut Report,
 ) -> io::Result<()> {
     let (begin, started) = (Instant::now(), timing::processor_time());
-    let mut truth = Truth::new(&scene.shape, E_STAR, G_STAR, FRICTION, Scene::depth());
-    let mut load = truth.normal_force();
+    let mut reference = Reference::new(&scene.shape, E_STAR, G_STAR, FRICTION, Scene::depth());
+    let mut load = reference.normal_force();
     let forces: Vec<f64> = scene
         .path
         .iter()
         .map(|&(depth, displacement)| {
-            truth.advance(depth, displacement);
-            load = load.max(truth.normal_force());
-            truth.force()
+            reference.advance(depth, displacement);
+            load = load.max(reference.normal_force());
+            reference.force()
         })
         .collect();
-    let edge = truth.contact_radius();
+    let edge = reference.contact_radius();
     let mut next = scenes::random(11);
     let mut radii: Vec<f64> = (0..RADII).map(|_| edge * next()).collect();
-    radii.extend(truth.kinks());
-    let shears: Vec<f64> = radii.iter().map(|&radius| truth.shear(radius)).collect();
+    radii.extend(reference.kinks());
+    let shears: Vec<f64> = radii.iter().map(|&radius| reference.shear(radius)).collect();
     let seconds = timing::processor_time() - started;
-    let mean = truth.normal_force() / (std::f64::consts::PI * edge * edge);
-    let units = (FRICTION * load, FRICTION * truth.centre_pressure().unwrap_or(mean));
-    let truth = Timed { forces, shears, seconds };
-    let mut contest = Contest::new(name, scene, &radii, &truth, units, options.patience, share, begin);
-    contest.run_ours(options.largest)?;
-    for script in external_solver::SCRIPTS.iter().filter(|_| options.peers.is_some()) {
-        let Some(python) = &options.peers else { continue };
-        match Peer::start(python, script, &scene.told(&radii))? {
-            Ok(peer) => {
-                if !measured.peers.contains(&peer.version) {
-                    measured.peers.push(peer.version.clone());
+    let mean_pressure = reference.normal_force() / (std::f64::consts::PI * edge * edge);
+    let units = (FRICTION * load, FRICTION * reference.centre_pressure().unwrap_or(mean_pressure));
+    let reference = SolverRun { forces, shears, seconds };
+    let mut benchmark = SceneBenchmark {
+        name,
+        scene,
+        radii: &radii,
+        reference: &reference,
+        units,
+        repetition_time: options.repetition_time,
+        deadline: share.map(|share| begin + share),
+        rows: Vec::new(),
+        missing: Vec::new(),
+        last_seconds: HashMap::new(),
+    };
+    benchmark.run_own_solvers(options.max_springs)?;
+    for (python, script) in options.python.iter().flat_map(|python| SCRIPTS.iter().map(move |script| (python, script)))
+    {
+        match ExternalSolver::start(python, script, &scene.to_json(&radii))? {
+            Ok(solver) => {
+                if !report.external_solvers.contains(&solver.version) {
+                    report.external_solvers.push(solver.version.clone());
                 }
-                contest.run_peer(peer, options.largest);
+                benchmark.run_external(solver, options.max_springs);
             }
-            Err(reason) => contest.leave_out(script.0, reason),
+            Err(reason) => benchmark.skip(script.0, reason),
         }
     }
-    contest.end(measured);
+    benchmark.finish(report);
     Ok(())
 }

@@ -1,10 +1,10 @@
-//! The zero of all errors: the straight pieces of the displacement, followed by brute force in twice the digits.
+//! The reference that errors are measured against: the displacement as straight pieces, in double-double arithmetic.
 //!
-//! At a level y = g(x) the row carries w(y) = u_x/m, and a straight move to (d, W) makes of it the value w + dW, held within
-//! +-(d - y). Here that rule is applied to every piece at every move: all corners are moved, whoever is beyond the bound is put
-//! on it, and a corner is added where a piece crosses it. No piece is left out because theory says that it rides along, nothing
-//! is stored relative to anything, no sum is carried on from the move before. Force and stress come from closed forms of
-//! [`Shape`], in 31 digits, at the very radii asked for.
+//! At a level y = g(x) the foundation has the displacement w(y) = u_x/m. A straight move that adds dW to the rigid
+//! displacement and ends at the indentation d changes it to w + dW, clamped to +-(d - y). Here that rule is applied to every
+//! piece at every move: all corners are shifted, those beyond the bound are moved onto it, and a corner is added where a
+//! piece crosses it. Nothing is shared with the engine but the arithmetic: no piece is skipped because theory says that it sticks, nothing is stored relative to anything, no sum is
+//! kept from one move to the next. Force and stress come from closed forms of [`Shape`], in 31 digits.
 
 use stickslip_mechanics::DoubleDouble;
 
@@ -15,13 +15,13 @@ use super::shape::{Shape, pi};
 struct Corner {
     level: DoubleDouble,
     radius: DoubleDouble,
-    carried: DoubleDouble,
+    w: DoubleDouble,
     /// +1 or -1 on the bound of that sign, 0 within.
     bound: i8,
 }
 
-/// A contact of the reference.
-pub(super) struct Truth<'a> {
+/// The contact of a scene.
+pub(super) struct Reference<'a> {
     shape: &'a Shape,
     e_star: DoubleDouble,
     g_star: DoubleDouble,
@@ -33,13 +33,13 @@ pub(super) struct Truth<'a> {
     corners: Vec<Corner>,
 }
 
-impl<'a> Truth<'a> {
-    /// A virgin contact at an indentation, m, above nought.
-    pub(super) fn new(shape: &'a Shape, e_star: f64, g_star: f64, friction: f64, indentation: f64) -> Truth<'a> {
+impl<'a> Reference<'a> {
+    /// A virgin contact at an indentation, m, above zero.
+    pub(super) fn new(shape: &'a Shape, e_star: f64, g_star: f64, friction: f64, indentation: f64) -> Reference<'a> {
         let (e_star, g_star, indentation) =
             (DoubleDouble::from(e_star), DoubleDouble::from(g_star), DoubleDouble::from(indentation));
-        let corner = |level| Corner { level, radius: shape.radius(level), carried: DoubleDouble::ZERO, bound: 0 };
-        Truth {
+        let corner = |level| Corner { level, radius: shape.radius(level), w: DoubleDouble::ZERO, bound: 0 };
+        Reference {
             scale: (e_star * friction).over(g_star),
             corners: vec![corner(DoubleDouble::ZERO), corner(indentation)],
             displacement: DoubleDouble::ZERO,
@@ -50,31 +50,30 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Moves straight to an indentation, m, above nought and a displacement, m.
+    /// Moves straight to an indentation, m, above zero and a displacement, m.
     pub(super) fn advance(&mut self, indentation: f64, displacement: f64) {
         let (indentation, displacement) = (DoubleDouble::from(indentation), DoubleDouble::from(displacement));
-        let moved = (displacement - self.displacement).over(self.scale);
-        let corner = |level| Corner { level, radius: self.shape.radius(level), carried: DoubleDouble::ZERO, bound: 0 };
-        let mut trial: Vec<Corner> =
-            self.corners.iter().map(|at| Corner { carried: at.carried + moved, ..*at }).collect();
+        let shift = (displacement - self.displacement).over(self.scale);
+        let corner = |level| Corner { level, radius: self.shape.radius(level), w: DoubleDouble::ZERO, bound: 0 };
+        let mut trial: Vec<Corner> = self.corners.iter().map(|at| Corner { w: at.w + shift, ..*at }).collect();
         if indentation > self.indentation {
-            // What is touched on the way has moved by less the later it was touched, at the new edge not at all.
+            // A point that comes into contact on the way is displaced by less the later that is, at the new edge by nothing.
             trial.push(corner(indentation));
         } else if indentation < self.indentation {
             let cut = trial.iter().position(|at| at.level >= indentation).unwrap_or(trial.len() - 1).max(1);
-            let carried = between(&trial[cut - 1], &trial[cut], indentation);
+            let w = interpolate(&trial[cut - 1], &trial[cut], indentation);
             trial.truncate(cut);
-            trial.push(Corner { carried, ..corner(indentation) });
+            trial.push(Corner { w, ..corner(indentation) });
         }
         self.indentation = indentation;
         self.displacement = displacement;
-        self.corners = thinned(&self.bounded(&trial));
+        self.corners = without_inner_corners(&self.clamped(&trial));
     }
 
-    /// Every corner within its bound, and a new one wherever a piece crosses it.
-    fn bounded(&self, trial: &[Corner]) -> Vec<Corner> {
+    /// All corners within their bounds, with a new one wherever a piece crosses its bound.
+    fn clamped(&self, trial: &[Corner]) -> Vec<Corner> {
         let mut all: Vec<Corner> = Vec::with_capacity(trial.len() + 2);
-        let excess = |at: &Corner, sign: f64| at.carried.signed(sign) - (self.indentation - at.level);
+        let excess = |at: &Corner, sign: f64| at.w.signed(sign) - (self.indentation - at.level);
         for (index, at) in trial.iter().enumerate() {
             for sign in [1.0, -1.0] {
                 let Some(inner) = index.checked_sub(1).map(|before| &trial[before]) else { continue };
@@ -82,15 +81,15 @@ impl<'a> Truth<'a> {
                 if before < DoubleDouble::ZERO && after > DoubleDouble::ZERO {
                     let part = (-before).over(after - before);
                     let level = inner.level + (at.level - inner.level) * part;
-                    let carried = (self.indentation - level).signed(sign);
-                    all.push(Corner { level, radius: self.shape.radius(level), carried, bound: sign as i8 });
+                    let w = (self.indentation - level).signed(sign);
+                    all.push(Corner { level, radius: self.shape.radius(level), w, bound: sign as i8 });
                 }
             }
             let bound = self.indentation - at.level;
-            let slipped = at.carried.abs() >= bound;
-            let sign = if at.carried < DoubleDouble::ZERO { -1.0 } else { 1.0 };
-            let carried = if slipped { bound.signed(sign) } else { at.carried };
-            all.push(Corner { carried, bound: if slipped { sign as i8 } else { 0 }, ..*at });
+            let slipped = at.w.abs() >= bound;
+            let sign = if at.w < DoubleDouble::ZERO { -1.0 } else { 1.0 };
+            let w = if slipped { bound.signed(sign) } else { at.w };
+            all.push(Corner { w, bound: if slipped { sign as i8 } else { 0 }, ..*at });
         }
         all
     }
@@ -98,7 +97,7 @@ impl<'a> Truth<'a> {
     fn pieces(&self) -> impl Iterator<Item = (&Corner, &Corner, DoubleDouble)> {
         let straight = self.corners.windows(2).map(|pair| (&pair[0], &pair[1]));
         straight.filter(|(inner, outer)| outer.level > inner.level).map(|(inner, outer)| {
-            let slope = (outer.carried - inner.carried).over(outer.level - inner.level);
+            let slope = (outer.w - inner.w).over(outer.level - inner.level);
             (inner, outer, slope)
         })
     }
@@ -108,12 +107,12 @@ impl<'a> Truth<'a> {
         let sum = self.pieces().fold(DoubleDouble::ZERO, |sum, (inner, outer, slope)| {
             let width = outer.radius - inner.radius;
             let grown = self.shape.integral(outer.radius) - self.shape.integral(inner.radius);
-            sum + (inner.carried - slope * inner.level) * width + slope * grown
+            sum + (inner.w - slope * inner.level) * width + slope * grown
         });
         (self.g_star * self.scale * sum * 2.0).value()
     }
 
-    /// Shear stress, Pa, at a radius, m, above nought.
+    /// Shear stress, Pa, at a radius, m, above zero.
     pub(super) fn shear(&self, radius: f64) -> f64 {
         let mut inner_kernel = None;
         let sum = self.pieces().fold(DoubleDouble::ZERO, |sum, (inner, outer, slope)| {
@@ -150,14 +149,14 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// What the straight piece between two corners carries at a level.
-fn between(inner: &Corner, outer: &Corner, level: DoubleDouble) -> DoubleDouble {
+/// The displacement w at a level, on the straight piece between two corners.
+fn interpolate(inner: &Corner, outer: &Corner, level: DoubleDouble) -> DoubleDouble {
     let part = (level - inner.level).over(outer.level - inner.level);
-    inner.carried + (outer.carried - inner.carried) * part
+    inner.w + (outer.w - inner.w) * part
 }
 
-/// Without the corners inside a slipping ring, which the bound makes straight.
-fn thinned(corners: &[Corner]) -> Vec<Corner> {
+/// Drops the corners inside a slip ring, where w is straight already.
+fn without_inner_corners(corners: &[Corner]) -> Vec<Corner> {
     let inside = |index: usize| {
         let near = (corners.get(index.wrapping_sub(1)), corners.get(index), corners.get(index + 1));
         matches!(near, (Some(a), Some(b), Some(c)) if b.bound != 0 && a.bound == b.bound && c.bound == b.bound)

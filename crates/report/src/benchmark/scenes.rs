@@ -1,4 +1,4 @@
-//! The scenes: contacts, paths and shapes of the reference.
+//! The scenes: contacts, their paths, and their shapes for the reference solver.
 
 use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, Tabulated};
 use stickslip_mechanics::{Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
@@ -8,14 +8,16 @@ use super::shape::Shape;
 pub(super) const E_STAR: f64 = 1.15e11;
 pub(super) const G_STAR: f64 = 8.5e10;
 pub(super) const FRICTION: f64 = 0.3;
-const BALL: f64 = 0.01;
+/// Radius of the sphere, m.
+const RADIUS: f64 = 0.01;
 /// dz/dr of the cone.
 const SLOPE: f64 = 0.05;
-/// Of the fourth power, m^-3.
+/// Coefficient of z = c r^4, m^-3.
 const QUARTIC: f64 = 4e7;
-/// Indentation, m: of a ball of that radius, a/R = 0.1.
+/// Indentation, m: that of the sphere at a/R = 0.1.
 const DEPTH: f64 = 1e-4;
-const TABLE: usize = 1000;
+/// Points of the table.
+const TABLE_POINTS: usize = 1000;
 
 /// The names of all scenes.
 pub const NAMES: [&str; 10] = [
@@ -36,11 +38,11 @@ pub(super) struct Scene {
     pub(super) setup: Setup,
     pub(super) shape: Shape,
     pub(super) path: Vec<(f64, f64)>,
-    /// The profile in the words of the peers.
-    form: &'static str,
+    /// The profile as external solvers know it.
+    profile_name: &'static str,
 }
 
-/// Numbers even over [0, 1), the same in every run.
+/// Random numbers, uniform over [0, 1), the same in every run.
 pub(super) fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
@@ -50,37 +52,38 @@ pub(super) fn random(seed: u64) -> impl FnMut() -> f64 {
 }
 
 impl Scene {
-    /// The scene of a name, if there is one.
-    pub(super) fn of(name: &str) -> Option<Result<Scene, Error>> {
+    /// The scene with that name, if there is one.
+    pub(super) fn by_name(name: &str) -> Option<Result<Scene, Error>> {
         NAMES.contains(&name).then(|| Scene::build(name))
     }
 
     fn build(name: &str) -> Result<Scene, Error> {
         let unit = FRICTION * E_STAR / G_STAR * DEPTH;
-        let fall = |count: usize| -> Vec<(f64, f64)> {
+        let falling = |count: usize| -> Vec<(f64, f64)> {
             stickslip_mechanics::protocol::falling_amplitude(count, unit).map(|u| (DEPTH, u)).collect()
         };
         let mut next = random(7);
         let path = match name {
             "first_loading" => vec![(DEPTH, 0.5 * unit)],
             "reversal" => vec![(DEPTH, 0.8 * unit), (DEPTH, -0.3 * unit)],
-            "reversals_1000" => fall(1000),
+            "reversals_1000" => falling(1000),
             "random_10000" => (0..10_000).map(|_| (DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
             "oblique" => (0..30).map(|_| ((0.5 + next()) * DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
-            _ => fall(20),
+            _ => falling(20),
         };
         let (profile, shape) = match name {
             "cone" => (Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
             "power_4" => (Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
-            "exact_sphere" => (Profile::ExactSphere(ExactSphere::new(BALL)?), Shape::ball(BALL)),
+            "exact_sphere" => (Profile::ExactSphere(ExactSphere::new(RADIUS)?), Shape::sphere(RADIUS)),
             "table_1000" => {
-                let r: Vec<f64> = (0..TABLE).map(|index| 1.2e-3 * index as f64 / (TABLE - 1) as f64).collect();
-                let z: Vec<f64> = r.iter().map(|r| r * r / (BALL + ((BALL - r) * (BALL + r)).sqrt())).collect();
-                (Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::ball(BALL))
+                let r: Vec<f64> =
+                    (0..TABLE_POINTS).map(|index| 1.2e-3 * index as f64 / (TABLE_POINTS - 1) as f64).collect();
+                let z: Vec<f64> = r.iter().map(|r| r * r / (RADIUS + ((RADIUS - r) * (RADIUS + r)).sqrt())).collect();
+                (Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::sphere(RADIUS))
             }
-            _ => (Profile::Sphere(Sphere::new(BALL)?), Shape::parabola(BALL)),
+            _ => (Profile::Sphere(Sphere::new(RADIUS)?), Shape::parabola(RADIUS)),
         };
-        let form = match name {
+        let profile_name = match name {
             "cone" => "cone",
             "power_4" => "power_4",
             "exact_sphere" => "exact_sphere",
@@ -93,18 +96,19 @@ impl Scene {
             friction: FRICTION,
             preload: Preload::Indentation(DEPTH),
         };
-        Ok(Scene { setup, shape, path, form })
+        Ok(Scene { setup, shape, path, profile_name })
     }
 
-    /// The scene as it is told to a peer: numbers in SI units, moves as pairs of indentation and displacement.
-    pub(super) fn told(&self, radii: &[f64]) -> serde_json::Value {
+    /// The scene as an external solver gets it: numbers in SI units, moves as pairs of indentation and displacement.
+    pub(super) fn to_json(&self, radii: &[f64]) -> serde_json::Value {
         serde_json::json!({
-            "profile": self.form, "radius": BALL, "slope": SLOPE, "coefficient": QUARTIC,
+            "profile": self.profile_name, "radius": RADIUS, "slope": SLOPE, "coefficient": QUARTIC,
             "e_star": E_STAR, "g_star": G_STAR, "friction": FRICTION,
             "indentation": DEPTH, "moves": self.path, "radii": radii,
         })
     }
 
+    /// The first indentation, m.
     pub(super) fn depth() -> f64 {
         DEPTH
     }

@@ -1,15 +1,15 @@
-//! The shapes of the scenes for the reference: closed forms and power series, in twice the digits.
+//! The shapes of the scenes for the reference: closed forms and power series, in double-double arithmetic.
 //!
-//! Nothing of this is shared with the profiles of the mechanics but the arithmetic itself.
+//! Independent of the profiles of the engine: only the arithmetic is shared.
 
 use stickslip_mechanics::DoubleDouble;
 
 /// Terms of the series of the exact sphere: with a/R up to 0.15 the first left out is below 1e-35.
 const TERMS: usize = 22;
-/// Steps of Newton's method, far more than it ever needs.
-const STEPS: usize = 60;
+/// The most steps of Newton's method, far more than it needs.
+const MAX_STEPS: usize = 60;
 
-/// A shape by its g(x), for x from nought to the edge.
+/// A shape by its g(x), for x from zero to the edge.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
     /// g = sum of c_k x^(2k), k from the first number on: coefficients in order.
@@ -39,7 +39,7 @@ impl Shape {
     }
 
     /// f = R - sqrt(R^2 - r^2): g = x artanh(x/R).
-    pub(super) fn ball(radius: f64) -> Shape {
+    pub(super) fn sphere(radius: f64) -> Shape {
         let radius = DoubleDouble::from(radius);
         let mut power = radius;
         let mut terms = Vec::with_capacity(TERMS);
@@ -59,7 +59,7 @@ impl Shape {
     pub(super) fn level(&self, x: DoubleDouble) -> DoubleDouble {
         match self {
             Shape::Cone(slope) => *slope * x,
-            Shape::Even(..) => self.in_square(x, |_| DoubleDouble::from(1.0)),
+            Shape::Even(..) => self.even_series(x, |_| DoubleDouble::from(1.0)),
         }
     }
 
@@ -67,7 +67,7 @@ impl Shape {
     pub(super) fn integral(&self, x: DoubleDouble) -> DoubleDouble {
         match self {
             Shape::Cone(slope) => *slope * x * x * 0.5,
-            Shape::Even(..) => self.in_square(x, |k| DoubleDouble::from(1.0).over(whole(2 * k + 1))) * x,
+            Shape::Even(..) => self.even_series(x, |k| DoubleDouble::from(1.0).over(whole(2 * k + 1))) * x,
         }
     }
 
@@ -75,12 +75,12 @@ impl Shape {
     fn slope(&self, x: DoubleDouble) -> DoubleDouble {
         match self {
             Shape::Cone(slope) => *slope,
-            Shape::Even(..) => self.in_square(x, |k| whole(2 * k)).over(x),
+            Shape::Even(..) => self.even_series(x, |k| whole(2 * k)).over(x),
         }
     }
 
     /// The sum of f(k) c_k x^(2k).
-    fn in_square(&self, x: DoubleDouble, factor: impl Fn(usize) -> DoubleDouble) -> DoubleDouble {
+    fn even_series(&self, x: DoubleDouble, factor: impl Fn(usize) -> DoubleDouble) -> DoubleDouble {
         let Shape::Even(first, terms) = self else { return DoubleDouble::ZERO };
         let square = x * x;
         let summed = terms
@@ -99,9 +99,9 @@ impl Shape {
         match self {
             Shape::Cone(slope) => level.over(*slope),
             Shape::Even(first, terms) => {
-                // g is convex and not below its first term, so that Newton's method comes down from here.
+                // g is convex and not below its first term, so that Newton's method converges from above.
                 let mut x = DoubleDouble::from((level.value() / terms[0].value()).powf(0.5 / *first as f64));
-                for _ in 0..STEPS {
+                for _ in 0..MAX_STEPS {
                     let step = (self.level(x) - level).over(self.slope(x));
                     x = x - step;
                     if step.value().abs() <= 1e-20 * x.value() {
@@ -113,7 +113,7 @@ impl Shape {
         }
     }
 
-    /// int_r^x g'(t)/sqrt(t^2 - r^2) dt, a pure number; nought for x within r.
+    /// int_r^x g'(t)/sqrt(t^2 - r^2) dt, a pure number; zero for x <= r.
     pub(super) fn kernel(&self, r: f64, x: DoubleDouble) -> DoubleDouble {
         let square = DoubleDouble::square_of(r);
         let excess = x * x - square;
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_radius_has_its_level() {
-        for shape in [Shape::parabola(0.013), Shape::fourth_power(7e5), Shape::ball(0.013), Shape::cone(0.07)] {
+        for shape in [Shape::parabola(0.013), Shape::fourth_power(7e5), Shape::sphere(0.013), Shape::cone(0.07)] {
             for x in [1e-9, 1.3e-4, 1.5e-3] {
                 let there = DoubleDouble::from(x);
                 let back = shape.radius(shape.level(there));
@@ -193,7 +193,7 @@ mod tests {
         assert!((Shape::cone(1.0).kernel(r, a) - cone).abs().value() < 1e-29);
         assert!((cone.value() - std::f64::consts::FRAC_PI_2 * (1e-3 / r).acosh()).abs() < 1e-14);
         // A ball differs from its parabola by the second term, g = x^4/(3 R^3), and less.
-        let (ball, radius) = (Shape::ball(1.0).kernel(r, a).value(), 1e-3_f64);
+        let (ball, radius) = (Shape::sphere(1.0).kernel(r, a).value(), 1e-3_f64);
         let second = 4.0 / 3.0 * (root.value().powi(3) / 3.0 + r * r * root.value());
         assert!((ball - hertz.value() - second).abs() < radius.powi(5));
     }

@@ -1,4 +1,4 @@
-//! One scene: every solver's answer held against the reference, and its processor time against that of the exact solver.
+//! One scene: the errors of each solver against the reference, and its processor time as a ratio to that of the exact solver.
 
 use std::collections::HashMap;
 use std::hint::black_box;
@@ -10,18 +10,19 @@ use rustix::time::{ClockId, clock_gettime};
 use stickslip_mechanics::springs::{self, ShearEvaluation};
 use stickslip_mechanics::{Contact, Error, Springs};
 
-use super::external_solver::Peer;
+use super::external_solver::ExternalSolver;
 use super::scenes::Scene;
-use super::{Measured, Missing, RADII, Row};
+use super::{Missing, RADII, Report, Row};
 
-/// Runs of each solver, at the least and at the most.
-const RUNS: (usize, usize) = (3, 101);
-/// The exact solver runs for so long beside each run of another: its first run after a long one finds nothing in the caches.
-const BESIDE: Duration = Duration::from_millis(1);
-/// Ten times the springs cost ten times as much, or a little more.
+/// Timed runs of each solver.
+const MIN_RUNS: usize = 3;
+const MAX_RUNS: usize = 101;
+/// How long the exact solver is repeated before each run of another: its first run finds cold caches.
+const EXACT_TIME: Duration = Duration::from_millis(1);
+/// Estimate of how the time grows when the number of springs is ten times as large.
 const GROWTH: f64 = 11.0;
-/// Springs of the smallest foundation.
-const FEWEST: usize = 10;
+/// The number of springs to begin with.
+const MIN_SPRINGS: usize = 10;
 
 const KERNELS: [(&str, ShearEvaluation); 3] = [
     ("springs_arcosh", ShearEvaluation::Arcosh),
@@ -29,44 +30,44 @@ const KERNELS: [(&str, ShearEvaluation); 3] = [
     ("recipe", ShearEvaluation::Differences),
 ];
 
-/// Forces after each move, N, shear stresses at the end, Pa, and the processor time for both, s.
-pub(super) struct Timed {
+/// One run of a solver: forces after each move, N, shear stresses at the end, Pa, and the processor time for both, s.
+pub(super) struct SolverRun {
     pub(super) forces: Vec<f64>,
     pub(super) shears: Vec<f64>,
     pub(super) seconds: f64,
 }
 
-/// The solvers on one scene.
-pub(super) struct Contest<'a> {
-    name: &'a str,
-    scene: &'a Scene,
-    radii: &'a [f64],
-    truth: &'a Timed,
-    /// Of force and stress.
-    units: (f64, f64),
-    patience: Duration,
-    /// When the scene is to be done.
-    until: Option<Instant>,
-    rows: Vec<Row>,
-    missing: Vec<Missing>,
-    /// What the last foundation of each solver took for one run, s.
-    last: HashMap<String, f64>,
+/// The measurements of all solvers on one scene.
+pub(super) struct SceneBenchmark<'a> {
+    pub(super) name: &'a str,
+    pub(super) scene: &'a Scene,
+    pub(super) radii: &'a [f64],
+    pub(super) reference: &'a SolverRun,
+    /// Units of the errors: of force, N, and of stress, Pa.
+    pub(super) units: (f64, f64),
+    pub(super) repetition_time: Duration,
+    /// When the scene is to be finished.
+    pub(super) deadline: Option<Instant>,
+    pub(super) rows: Vec<Row>,
+    pub(super) missing: Vec<Missing>,
+    /// Time of the last run of each solver, s.
+    pub(super) last_seconds: HashMap<String, f64>,
 }
 
-/// Processor time of this thread, s: where others use the machine too, a clock on the wall would make long runs longer and leave
-/// short ones, which fit between two interruptions, as they are.
+/// Processor time of this thread, s: on a busy machine, wall-clock time grows for long runs and not for short ones, which fit
+/// between two interruptions.
 pub(super) fn processor_time() -> f64 {
     let now = clock_gettime(ClockId::ThreadCPUTime);
     now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
 }
 
-fn timed(run: impl FnOnce() -> Result<(Vec<f64>, Vec<f64>), Error>) -> io::Result<Timed> {
+fn timed(run: impl FnOnce() -> Result<(Vec<f64>, Vec<f64>), Error>) -> io::Result<SolverRun> {
     let begin = processor_time();
     let (forces, shears) = black_box(run()).map_err(io::Error::other)?;
-    Ok(Timed { forces, shears, seconds: processor_time() - begin })
+    Ok(SolverRun { forces, shears, seconds: processor_time() - begin })
 }
 
-fn exact(scene: &Scene, radii: &[f64]) -> io::Result<Timed> {
+fn exact(scene: &Scene, radii: &[f64]) -> io::Result<SolverRun> {
     timed(|| {
         let mut contact = Contact::new(scene.setup.clone())?;
         let forces: Result<_, Error> =
@@ -75,7 +76,7 @@ fn exact(scene: &Scene, radii: &[f64]) -> io::Result<Timed> {
     })
 }
 
-fn sprung(scene: &Scene, count: usize, kernel: ShearEvaluation, radii: &[f64]) -> io::Result<Timed> {
+fn springs_run(scene: &Scene, count: usize, kernel: ShearEvaluation, radii: &[f64]) -> io::Result<SolverRun> {
     timed(|| {
         let reach = springs::largest_contact_radius(&scene.setup, scene.moves())?;
         let mut row = Springs::without_error_estimate(scene.setup.clone(), count, reach)?;
@@ -91,84 +92,68 @@ fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     [last / 4, last / 2, (3 * last).div_ceil(4)].map(|index| values[index])
 }
 
-impl<'a> Contest<'a> {
-    #[expect(clippy::too_many_arguments, reason = "one for each field")]
-    pub(super) fn new(
-        name: &'a str,
-        scene: &'a Scene,
-        radii: &'a [f64],
-        truth: &'a Timed,
-        units: (f64, f64),
-        patience: Duration,
-        share: Option<Duration>,
-        begin: Instant,
-    ) -> Contest<'a> {
-        let until = share.map(|share| begin + share);
-        let (rows, missing, last) = (Vec::new(), Vec::new(), HashMap::new());
-        Contest { name, scene, radii, truth, units, patience, until, rows, missing, last }
-    }
-
+impl SceneBenchmark<'_> {
     /// The exact solver, and springs from few to many by every kernel.
-    pub(super) fn run_ours(&mut self, largest: usize) -> io::Result<()> {
+    pub(super) fn run_own_solvers(&mut self, max_springs: usize) -> io::Result<()> {
         let (scene, radii) = (self.scene, self.radii);
         self.add("exact", None, || exact(scene, radii))?;
-        let mut count = FEWEST;
-        while count <= largest {
+        let mut count = MIN_SPRINGS;
+        while count <= max_springs {
             for (solver, kernel) in KERNELS {
-                self.add(solver, Some(count), || sprung(scene, count, kernel, radii))?;
+                self.add(solver, Some(count), || springs_run(scene, count, kernel, radii))?;
             }
             count *= 10;
         }
         Ok(())
     }
 
-    /// A peer on its own grids, or on as many springs as ours.
-    pub(super) fn run_peer(&mut self, mut peer: Peer, largest: usize) {
-        let solver = peer.name;
-        let powers =
-            std::iter::successors(Some(FEWEST), |count| Some(10 * count)).take_while(|count| *count <= largest);
-        let counts = peer.counts.clone().unwrap_or_else(|| powers.collect());
+    /// An external solver on its own grids, or on as many springs as our own.
+    pub(super) fn run_external(&mut self, mut solver: ExternalSolver, max_springs: usize) {
+        let name = solver.name;
+        let powers = std::iter::successors(Some(MIN_SPRINGS), |count| Some(10 * count))
+            .take_while(|count| *count <= max_springs);
+        let counts = solver.counts.clone().unwrap_or_else(|| powers.collect());
         for count in counts {
-            if let Err(error) = self.add(solver, Some(count), || peer.run(count)) {
-                self.leave_out(solver, format!("{count}: {error}"));
+            if let Err(error) = self.add(name, Some(count), || solver.run(count)) {
+                self.skip(name, format!("{count}: {error}"));
                 break;
             }
         }
     }
 
-    pub(super) fn leave_out(&mut self, solver: &str, reason: String) {
+    pub(super) fn skip(&mut self, solver: &str, reason: String) {
         self.missing.push(Missing { scene: self.name.to_owned(), solver: solver.to_owned(), reason });
     }
 
-    fn left(&self) -> Option<Duration> {
-        self.until.map(|until| until.saturating_duration_since(Instant::now()))
+    fn time_left(&self) -> Option<Duration> {
+        self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()))
     }
 
     fn add(
         &mut self,
         solver: &str,
         springs: Option<usize>,
-        mut run: impl FnMut() -> io::Result<Timed>,
+        mut run: impl FnMut() -> io::Result<SolverRun>,
     ) -> io::Result<()> {
-        // One run for the errors, and those that are timed.
-        let foreseen = self.last.get(solver).map_or(0.0, |seconds| GROWTH * seconds * (1 + RUNS.0) as f64);
-        if self.left().is_some_and(|left| foreseen > left.as_secs_f64()) {
+        // One run for the errors, and the timed ones.
+        let expected = self.last_seconds.get(solver).map_or(0.0, |seconds| GROWTH * seconds * (1 + MIN_RUNS) as f64);
+        if self.time_left().is_some_and(|left| expected > left.as_secs_f64()) {
             let count = springs.unwrap_or_default();
-            self.leave_out(solver, format!("{count}: no time left for it, as it would take some {foreseen:.0} s"));
+            self.skip(solver, format!("{count}: no time left: it would take about {expected:.0} s"));
             return Ok(());
         }
         let found = run()?;
-        self.last.insert(solver.to_owned(), found.seconds);
-        let patience = self.left().map_or(self.patience, |left| self.patience.min(left / 4));
+        self.last_seconds.insert(solver.to_owned(), found.seconds);
+        let repetition_time = self.time_left().map_or(self.repetition_time, |left| self.repetition_time.min(left / 4));
         let (mut times, mut ratios, begin) = (Vec::new(), Vec::new(), Instant::now());
-        while times.len() < RUNS.0 || (times.len() < RUNS.1 && begin.elapsed() < patience) {
-            let beside = if self.rows.is_empty() { None } else { Some(self.beside()?) };
+        while times.len() < MIN_RUNS || (times.len() < MAX_RUNS && begin.elapsed() < repetition_time) {
+            let exact_seconds = if self.rows.is_empty() { None } else { Some(self.exact_seconds()?) };
             let seconds = run()?.seconds;
             times.push(seconds);
-            ratios.push(beside.map_or(1.0, |exact| seconds / exact));
+            ratios.push(exact_seconds.map_or(1.0, |exact| seconds / exact));
         }
-        let worst = |found: &[f64], truth: &[f64], unit: f64| {
-            found.iter().zip(truth).map(|(found, truth)| ((found - truth) / unit).abs()).fold(0.0, f64::max)
+        let largest_error = |found: &[f64], reference: &[f64], unit: f64| {
+            found.iter().zip(reference).map(|(found, reference)| ((found - reference) / unit).abs()).fold(0.0, f64::max)
         };
         let (least, runs) = (times.iter().copied().fold(f64::INFINITY, f64::min), times.len());
         let [lower, median, upper] = quartiles(times);
@@ -177,9 +162,9 @@ impl<'a> Contest<'a> {
             scene: self.name.to_owned(),
             solver: solver.to_owned(),
             springs,
-            force_error: worst(&found.forces, &self.truth.forces, self.units.0),
-            stress_error: worst(&found.shears[..RADII], &self.truth.shears[..RADII], self.units.1),
-            kink_error: worst(&found.shears[RADII..], &self.truth.shears[RADII..], self.units.1),
+            force_error: largest_error(&found.forces, &self.reference.forces, self.units.0),
+            stress_error: largest_error(&found.shears[..RADII], &self.reference.shears[..RADII], self.units.1),
+            kink_error: largest_error(&found.shears[RADII..], &self.reference.shears[RADII..], self.units.1),
             median,
             lower,
             upper,
@@ -192,19 +177,19 @@ impl<'a> Contest<'a> {
         Ok(())
     }
 
-    /// What the exact solver takes just now, s.
-    fn beside(&self) -> io::Result<f64> {
+    /// Median time of the exact solver just now, s.
+    fn exact_seconds(&self) -> io::Result<f64> {
         let (mut times, begin) = (Vec::new(), Instant::now());
-        while times.is_empty() || begin.elapsed() < BESIDE {
+        while times.is_empty() || begin.elapsed() < EXACT_TIME {
             times.push(exact(self.scene, self.radii)?.seconds);
         }
         Ok(quartiles(times)[1])
     }
 
-    /// Adds the reference, and hands over.
-    pub(super) fn end(mut self, measured: &mut Measured) {
-        let whole = self.truth.seconds;
-        let ratio = self.rows.first().map_or(1.0, |exact| whole / exact.median);
+    /// Adds the row of the reference, and appends all to the report.
+    pub(super) fn finish(mut self, report: &mut Report) {
+        let seconds = self.reference.seconds;
+        let ratio = self.rows.first().map_or(1.0, |exact| seconds / exact.median);
         self.rows.push(Row {
             scene: self.name.to_owned(),
             solver: "reference".to_owned(),
@@ -212,16 +197,16 @@ impl<'a> Contest<'a> {
             force_error: 0.0,
             stress_error: 0.0,
             kink_error: 0.0,
-            median: whole,
-            lower: whole,
-            upper: whole,
-            least: whole,
+            median: seconds,
+            lower: seconds,
+            upper: seconds,
+            least: seconds,
             runs: 1,
             ratio,
             ratio_lower: ratio,
             ratio_upper: ratio,
         });
-        measured.rows.append(&mut self.rows);
-        measured.missing.append(&mut self.missing);
+        report.rows.append(&mut self.rows);
+        report.missing.append(&mut self.missing);
     }
 }

@@ -1,4 +1,4 @@
-//! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact engine, and 6 to 9 beyond it: SVG to look at, CSV to plot anew.
+//! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, and figures 6 to 9 about protocols: SVG, and CSV with the data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
@@ -15,15 +15,15 @@ use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, State, Tangential};
 
 const REVERSALS: usize = 20;
-/// Radii a curve is drawn through, beside its kinks.
+/// Radii of a curve, beside its kinks.
 const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
-const LAST: usize = 40;
+const MAX_REVERSALS: usize = 40;
 
-/// Writes `figure1.svg` to `figure9.svg` and the CSV file of each into `dir`, which is made if need be.
+/// Writes `figure1.svg` to `figure9.svg` and the CSV file of each into `dir`, which is created if it does not exist.
 ///
 /// # Errors
-/// Whatever the file system says; a figure that cannot be drawn comes as [`io::ErrorKind::Other`].
+/// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
 pub fn write(dir: &Path) -> io::Result<()> {
     fs::create_dir_all(dir)?;
     let charts = charts().map_err(io::Error::other)?;
@@ -36,34 +36,34 @@ pub fn write(dir: &Path) -> io::Result<()> {
 }
 
 fn charts() -> Result<Vec<Chart>, Error> {
-    let history = Normalised::falling(REVERSALS, REVERSALS + 1)?;
-    let paper = [positions(&history), forces(&history), partway()?, final_stress()?, reduction()?];
+    let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
+    let paper = [positions(&path), forces(&path), shear_partway()?, remaining_shear()?, remaining_peaks()?];
     Ok(paper.into_iter().chain(protocols::charts()?).collect())
 }
 
-/// A reference sphere on its way along eq. 20, everything over its natural unit.
-struct Normalised {
+/// A reference sphere on the path of eq. 20; its methods give dimensionless values.
+struct NormalisedPath {
     contact: Contact,
     states: Vec<State>,
 }
 
-impl Normalised {
-    fn falling(reversals: usize, moves: usize) -> Result<Normalised, Error> {
+impl NormalisedPath {
+    fn follow(reversals: usize, moves: usize) -> Result<NormalisedPath, Error> {
         let contact = Contact::new(Setup {
             profile: Profile::Sphere(Sphere::new(0.01)?),
             elasticity: Elasticity::effective(1.15e11, 8.5e10)?,
             friction: 0.3,
             preload: Preload::NormalForce(10.0),
         })?;
-        let mut history = Normalised { contact, states: Vec::new() };
-        let amplitude = history.contact.summary().gross_slip_displacement;
+        let mut path = NormalisedPath { contact, states: Vec::new() };
+        let amplitude = path.contact.summary().gross_slip_displacement;
         for target in falling_amplitude(reversals, amplitude).take(moves) {
-            history.displace(target)?;
+            path.move_to(target)?;
         }
-        Ok(history)
+        Ok(path)
     }
 
-    fn displace(&mut self, target: f64) -> Result<(), Error> {
+    fn move_to(&mut self, target: f64) -> Result<(), Error> {
         self.contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() })?;
         self.states.push(self.contact.state());
         Ok(())
@@ -81,7 +81,7 @@ impl Normalised {
 
     fn stress_unit(&self) -> f64 {
         let figures = self.contact.summary();
-        // mu p_max with the largest pressure of the sphere, that at its centre.
+        // mu p_max with the largest pressure, that at the centre.
         figures.gross_slip_force / figures.normal_force * self.contact.pressure(0.0)
     }
 
@@ -108,94 +108,94 @@ fn numbered(values: &[f64]) -> Vec<(f64, f64)> {
     values.iter().enumerate().map(|(index, &value)| ((index + 1) as f64, value)).collect()
 }
 
-fn positions(history: &Normalised) -> Chart {
-    let turns = numbered(&history.displacements());
-    // The way between the reversals is free; a half cosine is drawn, as in the paper.
-    let swing = turns.windows(2).flat_map(|pair| {
+fn positions(path: &NormalisedPath) -> Chart {
+    let turns = numbered(&path.displacements());
+    // Only the reversal points matter; half a cosine is drawn between them, as in the paper.
+    let position = turns.windows(2).flat_map(|pair| {
         let ((x0, u0), (_, u1)) = (pair[0], pair[1]);
         (0..20).map(move |step| {
             let part = f64::from(step) / 20.0;
             (x0 + part, u0 + (u1 - u0) * 0.5 * (1.0 - (std::f64::consts::PI * part).cos()))
         })
     });
-    let swing = swing.chain(turns.last().copied()).collect();
+    let position = position.chain(turns.last().copied()).collect();
     let marked = vec![turns[5], (6.5, 0.0)];
-    Chart {
-        title: "Figure 1: position of the indenter, 20 reversals".into(),
-        x: "reversal point k".into(),
-        y: "u / u_max".into(),
-        series: vec![
+    Chart::new(
+        "Figure 1: position of the indenter, 20 reversals",
+        "reversal point k",
+        "u / u_max",
+        vec![
             Series::dots("A and B of figure 3", marked),
             Series::dots("reversal points", turns),
-            Series::line("position", swing),
+            Series::line("position", position),
         ],
-    }
+    )
 }
 
-fn forces(history: &Normalised) -> Chart {
-    let sizes: Vec<f64> = history.forces().iter().map(|force| force.abs()).collect();
-    Chart {
-        title: "Figure 2: tangential force at the reversal points".into(),
-        x: "reversal point k".into(),
-        y: "|F| / (mu F_N)".into(),
-        series: vec![Series::dots("|F| / (mu F_N)", numbered(&sizes))],
-    }
+fn forces(path: &NormalisedPath) -> Chart {
+    let sizes: Vec<f64> = path.forces().iter().map(|force| force.abs()).collect();
+    Chart::new(
+        "Figure 2: tangential force at the reversal points",
+        "reversal point k",
+        "|F| / (mu F_N)",
+        vec![Series::dots("|F| / (mu F_N)", numbered(&sizes))],
+    )
 }
 
 /// The friction bound behind the curves that it bounds.
-fn with_bound(history: &Normalised, curves: [Series; 2]) -> Vec<Series> {
-    let bound = history.bound();
+fn with_bound(path: &NormalisedPath, curves: [Series; 2]) -> Vec<Series> {
+    let bound = path.bound();
     let mirrored = bound.iter().map(|&(r, p)| (r, -p)).collect();
     let [first, second] = curves;
     vec![first, second, Series::line("mu p", bound), Series::line("-mu p", mirrored)]
 }
 
-fn partway() -> Result<Chart, Error> {
-    let mut history = Normalised::falling(REVERSALS, 6)?;
-    let at_reversal = history.shear();
-    history.displace(0.0)?;
-    let back = history.shear();
+fn shear_partway() -> Result<Chart, Error> {
+    let mut path = NormalisedPath::follow(REVERSALS, 6)?;
+    let at_reversal = path.shear();
+    path.move_to(0.0)?;
+    let back = path.shear();
     let curves = [Series::line("A: reversal 6", at_reversal), Series::line("B: back at u = 0", back)];
-    Ok(Chart {
-        title: "Figure 3: shear stress after 6 and 6.5 of 20 reversals".into(),
-        x: "r / a".into(),
-        y: "tau / (mu p_max)".into(),
-        series: with_bound(&history, curves),
-    })
+    Ok(Chart::new(
+        "Figure 3: shear stress after 6 and 6.5 of 20 reversals",
+        "r / a",
+        "tau / (mu p_max)",
+        with_bound(&path, curves),
+    ))
 }
 
-fn final_stress() -> Result<Chart, Error> {
-    let history = Normalised::falling(REVERSALS, REVERSALS + 1)?;
-    Ok(Chart {
-        title: "Figure 4: shear stress that remains after 20 reversals".into(),
-        x: "r / a".into(),
-        y: "tau / (mu p_max)".into(),
-        series: vec![Series::line("tau / (mu p_max)", history.shear())],
-    })
+fn remaining_shear() -> Result<Chart, Error> {
+    let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
+    Ok(Chart::new(
+        "Figure 4: shear stress that remains after 20 reversals",
+        "r / a",
+        "tau / (mu p_max)",
+        vec![Series::line("tau / (mu p_max)", path.shear())],
+    ))
 }
 
-fn reduction() -> Result<Chart, Error> {
+fn remaining_peaks() -> Result<Chart, Error> {
     let mut largest = Vec::new();
     let mut smallest = Vec::new();
     let mut mean = Vec::new();
-    for reversals in 1..=LAST {
-        let history = Normalised::falling(reversals, reversals + 1)?;
-        let unit = history.stress_unit();
-        let residual = history.contact.residual();
+    for reversals in 1..=MAX_REVERSALS {
+        let path = NormalisedPath::follow(reversals, reversals + 1)?;
+        let unit = path.stress_unit();
+        let residual = path.contact.residual();
         let x = reversals as f64;
         largest.extend(residual.max.map(|value| (x, value / unit)));
         smallest.extend(residual.min.map(|value| (x, value / unit)));
         mean.extend(residual.mean.map(|value| (x, value / unit)));
     }
-    Ok(Chart {
-        title: "Figure 5: peaks of the remaining shear stress".into(),
-        x: "number of reversals".into(),
-        y: "|tau| / (mu p_max)".into(),
-        series: vec![Series::dots("maximum", largest), Series::dots("mean", mean), Series::dots("minimum", smallest)],
-    })
+    Ok(Chart::new(
+        "Figure 5: peaks of the remaining shear stress",
+        "number of reversals",
+        "|tau| / (mu p_max)",
+        vec![Series::dots("maximum", largest), Series::dots("mean", mean), Series::dots("minimum", smallest)],
+    ))
 }
 
-/// One row a point: series, x, y, each number as short as reads back to the same bits.
+/// One row a point: series, x, y, each number as short as it can be and exact.
 fn csv(chart: &Chart) -> String {
     let mut text = format!("series,{},{}\n", chart.x, chart.y);
     for series in &chart.series {

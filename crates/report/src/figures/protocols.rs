@@ -1,4 +1,4 @@
-//! Figures 6 to 9: what the three laws of the amplitudes leave, on the sphere and on other shapes.
+//! Figures 6 to 9: the shear stress that remains after the three kinds of protocol, on the sphere and on other shapes.
 
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::profile::PowerLaw;
@@ -7,13 +7,13 @@ use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup, S
 
 const KINDS: [(AmplitudeLaw, &str); 3] =
     [(AmplitudeLaw::Linear, "linear"), (AmplitudeLaw::EqualPeaks, "equal peaks"), (AmplitudeLaw::Minimax, "minimax")];
-/// The numbers of reversals that are shown.
-const NUMBERS: [usize; 9] = [1, 2, 3, 4, 6, 8, 11, 15, 20];
-/// Reversals where one number is shown.
+/// Numbers of reversals, where several are shown.
+const REVERSAL_COUNTS: [usize; 9] = [1, 2, 3, 4, 6, 8, 11, 15, 20];
+/// Number of reversals, where one is shown.
 const REVERSALS: usize = 20;
 /// Radii that a curve is drawn through, beside its extrema.
 const POINTS: usize = 400;
-/// Trials of each point of figure 9, and where their errors begin.
+/// Trials of each point of figure 9, and the seed of their errors.
 const SAMPLES: usize = 100;
 const SEED: u64 = 2016;
 
@@ -21,7 +21,7 @@ pub(super) fn charts() -> Result<[Chart; 4], Error> {
     Ok([reduction()?, over_radius()?, shapes()?, robustness()?])
 }
 
-fn of(profile: Profile, friction: f64) -> Result<Contact, Error> {
+fn contact_of(profile: Profile, friction: f64) -> Result<Contact, Error> {
     let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
     Contact::new(Setup { profile, elasticity, friction, preload: Preload::ContactRadius(1e-4) })
 }
@@ -30,7 +30,7 @@ fn sphere() -> Result<Profile, Error> {
     Ok(Profile::Sphere(Sphere::new(0.01)?))
 }
 
-fn power(exponent: f64) -> Result<Profile, Error> {
+fn power_law(exponent: f64) -> Result<Profile, Error> {
     // As high at the edge as the sphere.
     Ok(Profile::PowerLaw(PowerLaw::new(exponent, 5e-7 / 1e-4_f64.powf(exponent))?))
 }
@@ -41,67 +41,71 @@ fn unit(contact: &Contact) -> f64 {
     figures.gross_slip_force / figures.normal_force * figures.unit_pressure()
 }
 
-fn found(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<Design, Error> {
+fn designed(contact: &Contact, kind: AmplitudeLaw, reversals: usize) -> Result<Design, Error> {
     let start = PathStart::Displacement(contact.gross_slip_displacement());
     design(contact, start, kind, reversals, PathEnd::DisplacementZero, &|| true)
 }
 
 fn reduction() -> Result<Chart, Error> {
-    let contact = of(power(4.0)?, 0.3)?;
+    let contact = contact_of(power_law(4.0)?, 0.3)?;
     let series = KINDS.into_iter().map(|(kind, name)| {
-        let point = |reversals| Ok((reversals as f64, found(&contact, kind, reversals)?.largest / unit(&contact)));
-        Ok(Series::dots(name, NUMBERS.into_iter().map(point).collect::<Result<_, Error>>()?))
+        let point = |reversals| Ok((reversals as f64, designed(&contact, kind, reversals)?.largest / unit(&contact)));
+        Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
     });
-    Ok(Chart {
-        title: "Figure 6: largest remaining stress, profile z ~ r^4".into(),
-        x: "number of reversals".into(),
-        y: "max |tau| / (mu p_max)".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 6: largest remaining stress, profile z ~ r^4",
+        "number of reversals",
+        "max |tau| / (mu p_max)",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }
 
 fn over_radius() -> Result<Chart, Error> {
-    let contact = of(power(4.0)?, 0.3)?;
+    let contact = contact_of(power_law(4.0)?, 0.3)?;
     let edge = contact.contact_radius();
     let series = KINDS.into_iter().map(|(kind, name)| {
-        let left = found(&contact, kind, REVERSALS)?;
+        let left = designed(&contact, kind, REVERSALS)?;
         let mut radii: Vec<f64> = (0..=POINTS).map(|index| edge * index as f64 / POINTS as f64).collect();
         radii.extend(left.residual.peaks.iter().map(|peak| peak.radius));
         radii.sort_by(f64::total_cmp);
         let curve = radii.iter().map(|&r| (r / edge, left.contact.shear(r) / unit(&contact)));
         Ok(Series::line(name, curve.collect()))
     });
-    Ok(Chart {
-        title: "Figure 7: stress after 20 reversals, profile z ~ r^4".into(),
-        x: "r / a".into(),
-        y: "tau / (mu p_max)".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 7: stress after 20 reversals, profile z ~ r^4",
+        "r / a",
+        "tau / (mu p_max)",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }
 
 fn shapes() -> Result<Chart, Error> {
-    let shapes =
-        [("z ~ r^1.5", power(1.5)?), ("sphere", sphere()?), ("z ~ r^3", power(3.0)?), ("z ~ r^4", power(4.0)?)];
+    let shapes = [
+        ("z ~ r^1.5", power_law(1.5)?),
+        ("sphere", sphere()?),
+        ("z ~ r^3", power_law(3.0)?),
+        ("z ~ r^4", power_law(4.0)?),
+    ];
     let series = shapes.into_iter().map(|(name, shape)| {
-        let contact = of(shape, 0.3)?;
+        let contact = contact_of(shape, 0.3)?;
         let point = |reversals| {
-            let linear = found(&contact, AmplitudeLaw::Linear, reversals)?.largest;
-            Ok((reversals as f64, found(&contact, AmplitudeLaw::Minimax, reversals)?.largest / linear))
+            let linear = designed(&contact, AmplitudeLaw::Linear, reversals)?.largest;
+            Ok((reversals as f64, designed(&contact, AmplitudeLaw::Minimax, reversals)?.largest / linear))
         };
-        Ok(Series::dots(name, NUMBERS.into_iter().map(point).collect::<Result<_, Error>>()?))
+        Ok(Series::dots(name, REVERSAL_COUNTS.into_iter().map(point).collect::<Result<_, Error>>()?))
     });
-    Ok(Chart {
-        title: "Figure 8: what minimax leaves of what the linear fall leaves".into(),
-        x: "number of reversals".into(),
-        y: "max |tau|, minimax / linear".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 8: remaining stress of minimax over that of linear",
+        "number of reversals",
+        "max |tau|, minimax / linear",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }
 
 fn robustness() -> Result<Chart, Error> {
-    let contact = of(power(4.0)?, 0.3)?;
+    let contact = contact_of(power_law(4.0)?, 0.3)?;
     let series = KINDS.into_iter().map(|(kind, name)| {
-        let path = found(&contact, kind, REVERSALS)?.displacements;
+        let path = designed(&contact, kind, REVERSALS)?.displacements;
         let point = |step: u32| {
             let amplitude = 0.01 * f64::from(step);
             let errors = ExecutionErrors { amplitude, friction: 0.0, seed: SEED };
@@ -110,10 +114,10 @@ fn robustness() -> Result<Chart, Error> {
         };
         Ok(Series::line(name, (0..=8).map(point).collect::<Result<_, Error>>()?))
     });
-    Ok(Chart {
-        title: "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4".into(),
-        x: "standard deviation of each amplitude, %".into(),
-        y: "max |tau| / (mu p_max)".into(),
-        series: series.collect::<Result<_, Error>>()?,
-    })
+    Ok(Chart::new(
+        "Figure 9: mean of the largest stress, 20 reversals with errors, z ~ r^4",
+        "standard deviation of each amplitude, %",
+        "max |tau| / (mu p_max)",
+        series.collect::<Result<_, Error>>()?,
+    ))
 }

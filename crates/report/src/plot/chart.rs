@@ -1,4 +1,4 @@
-//! A plain line or dot chart as SVG, over plain or logarithmic axes.
+//! A line or dot chart as SVG, over plain or logarithmic axes.
 
 use plotters::prelude::*;
 
@@ -23,7 +23,7 @@ pub struct Series {
     joined: bool,
 }
 
-/// Distinct in hue and in lightness, so that they stay apart for colour-blind readers and in print.
+/// Distinct in hue and in lightness, so that colour-blind readers can distinguish them, in print too.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 90, 181),
     RGBColor(220, 50, 32),
@@ -32,7 +32,7 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(230, 159, 0),
     RGBColor(0, 130, 90),
 ];
-/// Twice what is shown on a page: the backend draws in whole pixels, which would make smooth curves waver.
+/// Twice the size shown on a page: the backend draws in whole pixels, which would make smooth curves jagged.
 const SIZE: (u32, u32) = (1520, 920);
 /// The part of the height kept free for the legend.
 const HEADROOM: f64 = 0.22;
@@ -50,6 +50,11 @@ impl Series {
 }
 
 impl Chart {
+    /// A chart with its title, the labels of abscissa and ordinate, and its series.
+    pub fn new(title: &str, x: &str, y: &str, series: Vec<Series>) -> Chart {
+        Chart { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), series }
+    }
+
     /// The chart as an SVG document.
     pub fn svg(&self) -> Result<String, String> {
         let mut text = String::new();
@@ -57,7 +62,7 @@ impl Chart {
         Ok(text)
     }
 
-    /// The same over logarithmic axes, from decade to decade; what is not above nought is left out.
+    /// The same over logarithmic axes, from decade to decade; points that are not above zero are left out.
     pub fn svg_over_decades(mut self) -> Result<String, String> {
         for series in &mut self.series {
             series.points.retain(|point| point.0 > 0.0 && point.1 > 0.0);
@@ -69,7 +74,7 @@ impl Chart {
     }
 
     fn draw(&self, text: &mut String, decades: bool) -> Result<(), Box<dyn std::error::Error>> {
-        super::ready();
+        super::font::register();
         let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let (mut left, mut right) = self.extent(|point| point.0);
@@ -77,10 +82,10 @@ impl Chart {
         let (mut label, mut ticks): (fn(&f64) -> String, _) = (tick, (11, 11));
         if decades {
             (left, right, low, high) = (left.floor(), right.ceil(), low.floor(), high.ceil());
-            // As many as there are decades, so that none falls between two.
+            // One tick a decade.
             (label, ticks) = (decade, ((right - left) as usize + 1, (high - low) as usize + 1));
         }
-        // Curves that fall over decades leave the middle of the left free, where the legend goes then.
+        // Falling curves leave room for the legend at the middle of the left.
         let (margin, headroom, place) = if decades {
             (0.0, 0.0, SeriesLabelPosition::MiddleLeft)
         } else {
@@ -103,7 +108,7 @@ impl Chart {
             .axis_desc_style(("sans-serif", 30))
             .light_line_style(TRANSPARENT)
             .draw()?;
-        // The last first, so that a chart's main curve lies on top.
+        // The first series is drawn last, so that it lies on top.
         for (series, colour) in self.series.iter().zip(COLOURS.iter()).rev() {
             let style = colour.stroke_width(4);
             if series.joined && decades {
@@ -136,7 +141,7 @@ impl Chart {
     }
 }
 
-/// A tick's label, without a sign on nought.
+/// A tick's label, without a sign on zero.
 fn tick(value: &f64) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     if rounded.abs() > 0.0 { rounded.to_string() } else { "0".to_owned() }
@@ -154,8 +159,7 @@ mod tests {
     #[test]
     fn decades_are_labelled_and_what_has_no_logarithm_is_left_out() {
         let points = vec![(1e-5, 1e-3), (0.0, 1.0), (1e-3, 1e-9)];
-        let text = |text: &str| text.to_owned();
-        let chart = Chart { title: text("t"), x: text("x"), y: text("y"), series: vec![Series::line("a", points)] };
+        let chart = Chart::new("t", "x", "y", vec![Series::line("a", points)]);
         let svg = chart.svg_over_decades().unwrap();
         for label in ["1e-5", "1e-4", "1e-3", "1e-9", "1e-6"] {
             assert!(svg.contains(label), "{label}");

@@ -1,4 +1,4 @@
-//! Drawing a plot, on whatever takes lines and letters.
+//! Draws a plot on any backend of plotters.
 
 use std::error::Error;
 use std::ops::Range;
@@ -6,21 +6,21 @@ use std::ops::Range;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Axis, Band, Colour, Panel, Plot, thousandfold};
+use super::{Axis, Band, Colour, Panel, Plot, unit_prefix};
 
-/// Pixels of a plot. Twice what is shown on a page, so that curves and letters are smooth there.
+/// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
-/// Pixels of the margin left of the axes: the labels of all panels begin at one line.
+/// Width of the margin left of the axes, pixels: the same in all panels, so that the axes align.
 const LEFT: u32 = 132;
-/// The part of the height that is kept free above and below curves.
+/// The part of the height that is kept free above and below the curves.
 const MARGIN: f64 = 0.05;
-/// The same where there is a legend.
+/// The part kept free above where there is a legend.
 const HEADROOM: f64 = 0.24;
 
-/// What is smaller is nought on any axis.
-const LEAST: f64 = 1e-200;
+/// Smaller extents are treated as zero.
+const SMALLEST: f64 = 1e-200;
 
-/// What values are divided by, and the label.
+/// The divisor of the values of an axis, and its label.
 struct Scale {
     unit: f64,
     label: String,
@@ -58,30 +58,30 @@ fn draw<DB: DrawingBackend>(plot: &Plot, area: &DrawingArea<DB, Shift>) -> Resul
 where
     DB::ErrorType: 'static,
 {
-    super::ready();
+    super::font::register();
     area.fill(&WHITE)?;
     let titled = area.margin(16, 0, 0, 0).titled(&plot.title, ("sans-serif", 30))?;
     let ends = plot.bands.iter().flat_map(|band| [band.from, band.to]);
-    let across =
+    let x_range =
         plot.panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
-    let extent = extent(across.chain(ends));
+    let extent = extent(x_range.chain(ends));
     let scale = scale(&plot.x, &extent);
     let last = plot.panels.len().saturating_sub(1);
     for (index, (part, panel)) in
         titled.split_evenly((plot.panels.len().max(1), 1)).iter().zip(&plot.panels).enumerate()
     {
         let bands: &[Band] = if index == 0 { &plot.bands } else { &[] };
-        one(part, panel, bands, &extent, &scale, index == last)?;
+        draw_panel(part, panel, bands, &extent, &scale, index == last)?;
     }
     area.present()?;
     Ok(())
 }
 
-fn one<DB: DrawingBackend>(
+fn draw_panel<DB: DrawingBackend>(
     area: &DrawingArea<DB, Shift>,
     panel: &Panel,
     bands: &[Band],
-    across: &Range<f64>,
+    x_range: &Range<f64>,
     x: &Scale,
     lowest: bool,
 ) -> Result<(), Box<dyn Error>>
@@ -89,19 +89,19 @@ where
     DB::ErrorType: 'static,
 {
     let values = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
-    let tall = extent(values);
-    let y = scale(&panel.y, &tall);
-    let span = (tall.end - tall.start) / y.unit;
+    let y_range = extent(values);
+    let y = scale(&panel.y, &y_range);
+    let span = (y_range.end - y_range.start) / y.unit;
     let legend = !bands.is_empty() || panel.curves.iter().any(|curve| !curve.silent);
     let above = if legend { HEADROOM } else { MARGIN };
-    let (low, high) = (tall.start / y.unit - MARGIN * span, tall.end / y.unit + above * span);
+    let (low, high) = (y_range.start / y.unit - MARGIN * span, y_range.end / y.unit + above * span);
     let mut axes = ChartBuilder::on(area)
         .margin_left(20)
         .margin_right(36)
         .margin_top(12)
         .x_label_area_size(if lowest { 84 } else { 20 })
         .y_label_area_size(LEFT)
-        .build_cartesian_2d(across.start / x.unit..across.end / x.unit, low..high)?;
+        .build_cartesian_2d(x_range.start / x.unit..x_range.end / x.unit, low..high)?;
     for band in bands {
         let corners = [(band.from / x.unit, low), (band.to / x.unit, high)];
         let shade = band.colour.rgb().mix(0.10);
@@ -124,8 +124,10 @@ where
     for curve in &panel.curves {
         let style = curve.colour.rgb().stroke_width(4);
         let mut named = curve.silent;
-        for stretch in
-            curve.points.split(|point| !shown(&point.0) || !shown(&point.1)).filter(|stretch| !stretch.is_empty())
+        for stretch in curve
+            .points
+            .split(|point| !is_drawable(&point.0) || !is_drawable(&point.1))
+            .filter(|stretch| !stretch.is_empty())
         {
             let points = stretch.iter().map(|point| (point.0 / x.unit, point.1 / y.unit));
             let drawn = if stretch.len() > 1 {
@@ -153,23 +155,23 @@ where
     Ok(())
 }
 
-/// From the least of the values to the largest; if there is but one or none, with something around it.
+/// The range of the values, widened if they are all the same.
 fn extent(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for value in values.filter(shown) {
+    for value in values.filter(is_drawable) {
         (low, high) = (low.min(value), high.max(value));
     }
     if low > high {
         return 0.0..1.0;
     }
-    // What differs in its last digits alone would have labels that are all the same.
+    // Values that differ in their last digits alone would have labels that are all the same.
     let largest = low.abs().max(high.abs());
-    let pad = if largest > LEAST { 0.1 * largest } else { 1.0 };
-    if high - low > LEAST.max(1e-9 * largest) { low..high } else { low - pad..high + pad }
+    let pad = if largest > SMALLEST { 0.1 * largest } else { 1.0 };
+    if high - low > SMALLEST.max(1e-9 * largest) { low..high } else { low - pad..high + pad }
 }
 
-/// Whether a value is on the paper: beyond any physics, sums of two would be infinite.
-fn shown(value: &f64) -> bool {
+/// Whether a value can be drawn: the sum of two larger ones may overflow.
+fn is_drawable(value: &f64) -> bool {
     value.abs() < 1e250
 }
 
@@ -177,13 +179,13 @@ fn scale(axis: &Axis, extent: &Range<f64>) -> Scale {
     match axis.unit {
         None => Scale { unit: 1.0, label: axis.name.to_owned() },
         Some(unit) => {
-            let (divisor, prefix) = thousandfold(extent.start.abs().max(extent.end.abs()));
+            let (divisor, prefix) = unit_prefix(extent.start.abs().max(extent.end.abs()));
             Scale { unit: divisor, label: format!("{} / {prefix}{unit}", axis.name) }
         }
     }
 }
 
-/// A tick's label: a few digits, without a sign on nought.
+/// A tick's label: a few digits, without a sign on zero.
 fn tick(value: &f64) -> String {
     let size = value.abs();
     if size < 1e-12 {

@@ -1,14 +1,12 @@
-//! Plots for people who look at a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. Plain charts of
-//! whatever two quantities, for figures and reports, are in [`chart`].
+//! Plots of a contact: panels of curves over one axis, with shaded bands, as SVG or PNG. The charts of figures and reports
+//! are in [`chart`].
 //!
-//! Each axis is labelled with its quantity and unit; values come in SI and are shown in the thousandfold that suits them.
+//! Each axis is labelled with its quantity and unit; values are given in SI units and shown with a unit prefix that fits.
 
 pub mod chart;
 mod draw;
 mod font;
 mod png;
-
-pub use font::ready;
 
 /// Panels one above the other, over the same axis.
 pub struct Plot {
@@ -22,7 +20,7 @@ pub struct Plot {
     pub bands: Vec<Band>,
 }
 
-/// A quantity and its unit; what is counted has none.
+/// A quantity and its unit; a count has none.
 pub struct Axis {
     /// What is shown.
     pub name: &'static str,
@@ -38,7 +36,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A named line through points, in SI; at what is not finite it is broken.
+/// A named line through points, in SI units; it is interrupted where a value is not finite.
 pub struct Curve {
     /// Its name in the legend.
     pub name: &'static str,
@@ -46,7 +44,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// Its colour.
     pub colour: Colour,
-    /// Without a mark of its own in the legend.
+    /// Not in the legend.
     pub silent: bool,
 }
 
@@ -62,14 +60,14 @@ pub struct Band {
     pub colour: Colour,
 }
 
-/// Colours that stay apart for colour-blind readers and in print.
+/// Colours that colour-blind readers can distinguish, in print too.
 #[derive(Clone, Copy)]
 pub enum Colour {
     /// The first.
     Blue,
     /// The second.
     Red,
-    /// For what stands back.
+    /// For what matters less.
     Grey,
 }
 
@@ -87,12 +85,12 @@ impl Plot {
     /// # Errors
     /// A sentence for the log, if the drawing fails.
     pub fn png(&self) -> Result<Vec<u8>, String> {
-        draw::pixels(self).and_then(|pixels| png::written(&pixels, draw::SIZE)).map_err(|fault| fault.to_string())
+        draw::pixels(self).and_then(|pixels| png::encode(&pixels, draw::SIZE)).map_err(|fault| fault.to_string())
     }
 }
 
-/// What values are divided by to be shown, and the prefix of the unit then.
-fn thousandfold(largest: f64) -> (f64, &'static str) {
+/// The power of a thousand to divide values by, and the prefix of the unit.
+fn unit_prefix(largest: f64) -> (f64, &'static str) {
     const PREFIXES: [(i32, &str); 9] =
         [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
     let fits = |(exponent, _): &&(i32, &str)| largest >= 0.999_999 * 10_f64.powi(*exponent);
@@ -106,14 +104,14 @@ fn thousandfold(largest: f64) -> (f64, &'static str) {
 
 #[cfg(test)]
 mod tests {
-    use super::thousandfold;
+    use super::unit_prefix;
 
     #[test]
     fn a_unit_is_that_of_the_largest_value() {
         for (largest, prefix) in
             [(2.5e-5, "µ"), (1.0, ""), (0.999, "m"), (3.2e8, "M"), (1e3, "k"), (1e-15, "p"), (1e30, "T"), (0.0, "")]
         {
-            assert_eq!(thousandfold(largest).1, prefix, "{largest}");
+            assert_eq!(unit_prefix(largest).1, prefix, "{largest}");
         }
     }
 }

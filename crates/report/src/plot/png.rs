@@ -4,13 +4,13 @@ use std::error::Error;
 
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
-/// Pixels of three bytes as a file.
-pub(super) fn written(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Box<dyn Error>> {
+/// A PNG file of pixels of three bytes.
+pub(super) fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
-    // Even areas repeat as they are; differences between pixels would only add to them.
+    // Areas of one colour compress better as they are than as differences between pixels.
     encoder.set_compression(Compression::Balanced);
     encoder.set_filter(Filter::NoFilter);
     let mut writer = encoder.write_header()?;

@@ -1,8 +1,8 @@
-// What a plot is drawn with: bands, a grid with its numbers, levels and lines.
-import { drawnWords, svg } from "./dom.js";
+// The parts of a plot: bands, the grid with its numbers, levels and series.
+import { svgWithSubscripts, svg } from "./dom.js";
 
-/** Stretches of x with a colour and a name. */
-export function bands(chart) {
+/** Ranges of x with a colour and a name. */
+export function drawBands(chart) {
   const group = svg("g", {});
   for (const { from, to, kind, label } of chart.data.bands ?? []) {
     const [left, right] = [chart.x.at(from), chart.x.at(to)].map((place) =>
@@ -30,8 +30,8 @@ export function bands(chart) {
   return group;
 }
 
-/** The lines of the grid, the numbers at them, and what the axes are called. */
-export function grid(chart) {
+/** The lines of the grid, their numbers, and the titles of the axes. */
+export function drawGrid(chart) {
   const { left, right, top, bottom } = chart.box;
   const group = svg("g", { class: "grid" });
   for (const [value, text] of chart.x.ticks(80)) {
@@ -53,19 +53,19 @@ export function grid(chart) {
     svg(
       "text",
       { class: "title", x: (left + right) / 2, y: bottom + 37, "text-anchor": "middle" },
-      ...drawnWords(chart.x.title()),
+      ...svgWithSubscripts(chart.x.title()),
     ),
     svg(
       "text",
       { class: "title", x: 13, y: middle, "text-anchor": "middle", transform: `rotate(-90 13 ${middle})` },
-      ...drawnWords(chart.y.title()),
+      ...svgWithSubscripts(chart.y.title()),
     ),
   );
   return group;
 }
 
-/** A value of y that means something. */
-export function level(chart, { y, label, kind }) {
+/** A labelled value of y. */
+export function drawLevel(chart, { y, label, kind }) {
   const at = chart.y.at(y);
   return svg(
     "g",
@@ -78,13 +78,13 @@ export function level(chart, { y, label, kind }) {
         y: at + (y > 0 ? 15 : -6),
         "text-anchor": y > 0 ? "start" : "end",
       },
-      ...drawnWords(label ?? ""),
+      ...svgWithSubscripts(label ?? ""),
     ),
   );
 }
 
-/** A series: its line, broken where there are no values, and its dots. */
-export function line(chart, { name, points, kind, dots, label, line = true }) {
+/** A series: its line, interrupted where values are missing, and its dots. */
+export function drawSeries(chart, { name, points, kind, dots, label, line = true }) {
   const places = points.map(([x, y]) => (y === null || (chart.y.log && y <= 0) ? null : [chart.x.at(x), chart.y.at(y)]));
   const drawn = [];
   if (line) {

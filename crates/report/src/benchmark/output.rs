@@ -1,4 +1,4 @@
-//! The report as files: Markdown to read, CSV and JSON to work with, charts to look at.
+//! The report as files: Markdown, CSV, JSON and charts.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -7,29 +7,29 @@ use std::{fs, io};
 
 use crate::plot::chart::{Chart, Series};
 
-use super::{Measured, Row};
+use super::{Report, Row};
 
-/// Errors below this are drawn here: a logarithm has no nought.
-const FLOOR: f64 = 1e-17;
-/// What a table is headed by.
+/// Smaller errors are drawn as this one: a logarithmic axis has no zero.
+const SMALLEST_ERROR: f64 = 1e-17;
+/// The head of each table.
 const HEAD: &str = "| scene | solver | springs | × exact | force error | stress error | at kinks | median, s | quartiles, s | least, s | runs |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-/// Writes `report.md`, `report.csv`, `report.json` and two charts a scene into `dir`, which is made if need be.
+/// Writes `report.md`, `report.csv`, `report.json` and two charts a scene into `dir`, which is created if it does not exist.
 ///
 /// # Errors
-/// Whatever the file system says; a chart that cannot be drawn comes as [`io::ErrorKind::Other`].
-pub fn write(dir: &Path, measured: &Measured) -> io::Result<()> {
+/// An error of the file system; a chart that cannot be drawn is [`io::ErrorKind::Other`].
+pub fn write(dir: &Path, report: &Report) -> io::Result<()> {
     fs::create_dir_all(dir)?;
-    fs::write(dir.join("report.md"), page(measured))?;
-    fs::write(dir.join("report.csv"), csv(&measured.rows))?;
-    let json = serde_json::to_value(measured)?;
+    fs::write(dir.join("report.md"), markdown(report))?;
+    fs::write(dir.join("report.csv"), csv(&report.rows))?;
+    let json = serde_json::to_value(report)?;
     fs::write(dir.join("report.json"), format!("{json:#}\n"))?;
-    for scene in scenes(measured) {
+    for scene in scenes(report) {
         for (name, what, error) in [
             ("stress", "largest error of the shear stress / mu p_max", stress as fn(&Row) -> f64),
             ("force", "largest error of the force / mu F_N", |row: &Row| row.force_error),
         ] {
-            let chart = chart(&measured.rows, scene, what, error);
+            let chart = chart(&report.rows, scene, what, error);
             let svg = chart.svg_over_decades().map_err(io::Error::other)?;
             fs::write(dir.join(format!("{scene}_{name}.svg")), svg)?;
         }
@@ -37,28 +37,28 @@ pub fn write(dir: &Path, measured: &Measured) -> io::Result<()> {
     Ok(())
 }
 
-/// At random radii, not at the kinks, where a radius that is rounded once costs its root.
+/// The error at random radii. At a kink, rounding the radius alone costs the root of the rounding error.
 fn stress(row: &Row) -> f64 {
     row.stress_error
 }
 
-/// In the order in which they were measured.
-fn scenes(measured: &Measured) -> Vec<&str> {
+/// The scenes in the order in which they were measured.
+fn scenes(report: &Report) -> Vec<&str> {
     let mut seen = BTreeSet::new();
-    measured.rows.iter().map(|row| row.scene.as_str()).filter(|scene| seen.insert(*scene)).collect()
+    report.rows.iter().map(|row| row.scene.as_str()).filter(|scene| seen.insert(*scene)).collect()
 }
 
-fn page(measured: &Measured) -> String {
+fn markdown(report: &Report) -> String {
     let mut page = format!(
-        "# Speed against error\n\n{} All of it took {:.0} s.\n\nTimes are of the processor, one thread, so that what else the machine does is not counted. Ratios are medians over pairs: each run of a solver beside one of the exact solver just before it, quartiles in brackets. Errors are the largest: of the force over the path, relative to μ F_N; of the shear stress at 1000 random radii and at the kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\n",
-        measured.machine, measured.seconds
+        "# Speed against error\n\n{} It took {:.0} s.\n\nTimes are processor times of one thread, so that other work on the machine is not counted. Ratios are medians over pairs, each of a run of a solver and a run of the exact solver just before it; quartiles in brackets. Errors are the largest: of the force over the path, relative to μ F_N; of the shear stress at 1000 random radii and at the kinks, relative to μ p_max (to μ times the mean pressure for the cone).\n\n",
+        report.machine, report.seconds
     );
-    if !measured.peers.is_empty() {
-        let _ = writeln!(page, "Peers: {}.\n", measured.peers.join("; "));
+    if !report.external_solvers.is_empty() {
+        let _ = writeln!(page, "External solvers: {}.\n", report.external_solvers.join("; "));
     }
-    for scene in scenes(measured) {
+    for scene in scenes(report) {
         let _ = write!(page, "## {scene}\n\n![]({scene}_stress.svg)\n\n{HEAD}");
-        for row in measured.rows.iter().filter(|row| row.scene == scene) {
+        for row in report.rows.iter().filter(|row| row.scene == scene) {
             let Row { solver, force_error, stress_error, kink_error, median, lower, upper, least, runs, .. } = row;
             let (ratio, ratio_lower, ratio_upper) = (short(row.ratio), short(row.ratio_lower), short(row.ratio_upper));
             let springs = row.springs.map(|count| count.to_string()).unwrap_or_default();
@@ -70,16 +70,16 @@ fn page(measured: &Measured) -> String {
         }
         let _ = writeln!(page);
     }
-    if !measured.missing.is_empty() {
+    if !report.missing.is_empty() {
         let _ = write!(page, "## Not measured\n\n| scene | solver | why |\n|---|---|---|\n");
-        for missing in &measured.missing {
+        for missing in &report.missing {
             let _ = writeln!(page, "| {} | {} | {} |", missing.scene, missing.solver, missing.reason);
         }
     }
     page
 }
 
-/// Three digits, without an exponent where none is needed.
+/// Two or three digits, with an exponent for small values alone.
 fn short(value: f64) -> String {
     if value >= 100.0 {
         format!("{value:.0}")
@@ -111,14 +111,15 @@ fn chart(rows: &[Row], scene: &str, what: &str, error: fn(&Row) -> f64) -> Chart
     let mut seen = BTreeSet::new();
     let solvers: Vec<&str> = rows().map(|row| row.solver.as_str()).filter(|solver| seen.insert(*solver)).collect();
     let series = solvers.into_iter().map(|solver| {
-        let points = rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(FLOOR))).collect();
+        let points =
+            rows().filter(|row| row.solver == solver).map(|row| (row.median, error(row).max(SMALLEST_ERROR))).collect();
         if solver == "exact" { Series::dots(solver, points) } else { Series::line(solver, points) }
     });
-    Chart { title: scene.to_owned(), x: "processor time, s".to_owned(), y: what.to_owned(), series: series.collect() }
+    Chart::new(scene, "processor time, s", what, series.collect())
 }
 
 /// Processor, cores, system, compiler and optimisation.
-pub(super) fn machine(compiler: &str) -> String {
+pub(super) fn describe_machine(compiler: &str) -> String {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
     let cpus = read("/proc/cpuinfo");
     let model = cpus.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|(_, name)| name));

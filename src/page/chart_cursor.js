@@ -1,8 +1,8 @@
-// What moves over a plot, and what is switched beside it.
-import { el, svg, words } from "./dom.js";
+// The cursor over a plot, and its legend.
+import { el, svg, withSubscripts } from "./dom.js";
 
-/** The legend, whose entries switch their series off and on. */
-export function keys(chart) {
+/** Draws the legend, whose entries switch their series off and on. */
+export function drawLegend(chart) {
   const named = chart.data.series.filter((series) => series.legend !== false);
   const text = named.map((series) => series.name).join();
   if (named.length < 2 || text === chart.keyed) return;
@@ -21,14 +21,14 @@ export function keys(chart) {
             chart.redraw();
           },
         },
-        words(name),
+        withSubscripts(name),
       ),
     ),
   );
 }
 
-/** Marks a place, with lines of text beside it: `{ x, y, dots, lines, ring }`, or nothing. */
-export function point(chart, hit) {
+/** Marks a position, with lines of text beside it: `{ x, y, dots, lines, ring }`, or nothing. */
+export function drawCursor(chart, hit) {
   chart.pointed = hit;
   if (!chart.cursor) return;
   chart.cursor.replaceChildren();

@@ -1,10 +1,10 @@
-// What is on screen as commands: for a shell with curl, and for Python with requests.
+// The requests behind what is on screen, as commands for curl and as Python with requests.
 import { hasKey } from "./api.js";
 import { el, notice } from "./dom.js";
 
 const base = () => new URL(".", location.href).href.replace(/[?#].*$/, "").replace(/\/$/, "");
 
-const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+const shellQuoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /** Calls `{ method, path, body }` for a shell. */
 export function curl(calls) {
@@ -12,8 +12,8 @@ export function curl(calls) {
   return calls
     .map(({ method, path, body }) => {
       const verb = method === "GET" || (body !== undefined && method === "POST") ? "" : ` -X ${method}`;
-      const data = body === undefined ? "" : ` \\\n  -H 'content-type: application/json' -d ${quoted(JSON.stringify(body))}`;
-      return `curl -s${verb}${key} ${quoted(base() + path)}${data}`;
+      const data = body === undefined ? "" : ` \\\n  -H 'content-type: application/json' -d ${shellQuoted(JSON.stringify(body))}`;
+      return `curl -s${verb}${key} ${shellQuoted(base() + path)}${data}`;
     })
     .join("\n\n");
 }
@@ -24,25 +24,25 @@ export function python(calls) {
   if (hasKey()) head.push('session.headers["authorization"] = "Bearer " + os.environ["STICKSLIP_KEY"]');
   else head.splice(0, 1);
   const blocks = calls.map(({ method, path, body }) => {
-    const data = body === undefined ? "" : `, json=${literal(body)}`;
+    const data = body === undefined ? "" : `, json=${pythonLiteral(body)}`;
     return `\nreply = session.${method.toLowerCase()}(base + ${JSON.stringify(path)}${data})\nreply.raise_for_status()\nprint(reply.json())`;
   });
   return [...head, ...blocks].join("\n");
 }
 
-function literal(value) {
+function pythonLiteral(value) {
   if (value === null || value === undefined) return "None";
   if (typeof value === "boolean") return value ? "True" : "False";
   if (Array.isArray(value)) return `[${value.map(literal).join(", ")}]`;
   if (typeof value === "object") {
     const members = Object.entries(value).filter(([, member]) => member !== undefined);
-    return `{${members.map(([name, member]) => `${JSON.stringify(name)}: ${literal(member)}`).join(", ")}}`;
+    return `{${members.map(([name, member]) => `${JSON.stringify(name)}: ${pythonLiteral(member)}`).join(", ")}}`;
   }
   return JSON.stringify(value);
 }
 
-/** Buttons that show the calls of what is on screen, ready to be copied. */
-export function copying(calls) {
+/** Buttons that show the calls of what is on screen, to be copied. */
+export function copyButtons(calls) {
   const button = (name, write) =>
     el("button", { type: "button", class: "quiet", onclick: () => show(name, write(calls())) }, `Copy as ${name}`);
   return el("span", { class: "row copying" }, button("curl", curl), button("Python", python));
@@ -50,13 +50,13 @@ export function copying(calls) {
 
 async function show(name, text) {
   const dialog = document.getElementById("code");
-  dialog.querySelector("h2").textContent = `The same by ${name}`;
+  dialog.querySelector("h2").textContent = `The requests for ${name}`;
   const area = dialog.querySelector("textarea");
   area.value = text;
   area.rows = Math.min(16, text.split("\n").length + 2);
   dialog.showModal();
   area.select();
-  // Where the page is not served safely there is no clipboard, and the text is selected for Ctrl+C.
+  // Without HTTPS there is no clipboard: the text is selected for Ctrl+C.
   try {
     await navigator.clipboard.writeText(text);
     notice(`Copied for ${name}.`);

@@ -1,5 +1,5 @@
-// From values to pixels and back: ranges, ticks, and the unit that suits them.
-import { plain, scaled } from "./units.js";
+// From values to pixels and back: ranges, ticks, and the unit prefix.
+import { formatNumber, unitScale } from "./units.js";
 
 /** One axis of a plot, linear or logarithmic. */
 export class Axis {
@@ -14,7 +14,7 @@ export class Axis {
     [this.from, this.to] = range;
     this.start = start;
     this.end = end;
-    const shown = scaled(Math.max(Math.abs(this.from), Math.abs(this.to)), this.unit);
+    const shown = unitScale(Math.max(Math.abs(this.from), Math.abs(this.to)), this.unit);
     this.scale = this.unit && !this.log ? shown : { factor: 1, unit: this.unit };
   }
 
@@ -35,26 +35,26 @@ export class Axis {
   /** Values with their texts, about one in so many pixels. */
   ticks(apart) {
     const count = Math.max(2, Math.floor(Math.abs(this.end - this.start) / apart));
-    if (this.log) return decades(this.from, this.to, count);
+    if (this.log) return decadeTicks(this.from, this.to, count);
     const { factor } = this.scale;
     const span = (this.to - this.from) / factor;
-    const wide = rounded(span / count);
-    // Fewer than three hardly tell a scale.
-    const step = span < 3 * wide ? rounded(0.4 * wide) : wide;
+    const wide = roundStep(span / count);
+    // Fewer than three ticks hardly show a scale.
+    const step = span < 3 * wide ? roundStep(0.4 * wide) : wide;
     const first = Math.ceil(this.from / factor / step - 1e-9);
     const last = Math.floor(this.to / factor / step + 1e-9);
     const numbers = Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => (first + index) * step);
-    return numbers.map((number) => [number * factor, plain(Number(number.toPrecision(10)), 6)]);
+    return numbers.map((number) => [number * factor, formatNumber(Number(number.toPrecision(10)), 6)]);
   }
 }
 
 /** The next larger of 1, 2, 5, 10, … */
-function rounded(step) {
+function roundStep(step) {
   const power = 10 ** Math.floor(Math.log10(step));
   return power * [1, 2, 5, 10].find((digit) => digit * power >= step * 0.999);
 }
 
-function decades(from, to, count) {
+function decadeTicks(from, to, count) {
   const [first, last] = [Math.floor(Math.log10(from)), Math.ceil(Math.log10(to))];
   const narrow = last - first <= 2;
   const every = Math.max(1, Math.ceil((last - first) / count));
@@ -63,11 +63,11 @@ function decades(from, to, count) {
     for (const digit of narrow ? [1, 2, 5] : [1]) found.push(digit * 10 ** power);
   }
   const inside = found.filter((value) => value >= from * 0.999 && value <= to * 1.001);
-  return inside.map((value) => [value, value >= 1e-3 && value < 1e5 ? plain(value) : powers(value)]);
+  return inside.map((value) => [value, value >= 1e-3 && value < 1e5 ? formatNumber(value) : powerOfTen(value)]);
 }
 
 /** A value as a power of ten with raised digits. */
-function powers(value) {
+function powerOfTen(value) {
   const power = Math.floor(Math.log10(value) + 1e-9);
   const digit = Math.round(value / 10 ** power);
   const raised = String(power).replace(/./g, (sign) => (sign === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[sign]));
@@ -75,7 +75,7 @@ function powers(value) {
 }
 
 /** The range of some values, with a margin. */
-export function around(values, log) {
+export function dataRange(values, log) {
   const finite = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
   if (!finite.length) return log ? [0.1, 10] : [-1, 1];
   const low = finite.reduce((least, value) => Math.min(least, value));

@@ -1,13 +1,13 @@
 // The list of contacts, with a search.
 import { pages } from "./api.js";
-import { copying } from "./code.js";
+import { copyButtons } from "./copy_as_code.js";
 import { el } from "./dom.js";
 
 const MOST = 5000;
 const SHOWN = 200;
 
 /** Shows the list in `main`. */
-export async function list(main) {
+export async function contactList(main) {
   const items = (await pages("/contacts", MOST)).reverse();
   const rows = el("ul", { class: "list" });
   const said = el("p", { class: "note", "aria-live": "polite" });
@@ -50,7 +50,7 @@ export async function list(main) {
       { class: "head" },
       el("h1", {}, "Contacts"),
       el("a", { class: "button primary", href: "#/new", id: "new" }, "New contact"),
-      copying(() => [{ method: "GET", path: "/contacts?limit=1000" }]),
+      copyButtons(() => [{ method: "GET", path: "/contacts?limit=1000" }]),
     ),
     ...(items.length ? [search, said, rows] : [empty]),
   );

@@ -1,18 +1,18 @@
-// The form that makes a contact, and shows what follows from it as one types.
+// The form that creates a contact, and shows its figures while one types.
 import { call } from "./api.js";
-import { materials, preloads } from "./bodies.js";
 import { Chart } from "./chart.js";
-import { copying } from "./code.js";
-import { el, latest, notice, settled, words } from "./dom.js";
-import { Fields, NumberField, TextField } from "./field.js";
-import { shape } from "./shape.js";
-import { plain, shown } from "./units.js";
+import { copyButtons } from "./copy_as_code.js";
+import { el, latestOnly, notice, debounce, withSubscripts } from "./dom.js";
+import { Fields, NumberField, TextField } from "./form_fields.js";
+import { materialFields, preloadFields } from "./material_fields.js";
+import { profileFields } from "./profile_fields.js";
+import { formatNumber, formatQuantity } from "./units.js";
 
 /** Shows the form in `main`. */
-export function create(main, signal) {
+export function createForm(main, signal) {
   const form = new Fields();
   const ready = {};
-  const ask = settled(() => derive(), 200);
+  const ask = debounce(() => derive(), 200);
   const changed = () => {
     if (ready.now) ask();
   };
@@ -23,10 +23,10 @@ export function create(main, signal) {
     "Label (may be left out)",
     el("input", { type: "text", maxlength: 200, autocomplete: "off" }),
   );
-  const profile = shape(form, () => "/profile", changed);
-  const material = materials(form, changed);
+  const profile = profileFields(form, () => "/profile", changed);
+  const material = materialFields(form, changed);
   const friction = new NumberField(form, () => "/friction", { label: "Coefficient of friction μ", value: "0.3" });
-  const preload = preloads(form, changed);
+  const preload = preloadFields(form, changed);
   const definition = () => ({
     profile: profile.value(),
     material: material.value(),
@@ -52,7 +52,7 @@ export function create(main, signal) {
     chart.element,
     warnings,
   );
-  const derive = latest(async () => {
+  const derive = latestOnly(async () => {
     try {
       const reply = await call(
         "POST",
@@ -62,8 +62,8 @@ export function create(main, signal) {
       );
       form.clear();
       derived.classList.remove("stale");
-      figures.replaceChildren(...listed(reply.contact));
-      chart.draw(pressed(reply, Number(friction.value)));
+      figures.replaceChildren(...figureList(reply.contact));
+      chart.draw(pressureData(reply, Number(friction.value)));
       warnings.replaceChildren(...reply.warnings.map((warning) => el("li", {}, warning.message)));
     } catch (error) {
       if (signal.aborted) return;
@@ -87,7 +87,7 @@ export function create(main, signal) {
       "div",
       { class: "head" },
       el("h1", {}, "New contact"),
-      copying(() => [{ method: "POST", path: "/contacts", body: body() }]),
+      copyButtons(() => [{ method: "POST", path: "/contacts", body: body() }]),
     ),
     el(
       "form",
@@ -111,22 +111,22 @@ export function create(main, signal) {
 }
 
 /** The figures of a contact, by name. */
-export function listed(figures) {
-  const entry = (text, value) => el("div", {}, el("dt", {}, words(text)), el("dd", {}, value));
+export function figureList(figures) {
+  const entry = (text, value) => el("div", {}, el("dt", {}, withSubscripts(text)), el("dd", {}, value));
   return [
-    entry("Normal force F_N", shown(figures.normal_force, "N")),
-    entry("Indentation d", shown(figures.indentation, "m")),
-    entry("Contact radius a", shown(figures.contact_radius, "m")),
-    entry("Largest pressure p_max", shown(figures.max_pressure, "Pa")),
-    entry("Gross slip from u_max", shown(figures.gross_slip_displacement, "m")),
-    entry("Gross slip at μ F_N", shown(figures.gross_slip_force, "N")),
-    entry("Reduced modulus E*", shown(figures.e_star, "Pa")),
-    entry("Stiffness ratio E*/G*", plain(figures.e_star / figures.g_star)),
+    entry("Normal force F_N", formatQuantity(figures.normal_force, "N")),
+    entry("Indentation d", formatQuantity(figures.indentation, "m")),
+    entry("Contact radius a", formatQuantity(figures.contact_radius, "m")),
+    entry("Largest pressure p_max", formatQuantity(figures.max_pressure, "Pa")),
+    entry("Gross slip from u_max", formatQuantity(figures.gross_slip_displacement, "m")),
+    entry("Gross slip at μ F_N", formatQuantity(figures.gross_slip_force, "N")),
+    entry("Reduced modulus E*", formatQuantity(figures.e_star, "Pa")),
+    entry("Stiffness ratio E*/G*", formatNumber(figures.e_star / figures.g_star)),
   ];
 }
 
-/** The pressure, and what friction can bear. */
-function pressed({ contact: figures, stress: { radius, pressure } }, coefficient) {
+/** The pressure, and the friction bound. */
+function pressureData({ contact: figures, stress: { radius, pressure } }, coefficient) {
   const mean = figures.normal_force / (Math.PI * figures.contact_radius ** 2);
   const points = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
   return {

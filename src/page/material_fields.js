@@ -1,7 +1,7 @@
-// The parts of the form that say which bodies touch, and how they are pressed together.
+// The parts of the form for the material of the bodies, and for the preload.
 import { el } from "./dom.js";
-import { Choice, NumberField } from "./field.js";
-import { MATERIALS, MODULUS, PRELOADS } from "./profiles.js";
+import { Choice, NumberField } from "./form_fields.js";
+import { MATERIALS, MODULUS, PRELOADS } from "./form_options.js";
 
 function body(form, at, title) {
   const modulus = new NumberField(form, () => `${at}/youngs_modulus`, {
@@ -28,8 +28,8 @@ function body(form, at, title) {
   return { element, value: () => ({ youngs_modulus: modulus.value, poisson_ratio: ratio.value }) };
 }
 
-/** Which bodies touch. */
-export function materials(form, changed) {
+/** The fields of the material. */
+export function materialFields(form, changed) {
   const kinds = { rigid: "Elastic on rigid", two: "Two elastic bodies", effective: "Reduced moduli" };
   const choice = new Choice(form, () => "/material", "Elasticity", kinds, "rigid");
   const fields = el("div", { class: "fields" });
@@ -60,8 +60,8 @@ export function materials(form, changed) {
   return { element: el("div", {}, choice.element, fields), value: () => read() };
 }
 
-/** How they are pressed together. */
-export function preloads(form, changed) {
+/** The fields of the preload. */
+export function preloadFields(form, changed) {
   const choice = new Choice(
     form,
     () => "/preload",

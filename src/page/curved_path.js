@@ -1,32 +1,32 @@
-// The way between recorded states. A move is straight in what it names, and the loop is curved: the past is computed anew in
-// small steps.
+// The path between recorded states. The force is curved during a move, so the service computes the history again in small
+// steps.
 import { call } from "./api.js";
 
-const MOST = 4000;
-const FINE = 32;
+const MAX_STEPS = 4000;
+const MAX_STEPS_OF_A_MOVE = 32;
 
 /** The path of a contact from `first` over the states of `history`: `[displacement, force, sequence]`. */
-export function straight(first, history) {
+export function straightPath(first, history) {
   return [first, ...history].map(({ state, sequence }) => [state.displacement, state.force, sequence]);
 }
 
-/** How many steps a move is worth that goes from one state to another. */
-function pieces(from, to, span) {
+/** Into how many steps to split the move from one state to another. */
+function stepCount(from, to, span) {
   const wide = Math.abs(to.displacement - from.displacement) / span.displacement;
   const high = Math.abs(to.force - from.force) / span.force;
-  return Math.max(1, Math.min(FINE, Math.ceil(FINE * Math.max(wide || 0, high || 0))));
+  return Math.max(1, Math.min(MAX_STEPS_OF_A_MOVE, Math.ceil(MAX_STEPS_OF_A_MOVE * Math.max(wide || 0, high || 0))));
 }
 
-/** How the moves of a history are cut, for a loop of so much width and height. */
-export function cuts(first, history, span) {
-  const counts = history.map(({ state }, index) => pieces((history[index - 1] ?? first).state, state, span));
+/** Into how many steps to split each move, for a loop of the width and height of `span`. */
+export function stepCounts(first, history, span) {
+  const counts = history.map(({ state }, index) => stepCount((history[index - 1] ?? first).state, state, span));
   const sum = counts.reduce((sum, count) => sum + count, 0);
-  const coarser = Math.max(1, sum / MOST);
+  const coarser = Math.max(1, sum / MAX_STEPS);
   return counts.map((count) => Math.max(1, Math.floor(count / coarser)));
 }
 
 /** The same path with its curves, as the service computes it. */
-export async function curved(definition, first, history, counts, signal) {
+export async function curvedPath(definition, first, history, counts, signal) {
   const moves = [];
   const owners = [];
   for (const [index, item] of history.entries()) {

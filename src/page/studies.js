@@ -1,19 +1,20 @@
-// What a contact like this one would do: the stress that remains against the number of reversals, and what solvers cost.
+// Studies of a virgin contact of this kind: remaining stress against the number of reversals, and speed against error of the
+// solvers.
 import { call, offered } from "./api.js";
 import { Chart } from "./chart.js";
-import { copying } from "./code.js";
-import { el, notice, words } from "./dom.js";
-import { anew, PROTOCOLS } from "./run.js";
+import { copyButtons } from "./copy_as_code.js";
+import { el, notice, withSubscripts } from "./dom.js";
+import { virginContact, PROTOCOLS } from "./protocol_run.js";
 
 const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
-// A logarithmic axis has no place for an error of nought.
-const LEAST = 1e-17;
+// Smaller errors are drawn as this one: a logarithmic axis has no zero.
+const SMALLEST_ERROR = 1e-17;
 
 /** The cards below a contact. */
-export function studies(about) {
-  const element = el("div", { class: "studies" }, residual(about));
+export function studyCards(model) {
+  const element = el("div", { class: "studies" }, residual(model));
   offered("/accuracy").then((is) => {
-    if (is) element.append(accuracy(about));
+    if (is) element.append(accuracy(model));
   });
   return element;
 }
@@ -48,15 +49,15 @@ function card({ title, text, chart, calls, compute, id, signal }) {
   return el(
     "section",
     { class: "card" },
-    el("div", { class: "head" }, el("h2", {}, words(title)), copying(calls)),
-    el("p", {}, words(text)),
+    el("div", { class: "head" }, el("h2", {}, withSubscripts(title)), copyButtons(calls)),
+    el("p", {}, withSubscripts(text)),
     el("p", { class: "row" }, button, bar),
     chart.element,
   );
 }
 
-function residual(about) {
-  const full = about.figures.max_pressure && about.friction * about.figures.max_pressure;
+function residual(model) {
+  const full = model.figures.max_pressure && model.friction * model.figures.max_pressure;
   const chart = new Chart({
     name: "residual",
     title: "What remains after N_R reversals",
@@ -67,7 +68,7 @@ function residual(about) {
       : "The stress is infinite at one radius; the largest that is not is shown.",
   });
   const request = (kind, reversals) => ({
-    contact: about.definition,
+    contact: model.definition,
     path: { [kind]: { reversals } },
     steps: "last",
     residual: true,
@@ -78,10 +79,10 @@ function residual(about) {
     let done = 0;
     for (const reversals of REVERSALS) {
       for (const kind of kinds) {
-        const { residual: left } = await call("POST", "/simulate", request(kind, reversals), about.signal);
+        const { residual: left } = await call("POST", "/simulate", request(kind, reversals), model.signal);
         const peaks = left.peaks.map((peak) => Math.abs(peak.shear ?? NaN)).filter(Number.isFinite);
         const most = left.max ?? (peaks.length ? Math.max(...peaks) : null);
-        // What is nought has no place on a logarithmic axis.
+        // A logarithmic axis has no zero.
         found[kind].push([reversals, ...[most, left.mean, left.min].map((value) => value / (full || 1) || null)]);
         report((done += 1) / REVERSALS.length / kinds.length);
       }
@@ -104,16 +105,16 @@ function residual(about) {
   };
   return card({
     id: "compute-residual",
-    signal: about.signal,
+    signal: model.signal,
     title: "Residual stress against reversals",
     chart,
     compute,
-    text: "For this shape, friction and preload, from a virgin contact: how much shear stress is left after a run with so many reversals.",
+    text: "For this shape, friction and preload, from a virgin contact: how much shear stress remains after that many reversals.",
     calls: () => [{ method: "POST", path: "/simulate", body: request("falling_amplitude", 20) }],
   });
 }
 
-function accuracy(about) {
+function accuracy(model) {
   const chart = new Chart({
     name: "accuracy",
     title: "Speed against error",
@@ -123,16 +124,16 @@ function accuracy(about) {
     y: { label: "Error of the stress / (μ p_max)", log: true },
   });
   chart.more = (_, series) => [series.name];
-  const body = () => ({ contact: anew(about), path: { falling_amplitude: { reversals: 20 } } });
+  const body = () => ({ contact: virginContact(model), path: { falling_amplitude: { reversals: 20 } } });
   const named = (solver) =>
     typeof solver === "string"
       ? solver
       : Object.entries(solver)
-          .map(([name, about]) => `${about?.count ?? ""} ${name}`.trim())
+          .map(([name, options]) => `${options?.count ?? ""} ${name}`.trim())
           .join();
   const compute = async () => {
-    const { rows } = await call("POST", "/accuracy", body(), about.signal);
-    const error = (row) => (row.stress_error === null ? null : Math.max(row.stress_error, LEAST));
+    const { rows } = await call("POST", "/accuracy", body(), model.signal);
+    const error = (row) => (row.stress_error === null ? null : Math.max(row.stress_error, SMALLEST_ERROR));
     const series = rows.map((row, index) => ({
       name: named(row.solver),
       kind: `solver s${index}`,
@@ -150,11 +151,11 @@ function accuracy(about) {
   };
   return card({
     id: "compute-accuracy",
-    signal: about.signal,
+    signal: model.signal,
     title: "Speed against error",
     chart,
     compute,
-    text: "The scene of 20 reversals on this contact by each solver: what it costs on this server, and how wrong it is.",
+    text: "The scene of 20 reversals on this contact by each solver: its time on this server, and its error.",
     calls: () => [{ method: "POST", path: "/accuracy", body: body() }],
   });
 }

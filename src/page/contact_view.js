@@ -1,54 +1,54 @@
-// What one contact looks like on the page: its plots, its words, and what moves it.
+// The elements of the view of a contact: its plots, its state in words, and the controls that move it.
 import { call } from "./api.js";
-import { copying } from "./code.js";
-import { knob } from "./controls.js";
+import { contactPlots } from "./contact_plots.js";
+import { copyButtons } from "./copy_as_code.js";
+import { figureList } from "./create_form.js";
 import { el, notice } from "./dom.js";
-import { listed } from "./form.js";
-import { plots } from "./plots.js";
-import { guide } from "./run.js";
-import { story } from "./story.js";
-import { studies } from "./study.js";
+import { moveControl } from "./move_controls.js";
+import { protocolCard } from "./protocol_run.js";
+import { stateText } from "./state_text.js";
+import { studyCards } from "./studies.js";
 
-/** The stresses that are shown. */
+/** The query for the stresses that are shown. */
 export const FIELDS = "points=300&residual=true&fields=pressure,shear,slip,displacement";
-const LIVE = { live: "live", waiting: "connecting again …", deleted: "deleted", expired: "expired", refused: "not allowed" };
+const CONNECTION = { live: "live", waiting: "reconnecting …", deleted: "deleted", expired: "expired", refused: "not allowed" };
 
-/** The elements for a contact, and what tells them of changes. */
-export function layout(about, session) {
-  const { id, figures } = about;
-  const drawn = plots();
+/** The elements for a contact, and functions that update them. */
+export function contactView(model, contact) {
+  const { id, figures } = model;
+  const plots = contactPlots();
   const live = el("span", { class: "badge", role: "status" }, "connecting …");
-  const told = el("div", { class: "story", "aria-live": "polite" });
-  const knobs = [
-    knob({
+  const stateElement = el("div", { class: "state-text", "aria-live": "polite" });
+  const controls = [
+    moveControl({
       name: "displacement",
       label: "Displacement U",
       unit: "m",
       value: (state) => state.displacement,
       limits: (state) => {
-        const reach = Math.max(about.reach(state), Math.abs(state.displacement));
+        const reach = Math.max(model.reach(state), Math.abs(state.displacement));
         return [-reach, reach];
       },
-      send: (displacement) => about.move({ displacement }),
+      send: (displacement) => model.move({ displacement }),
     }),
-    knob({
+    moveControl({
       name: "force",
       label: "Tangential force F",
       unit: "N",
       value: (state) => state.force,
       limits: (state) => {
-        const limit = 0.999 * about.friction * state.normal_force || 1;
+        const limit = 0.999 * model.friction * state.normal_force || 1;
         return [-limit, limit];
       },
-      send: (force) => about.move({ force }),
+      send: (force) => model.move({ force }),
     }),
-    knob({
+    moveControl({
       name: "load",
       label: "Normal load F_N",
       unit: "N",
       value: (state) => state.normal_force,
       limits: (state) => [0, Math.max(2 * figures.normal_force, state.normal_force) || 10],
-      send: (normal_force) => about.move({ normal_force }),
+      send: (normal_force) => model.move({ normal_force }),
     }),
   ];
   const jump = (text, displacement) =>
@@ -56,12 +56,12 @@ export function layout(about, session) {
       "button",
       {
         type: "button",
-        onclick: () => about.move({ displacement: displacement() }).catch((error) => notice(error.message, true)),
+        onclick: () => model.move({ displacement: displacement() }).catch((error) => notice(error.message, true)),
       },
       text,
     );
   const remove = async () => {
-    if (!confirm("Delete this contact and its past?")) return;
+    if (!confirm("Delete this contact and its history?")) return;
     try {
       await call("DELETE", `/contacts/${id}`);
       location.hash = "#/";
@@ -77,7 +77,7 @@ export function layout(about, session) {
     }
   };
   const calls = () => {
-    const last = about.history.at(-1)?.move;
+    const last = model.history.at(-1)?.move;
     return [
       { method: "GET", path: `/contacts/${id}` },
       { method: "GET", path: `/contacts/${id}/stress?${FIELDS}` },
@@ -88,25 +88,25 @@ export function layout(about, session) {
   const side = el(
     "aside",
     { class: "side" },
-    told,
+    stateElement,
     el(
       "section",
       { class: "card hands", "aria-label": "Move it" },
       el("h2", {}, "Move it"),
-      ...knobs.map((one) => one.element),
+      ...controls.map((one) => one.element),
       el(
         "div",
         { class: "row" },
-        jump("← slip", () => -about.reach(about.state) / 1.5),
+        jump("← slip", () => -model.reach(model.state) / 1.5),
         jump("U = 0", () => 0),
-        jump("slip →", () => about.reach(about.state) / 1.5),
+        jump("slip →", () => model.reach(model.state) / 1.5),
       ),
     ),
     el(
       "details",
       { class: "card preload" },
       el("summary", {}, "Figures at the preload"),
-      el("dl", { class: "figures" }, listed(figures)),
+      el("dl", { class: "figures" }, figureList(figures)),
     ),
   );
   const element = el(
@@ -115,26 +115,26 @@ export function layout(about, session) {
     el(
       "div",
       { class: "head" },
-      el("h1", {}, session.label ?? "Unnamed contact"),
+      el("h1", {}, contact.label ?? "Unnamed contact"),
       live,
       el("span", { class: "faint" }, id),
-      copying(calls),
+      copyButtons(calls),
       el("button", { type: "button", class: "quiet", onclick: fork }, "Fork"),
       el("button", { type: "button", class: "quiet danger", onclick: remove }, "Delete"),
     ),
-    el("div", { class: "bench" }, side, el("div", { class: "plots" }, ...drawn.all.map((plot) => plot.element))),
-    guide(about),
-    studies(about),
+    el("div", { class: "contact-view" }, side, el("div", { class: "plots" }, ...plots.all.map((plot) => plot.element))),
+    protocolCard(model),
+    studyCards(model),
   );
   return {
     element,
-    plots: drawn,
+    plots,
     show: (state) => {
-      told.replaceChildren(...story(state, about));
-      for (const one of knobs) one.show(state);
+      stateElement.replaceChildren(...stateText(state, model));
+      for (const one of controls) one.show(state);
     },
     report: (what) => {
-      live.textContent = LIVE[what] ?? what;
+      live.textContent = CONNECTION[what] ?? what;
       live.classList.toggle("on", what === "live");
     },
   };

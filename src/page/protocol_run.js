@@ -1,21 +1,21 @@
-// The guided run: a to and fro that dies away, one reversal after the other, so that the shear stress goes out of the contact.
+// Runs a protocol on a contact, move by move: reversals of falling amplitude that reduce its shear stress.
 import { call, offered } from "./api.js";
-import { copying } from "./code.js";
-import { el, pause, words } from "./dom.js";
-import { plain, shown } from "./units.js";
+import { copyButtons } from "./copy_as_code.js";
+import { el, pause, withSubscripts } from "./dom.js";
+import { formatNumber, formatQuantity } from "./units.js";
 
 export const PROTOCOLS = { falling_amplitude: "Falling amplitude (linear)", equal_peaks: "Equal peaks (for this shape)" };
-/** The protocol that the service makes for the present state of a contact. */
+/** The protocol that the service computes from the present state of a contact. */
 const RELAX = "relax";
-/** What a run lasts, if it has enough reversals, in ms; and what one of them lasts at the most. */
-const [LASTS, LONGEST] = [6000, 400];
+/** Duration of a run with many moves, and longest pause between two moves, ms. */
+const [RUN_TIME, MAX_PAUSE] = [6000, 400];
 
-/** A contact without a past, at the present load of a session. */
-export const anew = ({ definition, state }) => ({ ...definition, preload: { indentation: state.indentation } });
+/** A virgin contact, at the present load of a contact. */
+export const virginContact = ({ definition, state }) => ({ ...definition, preload: { indentation: state.indentation } });
 
-/** The card that runs a protocol on a session. */
-export function guide(about) {
-  const { id, signal } = about;
+/** The card that runs a protocol on a contact. */
+export function protocolCard(model) {
+  const { id, signal } = model;
   const kind = el(
     "select",
     { id: "protocol" },
@@ -23,7 +23,7 @@ export function guide(about) {
   );
   const count = el("input", { id: "reversals", type: "number", min: 1, max: 1000, value: "20" });
   const bar = el("progress", { id: "progress", max: 1, value: 0, "aria-label": "Progress of the run" });
-  const told = el("p", { class: "told", role: "status", id: "run-told" });
+  const status = el("p", { class: "status", role: "status", id: "run-status" });
   const start = el("button", { class: "primary", id: "run" }, "Run");
   const stop = el("button", { type: "button", hidden: true, onclick: () => halt?.abort() }, "Stop");
   let halt = null;
@@ -31,27 +31,27 @@ export function guide(about) {
   const remaining = async () =>
     (await call("GET", `/contacts/${id}/stress?points=2&residual=true`, undefined, signal)).residual;
   const amount = ({ max }) => {
-    const { max_pressure: full } = about.figures;
+    const { max_pressure: full } = model.figures;
     if (max === null) return "an infinite shear stress at one radius";
     const share =
-      full && about.figures.normal_force === about.state.normal_force
-        ? ` (${plain((100 * max) / (about.friction * full), 3)} % of μ p_max)`
+      full && model.figures.normal_force === model.state.normal_force
+        ? ` (${formatNumber((100 * max) / (model.friction * full), 3)} % of μ p_max)`
         : "";
-    return `up to ${shown(max, "Pa", 3)} of shear stress${share}`;
+    return `up to ${formatQuantity(max, "Pa", 3)} of shear stress${share}`;
   };
   const relax = `/contacts/${id}/relax`;
   offered("/contacts/{id}/relax").then((is) => {
     if (is) kind.append(el("option", { value: RELAX }, "Least stress, from the present state"));
   });
   const path = () => ({ [kind.value]: { reversals: Number(count.value) } });
-  const whole = () =>
+  const requestOfRun = () =>
     kind.value === RELAX
       ? { method: "POST", path: relax, body: { reversals: Number(count.value) } }
       : { method: "POST", path: `/contacts/${id}/path`, body: { path: path(), steps: "last" } };
   const displacements = async () => {
     if (kind.value === RELAX)
       return (await call("POST", relax, { reversals: Number(count.value), dry_run: true }, signal)).path.displacement;
-    const { steps } = await call("POST", "/simulate", { contact: anew(about), path: path() }, signal);
+    const { steps } = await call("POST", "/simulate", { contact: virginContact(model), path: path() }, signal);
     return steps.map((step) => step.displacement);
   };
   const run = async () => {
@@ -62,12 +62,12 @@ export function guide(about) {
       if (halt.signal.aborted || signal.aborted) break;
       await call("POST", `/contacts/${id}/move`, { displacement }, signal);
       bar.value = index + 1;
-      told.textContent = `Move ${index + 1} of ${turns.length}: to ${shown(displacement, "m")}`;
-      await pause(Math.min(LONGEST, LASTS / turns.length), halt.signal);
+      status.textContent = `Move ${index + 1} of ${turns.length}: to ${formatQuantity(displacement, "m")}`;
+      await pause(Math.min(MAX_PAUSE, RUN_TIME / turns.length), halt.signal);
     }
     const after = await remaining();
-    told.replaceChildren(
-      ...words(`${halt.signal.aborted ? "Stopped. " : ""}Before: ${amount(before)}. Now: ${amount(after)}.`),
+    status.replaceChildren(
+      ...withSubscripts(`${halt.signal.aborted ? "Stopped. " : ""}Before: ${amount(before)}. Now: ${amount(after)}.`),
     );
   };
   const begin = async (event) => {
@@ -79,7 +79,7 @@ export function guide(about) {
     try {
       await run();
     } catch (error) {
-      if (!signal.aborted) told.textContent = error.errors?.[0]?.detail ?? error.message;
+      if (!signal.aborted) status.textContent = error.errors?.[0]?.detail ?? error.message;
     } finally {
       start.disabled = false;
       stop.hidden = true;
@@ -87,27 +87,27 @@ export function guide(about) {
   };
   return el(
     "section",
-    { class: "card", id: "guide" },
+    { class: "card", id: "protocol-card" },
     el(
       "div",
       { class: "head" },
-      el("h2", {}, "Take the shear stress out"),
-      copying(() => [whole()]),
+      el("h2", {}, "Reduce the shear stress"),
+      copyButtons(() => [requestOfRun()]),
     ),
     el(
       "p",
       {},
-      "Pushed aside and brought back, a loaded contact keeps shear stress. Moved to and fro with an amplitude that dies away from gross slip, it loses most of it: each reversal leaves a ring of the opposite sign, and many small rings are left where there was one large stress.",
+      "Pushed aside and brought back, a loaded contact keeps shear stress. Moved back and forth with an amplitude that falls from gross slip to zero, it loses most of it: each reversal leaves a ring of the opposite sign, and many small rings are left where there was one large stress.",
     ),
     el(
       "form",
       { class: "row", onsubmit: begin },
       el("label", {}, "Protocol ", kind),
-      el("label", {}, words("Reversals N_R "), count),
+      el("label", {}, withSubscripts("Reversals N_R "), count),
       start,
       stop,
       bar,
     ),
-    told,
+    status,
   );
 }

@@ -1,13 +1,13 @@
 // The four linked plots of a contact.
-import { above } from "./above.js";
 import { Chart } from "./chart.js";
-import { remembered } from "./memory.js";
-import { shown } from "./units.js";
+import { topView } from "./top_view.js";
+import { rememberedTurns } from "./turning_points.js";
+import { formatQuantity } from "./units.js";
 
-const TURNS = "Rings mark the turning points that the contact remembers. Going past one wipes it out, and its loop closes.";
+const TURNS = "Rings mark the turning points that the contact remembers. A move beyond one closes its loop and erases it.";
 
-/** The plots, and a function that draws them from what is known of a contact. */
-export function plots() {
+/** The plots, and a function that draws them from the model of a contact. */
+export function contactPlots() {
   const loop = new Chart({
     name: "loop",
     title: "Hysteresis loop",
@@ -20,50 +20,50 @@ export function plots() {
     title: "Stress under the contact",
     x: { label: "Radius r", unit: "m" },
     y: { label: "Stress", unit: "Pa" },
-    note: "Where τ touches its bound the surfaces slip; where they stick, what earlier moves left stays frozen in.",
+    note: "Where τ touches its bound the surfaces slip; where they stick, the stress left by earlier moves stays.",
   });
-  const seen = above();
+  const top = topView();
   const work = new Chart({
     name: "work",
     title: "Friction work and stored energy",
     x: { label: "Move" },
     y: { label: "Energy", unit: "J" },
-    note: "The work done against friction only grows; what is stored comes back when the contact is let go.",
+    note: "Friction work only grows; stored energy is released on unloading.",
   });
 
   loop.more = ([, , sequence]) => [sequence ? `move ${sequence}` : "start"];
-  loop.onhover = (hit) => work.point(hit && beside(work, hit.datum[2]));
-  work.onhover = (hit) => loop.point(hit && nearest(loop, hit.x));
-  stress.onhover = (hit) => seen.point(hit && seen.at(hit.x, hit.x, 0));
-  seen.onhover = (hit) => stress.point(hit && under(stress, hit.ring));
+  loop.onhover = (hit) => work.showCursor(hit && atMove(work, hit.datum[2]));
+  work.onhover = (hit) => loop.showCursor(hit && atSequence(loop, hit.x));
+  stress.onhover = (hit) => top.showCursor(hit && top.at(hit.x, hit.x, 0));
+  top.onhover = (hit) => stress.showCursor(hit && atRadius(stress, hit.ring));
 
-  const draw = (about) => {
-    loop.draw(looped(about));
-    if (about.stress) {
-      stress.draw(stressed(about));
-      seen.show(about);
+  const draw = (model) => {
+    loop.draw(loopData(model));
+    if (model.stress) {
+      stress.draw(stressData(model));
+      top.show(model);
     }
-    work.draw(worked(about));
+    work.draw(energyData(model));
   };
-  return { all: [loop, stress, seen, work], draw };
+  return { all: [loop, stress, top, work], draw };
 }
 
-/** The place of a move in the plot of work. */
-function beside(chart, sequence) {
+/** The points of a move in the plot of energies. */
+function atMove(chart, sequence) {
   const dots = chart
     .visible()
     .map((series) => series.points.find((point) => point[0] === sequence))
     .filter(Boolean);
-  return dots.length ? { x: sequence, dots, lines: [`move ${sequence}`, ...dots.map((dot) => shown(dot[1], "J"))] } : null;
+  return dots.length ? { x: sequence, dots, lines: [`move ${sequence}`, ...dots.map((dot) => formatQuantity(dot[1], "J"))] } : null;
 }
 
-function nearest(chart, sequence) {
+function atSequence(chart, sequence) {
   const points = chart.visible()[0]?.points ?? [];
   const point = points.findLast(([, , own]) => own <= sequence);
   return point ? { x: point[0], y: point[1], dots: [point], lines: [] } : null;
 }
 
-function under(chart, radius) {
+function atRadius(chart, radius) {
   const dots = chart
     .visible()
     .filter((series) => series.hover !== false)
@@ -73,18 +73,18 @@ function under(chart, radius) {
   return { x: radius, dots, lines: [] };
 }
 
-/** The loop: all of it, what came since the last reversal, and where it is now. */
-function looped({ path, state, friction, first, history, slip, whole }) {
+/** The loop: the whole path, the part since the last reversal, and the present state. */
+function loopData({ path, state, friction, first, history, slip, isComplete }) {
   let turn = path.length - 1;
-  const way = (index) => Math.sign(path[index][0] - path[index - 1][0]);
-  while (turn > 1 && (way(turn) === 0 || way(turn - 1) === 0 || way(turn) === way(turn - 1))) turn -= 1;
+  const direction = (index) => Math.sign(path[index][0] - path[index - 1][0]);
+  while (turn > 1 && (direction(turn) === 0 || direction(turn - 1) === 0 || direction(turn) === direction(turn - 1))) turn -= 1;
   const limit = friction * state.normal_force;
   return {
     series: [
-      { name: "the way so far", kind: "past", points: path },
-      { name: "since the last turn", kind: "now", points: path.slice(Math.max(0, turn - 1)), hover: false },
+      { name: "whole path", kind: "past", points: path },
+      { name: "since the last reversal", kind: "now", points: path.slice(Math.max(0, turn - 1)), hover: false },
     ],
-    note: whole ? TURNS : "Of this long past the last moves are drawn, straight from state to state.",
+    note: isComplete ? TURNS : "Of this long history the last moves are drawn, straight from state to state.",
     least: limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {},
     levels:
       limit > 0
@@ -94,7 +94,7 @@ function looped({ path, state, friction, first, history, slip, whole }) {
           ]
         : [],
     marks: [
-      ...remembered(first, history, slip(state)).map((turn) => ({
+      ...rememberedTurns(first, history, slip(state)).map((turn) => ({
         x: turn.displacement,
         y: turn.force,
         class: "turn",
@@ -131,8 +131,8 @@ function looped({ path, state, friction, first, history, slip, whole }) {
   };
 }
 
-/** Pressure, bound and shear stress along the radius; the peaks stand where they are exactly. */
-function stressed({ stress, state, friction }) {
+/** Pressure, bound and shear stress along the radius; the peaks at their exact radii. */
+function stressData({ stress, state, friction }) {
   const { radius, pressure, shear, residual } = stress;
   const a = state.contact_radius;
   const scale = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
@@ -155,7 +155,7 @@ function stressed({ stress, state, friction }) {
           ]
         : [],
     range: { x: [0, (a || 1) * 1.04] },
-    // What is infinite at an edge would leave nothing to see of the rest.
+    // Infinite values at an edge would hide the rest.
     cap: 1.1 * most,
     table: () => ({
       columns: ["radius_m", "pressure_pa", "shear_pa", "slip_m", "displacement_m"],
@@ -164,7 +164,7 @@ function stressed({ stress, state, friction }) {
   };
 }
 
-function worked({ first, history, figures }) {
+function energyData({ first, history, figures }) {
   const all = [first, ...history];
   return {
     least: {

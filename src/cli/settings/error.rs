@@ -6,17 +6,17 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 
 use super::file::ConfigValues;
-use super::shown;
+use super::masked;
 
-/// Why there is nothing to run.
-pub enum Refusal {
+/// Why there is no command to run.
+pub enum SettingsError {
     /// The help or the version was asked for.
-    Asked(clap::Error),
-    /// A line that says what is wrong.
-    Wrong(String),
+    Help(clap::Error),
+    /// A line about what is wrong.
+    Invalid(String),
 }
 
-/// Where a value comes from that does not suit.
+/// The source of an invalid value.
 pub enum Origin<'a> {
     /// The command line.
     Flag,
@@ -26,18 +26,18 @@ pub enum Origin<'a> {
     File(&'a ConfigValues),
 }
 
-/// The line for something that is no setting.
-pub fn unknown<'a>(what: &str, known: impl Iterator<Item = &'a str>) -> Refusal {
+/// The error for an unknown setting.
+pub fn unknown_setting<'a>(what: &str, known: impl Iterator<Item = &'a str>) -> SettingsError {
     let mut known: Vec<&str> = known.collect();
     known.sort_unstable();
     known.dedup();
-    Refusal::Wrong(format!("{what}: there is no such setting, expected one of {}", known.join(", ")))
+    SettingsError::Invalid(format!("{what}: there is no such setting, expected one of {}", known.join(", ")))
 }
 
-/// What the parser has against the arguments.
-pub fn line(error: clap::Error, command: &Command, origin: &Origin<'_>) -> Refusal {
+/// The error of the parser of arguments.
+pub fn from_clap(error: clap::Error, command: &Command, origin: &Origin<'_>) -> SettingsError {
     if !error.use_stderr() {
-        return Refusal::Asked(error);
+        return SettingsError::Help(error);
     }
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.as_str()),
@@ -49,26 +49,27 @@ pub fn line(error: clap::Error, command: &Command, origin: &Origin<'_>) -> Refus
         (ErrorKind::UnknownArgument, _) => {
             let known = all(command).into_iter().filter_map(|arg| arg.get_long().map(|long| format!("--{long}")));
             let known: Vec<String> = known.collect();
-            return unknown(&shown(name), known.iter().map(String::as_str));
+            return unknown_setting(&masked(name), known.iter().map(String::as_str));
         }
         (ErrorKind::InvalidValue | ErrorKind::ValueValidation, Some(arg)) => {
             let value = text(ContextKind::InvalidValue).unwrap_or_default();
-            let place = place(arg, value, origin);
+            let name = name_of(arg, value, origin);
             let why = match (error.source(), value) {
-                (Some(source), _) => shown(&source.to_string()),
+                (Some(source), _) => masked(&source.to_string()),
                 (None, "") => "a value is missing".to_owned(),
                 (None, _) => "not possible".to_owned(),
             };
-            format!("{place}: {why}; expected: {}", expected(arg, &error))
+            format!("{name}: {why}; expected: {}", expected(arg, &error))
         }
-        // About the command line alone: the first paragraph says what is wrong, the others how to ask for help.
+        // An error of the command line: the first paragraph says what is wrong, the others how to get help.
         _ => first_paragraph(&error.to_string()),
     };
-    Refusal::Wrong(why)
+    SettingsError::Invalid(why)
 }
 
-fn place(arg: &Arg, value: &str, origin: &Origin<'_>) -> String {
-    let (long, value) = (arg.get_long().unwrap_or_default(), shown(value));
+/// The setting and its value as their source writes them.
+fn name_of(arg: &Arg, value: &str, origin: &Origin<'_>) -> String {
+    let (long, value) = (arg.get_long().unwrap_or_default(), masked(value));
     match origin {
         Origin::Flag => format!("--{long} {value}"),
         Origin::Environment => format!("{}={value}", arg.get_env().unwrap_or_default().to_string_lossy()),
@@ -86,7 +87,7 @@ fn expected(arg: &Arg, error: &clap::Error) -> String {
 
 fn first_paragraph(text: &str) -> String {
     let paragraph = text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: ");
-    shown(&paragraph.split_whitespace().collect::<Vec<_>>().join(" "))
+    masked(&paragraph.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 /// The name within `--name <VALUE>` or `--name[=<VALUE>]`.

@@ -1,10 +1,10 @@
-// Fields of a form: a label, a value with its unit, and room for what the service says about it.
-import { el, words } from "./dom.js";
-import { written } from "./units.js";
+// Fields of a form: a label, a value with its unit, and the fault that the service finds in it.
+import { el, withSubscripts } from "./dom.js";
+import { parseNumber } from "./units.js";
 
 let count = 0;
 
-/** A field at a JSON pointer, which is asked for when a fault is to be placed. */
+/** A field at a JSON pointer, which faults of the service are matched with. */
 class Field {
   constructor(form, pointer, label, control, more = []) {
     this.pointer = pointer;
@@ -16,14 +16,14 @@ class Field {
     this.element = el(
       "div",
       { class: "field" },
-      el("label", { for: id }, words(label)),
+      el("label", { for: id }, withSubscripts(label)),
       el("div", { class: "value" }, control, ...more),
       this.fault,
     );
     form.add(this);
   }
 
-  tell(text) {
+  showFault(text) {
     this.fault.textContent = text ?? "";
     if (text) this.control.setAttribute("aria-invalid", "true");
     else this.control.removeAttribute("aria-invalid");
@@ -53,7 +53,7 @@ export class NumberField extends Field {
 
   /** In SI. */
   get value() {
-    return written(this.control.value, Number(this.choice?.value ?? 0));
+    return parseNumber(this.control.value, Number(this.choice?.value ?? 0));
   }
 }
 
@@ -104,7 +104,7 @@ export class Fields {
   }
 
   clear() {
-    for (const field of this.present()) field.tell();
+    for (const field of this.present()) field.showFault();
     this.rest.textContent = "";
   }
 
@@ -113,21 +113,21 @@ export class Fields {
     this.clear();
     const fields = this.present();
     const left = [];
-    const told = new Map();
+    const detailsOf = new Map();
     for (const { pointer, detail } of refusal.errors ?? []) {
       const own = pointer.startsWith(root) ? pointer.slice(root.length) : pointer;
       const fits = (field) => own === field.pointer() || own.startsWith(`${field.pointer()}/`);
       const [best] = fields.filter(fits).sort((one, two) => two.pointer().length - one.pointer().length);
       if (best)
-        told.set(best, [
-          ...(told.get(best) ?? []),
+        detailsOf.set(best, [
+          ...(detailsOf.get(best) ?? []),
           own === best.pointer() ? detail : `${own.slice(best.pointer().length + 1)}: ${detail}`,
         ]);
       else left.push(`${own} ${detail}`.trim());
     }
-    for (const [field, details] of told)
-      field.tell(details.slice(0, 3).join("; ") + (details.length > 3 ? `; and ${details.length - 3} more` : ""));
-    this.rest.textContent = (left.length || told.size ? left : [refusal.message]).join("; ");
-    return told.keys().next().value;
+    for (const [field, details] of detailsOf)
+      field.showFault(details.slice(0, 3).join("; ") + (details.length > 3 ? `; and ${details.length - 3} more` : ""));
+    this.rest.textContent = (left.length || detailsOf.size ? left : [refusal.message]).join("; ");
+    return detailsOf.keys().next().value;
   }
 }

@@ -1,12 +1,12 @@
-// The contact seen from above: the shear stress as colour, so that the rings of the past show, and the ring that slips.
+// The contact from above: the shear stress as colour, and the slip ring of the last move.
 import { Chart } from "./chart.js";
 import { svg } from "./dom.js";
-import { shown } from "./units.js";
+import { formatQuantity } from "./units.js";
 
 const STOPS = 160;
 
 /** The plot. */
-export function above() {
+export function topView() {
   const chart = new Chart({
     name: "above",
     title: "The contact from above",
@@ -25,13 +25,13 @@ export function above() {
       (best, value, index) => (Math.abs(value - r) < Math.abs(stress.radius[best] - r) ? index : best),
       0,
     );
-    const value = (name, unit) => shown(stress[name][index], unit);
+    const value = (name, unit) => formatQuantity(stress[name][index], unit);
     return {
       x,
       y,
       ring: r,
       lines: [
-        `radius ${shown(r, "m")}`,
+        `radius ${formatQuantity(r, "m")}`,
         `shear τ ${value("shear", "Pa")}`,
         `pressure p ${value("pressure", "Pa")}`,
         `slip ${value("slip", "m")}`,
@@ -39,15 +39,15 @@ export function above() {
     };
   };
   chart.read = (x, y) => chart.at(Math.hypot(x, y), x, y);
-  chart.show = (about) => {
-    stress = about.stress;
-    radius = about.state.contact_radius;
+  chart.show = (model) => {
+    stress = model.stress;
+    radius = model.state.contact_radius;
     const half = (radius || 1e-6) * 1.12;
     const points = stress.radius.map((r, index) => [r, stress.shear[index]]);
     chart.draw({
       series: [{ name: "shear stress τ", points, kind: "none", line: false }],
       range: { x: [-half, half], y: [-half, half] },
-      layer: (plot, group) => group.append(...disc(plot, about)),
+      layer: (plot, group) => group.append(...disc(plot, model)),
       table: () => ({
         columns: ["radius_m", "shear_pa", "slip_m"],
         rows: points.map(([r, tau], index) => [r, tau, stress.slip[index]]),
@@ -104,7 +104,7 @@ function disc(plot, { stress, state, friction, history }) {
     );
     if (c > 0) drawn.push(svg("circle", { class: "front", cx, cy, r: size(c) }));
   }
-  drawn.push(...scale(plot, full), ...arrow(plot, history));
+  drawn.push(...colourScale(plot, full), ...arrow(plot, history));
   return drawn;
 }
 
@@ -114,8 +114,8 @@ function ring(x, y, outer, inner) {
   return circle(outer) + (inner > 0 ? circle(inner) : "");
 }
 
-/** What the colours mean. */
-function scale(plot, full) {
+/** The legend of the colours. */
+function colourScale(plot, full) {
   const { left, bottom } = plot.box;
   const [x, y, width] = [left + 8, bottom - 14, 90];
   const id = `${plot.clip}-scale`;
@@ -126,11 +126,11 @@ function scale(plot, full) {
   return [
     svg("defs", {}, svg("linearGradient", { id }, ...stops)),
     svg("rect", { x, y, width, height: 8, fill: `url(#${id})` }),
-    text(x, "start", `τ = ∓${shown(full, "Pa", 2)}`),
+    text(x, "start", `τ = ∓${formatQuantity(full, "Pa", 2)}`),
   ];
 }
 
-/** Where the indenter went last. */
+/** The direction of the last move. */
 function arrow(plot, history) {
   const last = history.at(-1)?.state.displacement ?? 0;
   const before = history.at(-2)?.state.displacement ?? 0;

@@ -1,24 +1,24 @@
-// What the pointer and the keyboard do to a plot: read values, drag a box to zoom, step from point to point.
+// Pointer and keyboard of a plot: read values, drag a box to zoom, step from point to point.
 import { svg } from "./dom.js";
 
-/** Teaches a chart to listen. */
-export function pointing(chart) {
+/** Adds the handlers of pointer and keyboard to a chart. */
+export function handleInput(chart) {
   const { svg: root } = chart;
   let start = null;
-  let over = null;
+  let pointer = null;
   const place = (event) => {
     const area = root.getBoundingClientRect();
     return [event.clientX - area.left, event.clientY - area.top];
   };
-  const tell = (hit) => {
-    chart.point(hit);
+  const select = (hit) => {
+    chart.showCursor(hit);
     chart.onhover?.(hit);
   };
   root.addEventListener("pointermove", (event) => {
     if (!chart.box) return;
-    over = place(event);
-    if (start && drawn(start, over)) return box(chart, start, over);
-    tell(found(chart, over));
+    pointer = place(event);
+    if (start && isDrag(start, pointer)) return drawBox(chart, start, pointer);
+    select(hitAt(chart, pointer));
   });
   root.addEventListener("pointerdown", (event) => {
     if (event.pointerType !== "mouse" || event.button !== 0 || !chart.box) return;
@@ -27,32 +27,32 @@ export function pointing(chart) {
   });
   root.addEventListener("pointerup", (event) => {
     const now = place(event);
-    if (start && drawn(start, now)) zoomTo(chart, start, now);
+    if (start && isDrag(start, now)) zoomToBox(chart, start, now);
     start = null;
   });
   root.addEventListener("pointercancel", () => {
     start = null;
   });
   root.addEventListener("pointerleave", () => {
-    over = null;
-    if (!start) tell(null);
+    pointer = null;
+    if (!start) select(null);
   });
-  // What is under a pointer that rests may have changed.
-  chart.refresh = () => (over && !start ? tell(found(chart, over)) : chart.point(chart.pointed));
+  // The data under a resting pointer may have changed.
+  chart.refresh = () => (pointer && !start ? select(hitAt(chart, pointer)) : chart.showCursor(chart.pointed));
   root.addEventListener("dblclick", () => chart.reset());
-  root.addEventListener("blur", () => tell(null));
+  root.addEventListener("blur", () => select(null));
   root.addEventListener("keydown", (event) => {
     const steps = { ArrowRight: 1, ArrowLeft: -1, PageDown: 20, PageUp: -20, Home: -1e9, End: 1e9 };
     const acts = {
       "+": () => chart.zoom(0.6),
       "-": () => chart.zoom(1 / 0.6),
       0: () => chart.reset(),
-      Escape: () => tell(null),
+      Escape: () => select(null),
     };
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    // The keyboard reads on, wherever the pointer rests.
-    over = null;
-    if (event.key in steps) tell(stepped(chart, steps[event.key]));
+    // The keyboard takes pointer from a resting pointer.
+    pointer = null;
+    if (event.key in steps) select(stepBy(chart, steps[event.key]));
     else if (event.key in acts) acts[event.key]();
     else return;
     event.preventDefault();
@@ -72,31 +72,31 @@ export function pointing(chart) {
   };
 }
 
-const drawn = (start, now) => Math.hypot(start[0] - now[0], start[1] - now[1]) > 8;
+const isDrag = (start, now) => Math.hypot(start[0] - now[0], start[1] - now[1]) > 8;
 
 const sorted = (one, two) => (one < two ? [one, two] : [two, one]);
 
-function box(chart, start, now) {
+function drawBox(chart, start, now) {
   const [left, right] = sorted(start[0], now[0]);
   const [top, bottom] = sorted(start[1], now[1]);
   chart.cursor.replaceChildren(svg("rect", { class: "choice", x: left, y: top, width: right - left, height: bottom - top }));
 }
 
-function zoomTo(chart, start, now) {
+function zoomToBox(chart, start, now) {
   const x = sorted(chart.x.back(start[0]), chart.x.back(now[0]));
   const y = sorted(chart.y.back(start[1]), chart.y.back(now[1]));
-  // A box that is hardly higher than wide means a piece of the axis.
+  // A flat box zooms along x alone.
   chart.view = { x, y: Math.abs(start[1] - now[1]) < 12 ? chart.ranges().y : y };
-  chart.point(null);
+  chart.showCursor(null);
   chart.redraw();
 }
 
-/** What lies under a place: the points of all series nearest in x, or the one nearest point. */
-function found(chart, [left, top]) {
+/** What is at a position: the points of all series nearest in x, or the one nearest point. */
+function hitAt(chart, [left, top]) {
   if (chart.read) return chart.read(chart.x.back(left), chart.y.back(top));
   const series = chart.visible().filter((one) => one.points.length && one.hover !== false);
   if (!series.length) return null;
-  if (chart.mode === "x") return along(chart, series, chart.x.back(left));
+  if (chart.mode === "x") return hitsAtX(chart, series, chart.x.back(left));
   let best = null;
   for (const one of series) {
     for (const [index, point] of one.points.entries()) {
@@ -112,14 +112,14 @@ function at(chart, series, index) {
   const point = series.points[index];
   chart.index = index;
   const lines = [
-    `${chart.x.label} ${chart.reading(chart.x, point[0])}`,
-    `${chart.y.label} ${chart.reading(chart.y, point[1])}`,
+    `${chart.x.label} ${chart.formatted(chart.x, point[0])}`,
+    `${chart.y.label} ${chart.formatted(chart.y, point[1])}`,
     ...(chart.more?.(point, series) ?? []),
   ];
   return { x: point[0], y: point[1], dots: [point], lines, datum: point };
 }
 
-function along(chart, series, x) {
+function hitsAtX(chart, series, x) {
   const near = series.map(({ name, points }) => {
     const index = points.reduce(
       (best, point, index) => (Math.abs(point[0] - x) < Math.abs(points[best][0] - x) ? index : best),
@@ -129,16 +129,16 @@ function along(chart, series, x) {
   });
   chart.index = near[0].index;
   const first = near[0].point;
-  const lines = near.map(({ name, point }) => `${name} ${chart.reading(chart.y, point[1])}`);
+  const lines = near.map(({ name, point }) => `${name} ${chart.formatted(chart.y, point[1])}`);
   return {
     x: first[0],
     dots: near.map(({ point }) => point),
-    lines: [`${chart.x.label} ${chart.reading(chart.x, first[0])}`, ...lines],
+    lines: [`${chart.x.label} ${chart.formatted(chart.x, first[0])}`, ...lines],
     datum: first,
   };
 }
 
-function stepped(chart, by) {
+function stepBy(chart, by) {
   const [series] = chart.visible().filter((one) => one.points.length && one.hover !== false);
   if (!series) return null;
   const now = chart.pointed || Math.abs(by) > 1e6 ? (chart.index ?? 0) + by : 0;
@@ -148,7 +148,7 @@ function stepped(chart, by) {
     return chart.read(series.points[index][0], 0);
   }
   if (chart.mode !== "x") return at(chart, series, index);
-  const hit = along(
+  const hit = hitsAtX(
     chart,
     chart.visible().filter((one) => one.points.length && one.hover !== false),
     series.points[index][0],

@@ -1,4 +1,4 @@
-//! How much the service takes on, as settings.
+//! The limits of the service, as settings.
 
 use std::time::Duration;
 
@@ -10,32 +10,32 @@ use stickslip::server::ConnectionLimits;
 use stickslip::server::connections::DEFAULT_CONNECTIONS;
 use stickslip::server::fd_limit::room_for;
 
-/// The times that clients can be given.
+/// The range of the times that can be set.
 const SHORTEST_TIME: Duration = Duration::from_millis(10);
 const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// How much the service takes on at a time, and how long it waits: docs/overload.md says what follows from it.
+/// Limits against overload; see docs/overload.md.
 #[derive(Args)]
-pub struct Overload {
-    /// Connections at a time.
+pub struct Limits {
+    /// Most connections at a time.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = DEFAULT_CONNECTIONS, value_parser = at_least_one)]
     max_connections: usize,
-    /// Connections of one client address at a time; left out, half of all. Behind a proxy all clients have one address.
+    /// Most connections of one client address [default: half of all]. Behind a proxy all clients have one address.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
-    /// Requests worked on at a time; more wait.
+    /// Most requests processed at a time; more wait.
     #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = admission::REQUESTS, value_parser = at_least_one)]
     max_requests: usize,
-    /// Requests that wait at a time; more are refused.
+    /// Most requests that wait; more are refused.
     #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = admission::QUEUE, value_parser = at_least_one)]
     max_queue: usize,
     /// How long a request waits before it is refused.
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
     max_wait: Duration,
-    /// Bytes of memory for large bodies, their work and their replies, all together.
+    /// Bytes of memory for all large requests together: bodies, work and replies.
     #[arg(long, env = "STICKSLIP_WORK_BYTES", default_value_t = ByteSize::b(admission::BYTES as u64), value_parser = work_bytes)]
     work_bytes: ByteSize,
-    /// How long the solver works for one request before it is stopped.
+    /// Longest time that the solver works for one request.
     #[arg(long, env = "STICKSLIP_DEADLINE", default_value = "60s", value_parser = duration)]
     deadline: Duration,
     /// How long a client may take to send the head of a request.
@@ -52,8 +52,8 @@ pub struct Overload {
     stall_time: Duration,
 }
 
-impl Overload {
-    /// What the solvers take on.
+impl Limits {
+    /// The limits of the solvers.
     pub fn capacity(&self) -> Capacity {
         Capacity {
             requests: self.max_requests,
@@ -65,7 +65,7 @@ impl Overload {
         }
     }
 
-    /// The connections, as far as the process may have so many files open.
+    /// The limits of connections, lowered to what the limit of open files allows.
     pub fn connections(&self) -> ConnectionLimits {
         let most = room_for(self.max_connections);
         if most < self.max_connections {

@@ -1,11 +1,11 @@
-// The part of the form that says which shape touches the flat; a sum holds shapes of its own.
+// The part of the form for the shape of the indenter; a sum contains several shapes.
 import { el } from "./dom.js";
-import { Choice, NumberField, TextField } from "./field.js";
-import { LENGTH, PROFILES, TABLE } from "./profiles.js";
-import { written } from "./units.js";
+import { Choice, NumberField, TextField } from "./form_fields.js";
+import { LENGTH, PROFILES, TABLE } from "./form_options.js";
+import { parseNumber } from "./units.js";
 
-/** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields are others. */
-export function shape(form, at, changed, nested = false) {
+/** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
+export function profileFields(form, at, changed, nested = false) {
   const names = Object.entries(PROFILES)
     .filter(([key]) => !nested || key !== "sum")
     .map(([key, [text]]) => [key, text]);
@@ -62,11 +62,11 @@ function table(form, at, changed, body) {
     el(
       "p",
       { class: "note" },
-      "Paste two columns from a spreadsheet or a file; tabs, blanks, commas and semicolons part them. The first radius is 0.",
+      "Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons. The first radius is 0.",
     ),
   );
   return () => {
-    // A comma between digits of a pair that is parted otherwise is a decimal one.
+    // Where something else separates a pair, a comma between digits is a decimal comma.
     const lines = text.value
       .split("\n")
       .map((line) => line.trim())
@@ -76,7 +76,7 @@ function table(form, at, changed, body) {
         .map((cell) => cell.replace(/,$/, ""))
         .filter(Boolean),
     );
-    const column = (index, unit) => pairs.map((pair) => written(pair[index] ?? "", Number(unit.value)) ?? null);
+    const column = (index, unit) => pairs.map((pair) => parseNumber(pair[index] ?? "", Number(unit.value)) ?? null);
     return { r: column(0, across), z: column(1, up) };
   };
 }
@@ -102,7 +102,7 @@ function sum(form, at, changed, body) {
     );
     const box = el("fieldset", {}, el("legend", {}, "Part of the sum"));
     list.append(box);
-    part.editor = shape(form, place, changed, true);
+    part.editor = profileFields(form, place, changed, true);
     box.append(part.editor.element, remove);
   };
   body.append(

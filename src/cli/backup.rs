@@ -1,0 +1,29 @@
+//! `stickslip backup`: copies a store to a file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use stickslip::store;
+
+use super::io::print;
+use super::settings::ConfigFile;
+
+/// The store and the copy.
+#[derive(Args)]
+pub struct Backup {
+    #[command(flatten)]
+    _file: ConfigFile,
+    /// The file to create; an existing file is never overwritten.
+    file: PathBuf,
+    /// The store, `sqlite:PATH`.
+    #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
+    store: String,
+}
+
+impl Backup {
+    /// Copies the store.
+    pub fn run(&self) -> Result<(), String> {
+        let bytes = store::backup(&self.store, &self.file).map_err(|error| error.to_string())?;
+        print(format_args!("{} holds the store, {bytes} bytes", self.file.display()))
+    }
+}

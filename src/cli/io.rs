@@ -1,0 +1,43 @@
+//! What the commands share: a file or standard input, JSON, and standard output.
+
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, Read as _, Write};
+use std::path::Path;
+
+use stickslip::api::Problem;
+
+/// The content of a file, or of standard input for `-`.
+pub fn read(file: &Path) -> Result<Vec<u8>, String> {
+    let mut body = Vec::new();
+    let read = if file.as_os_str() == "-" {
+        io::stdin().lock().read_to_end(&mut body)
+    } else {
+        File::open(file).and_then(|mut file| file.read_to_end(&mut body))
+    };
+    read.map(|_| body).map_err(|error| format!("cannot read {}: {error}", file.display()))
+}
+
+/// A value as indented JSON.
+pub fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string_pretty(value).unwrap_or_else(|error| error.to_string())
+}
+
+/// The problem document that the service would send, as the message of an error.
+pub fn problem(problem: impl Into<Problem>) -> String {
+    json(&problem.into().document("command line"))
+}
+
+/// Prints a line on standard output.
+pub fn print(text: impl Display) -> Result<(), String> {
+    write(|out| writeln!(out, "{text}"))
+}
+
+/// Writes to standard output. A reader that closes the pipe early, such as `head`, is no error.
+pub fn write(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), String> {
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    match write(&mut out).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,40 @@
+// A state in words.
+import { el, withSubscripts } from "./dom.js";
+import { formatNumber, formatQuantity } from "./units.js";
+
+const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Apart" };
+
+function sentence({ regime, stick_radius: c, contact_radius: a }, moved) {
+  if (!moved) return "Nothing has moved yet: pull the slider, and watch the ring that slips grow from the edge.";
+  if (regime === "stick") return "The last move slipped nowhere: the whole contact stuck.";
+  if (regime === "gross_slip") return "The last move slipped everywhere: the whole contact slid, and its history is erased.";
+  if (regime === "separated") return "The bodies do not touch, and there is no history.";
+  return `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
+}
+
+/** Lines about a state. */
+export function stateText(state, { friction, history, first }) {
+  const limit = friction * state.normal_force;
+  const use = limit > 0 ? Math.min(1, Math.abs(state.force) / limit) : 0;
+  const pair = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
+  return [
+    el("p", { class: `regime ${state.regime}` }, NAMES[state.regime]),
+    el("p", {}, sentence(state, history.length > 0 || first.sequence > 0)),
+    el(
+      "p",
+      { class: "meter" },
+      el("meter", { min: 0, max: 1, value: use, "aria-label": "Share of the friction limit" }),
+      el("span", {}, withSubscripts(`${formatNumber(100 * use, 3)} % of the friction limit μ F_N`)),
+    ),
+    el(
+      "dl",
+      { class: "figures" },
+      pair("Displacement U", `${formatQuantity(state.displacement, "m")}`),
+      pair("Force F", `${formatQuantity(state.force, "N")}`),
+      pair("Load F_N", `${formatQuantity(state.normal_force, "N")}`),
+      pair("Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
+      pair("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
+      pair("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
+    ),
+  ];
+}
