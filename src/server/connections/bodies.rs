@@ -81,8 +81,6 @@ pub struct TrackedBody {
 impl TrackedBody {
     /// With what goes when it does.
     pub fn new(body: Body, busy: Busy, place: Option<Place>, memory: Option<Arc<Reservation>>) -> TrackedBody {
-        // A stream without an end has a bound of its own, and works on nothing.
-        let place = place.filter(|_| http_body::Body::size_hint(&body).exact().is_some());
         TrackedBody { body, rest: Bytes::new(), _busy: busy, _place: place, _memory: memory }
     }
 
