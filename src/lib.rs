@@ -11,9 +11,9 @@
 //!
 //! [`access`] says who may do what: keys, roles and tenants.
 //!
-//! [`metrics`] are the counters that every floor may use, and the page that shows them.
+//! [`metrics`] are the counters that every floor may use.
 //!
-//! [`otlp`] makes traces of the log, for OpenTelemetry.
+//! [`otlp`] sends spans of requests and of their parts to an OpenTelemetry collector.
 //!
 //! [`api`] is HTTP: the routes, the problem documents, the OpenAPI document. The binary adds the command line.
 

@@ -1,21 +1,50 @@
-//! Traces for OpenTelemetry: a span for each request, sent to a collector by OTLP, as JSON over HTTP.
+//! Traces for OpenTelemetry: a span for each request, with spans of its parts, sent to a collector by OTLP over HTTP.
 //!
-//! The spans are made from the lines that the log has for requests, whatever of them the log shows. They wait in a bounded
-//! queue: a collector that is slow or away costs spans, and neither requests nor memory.
+//! All spans have the target [`SPANS`]. Without a collector no filter admits it, and a span costs a look at a flag. With
+//! one, spans wait in the bounded queue of a batch processor that has a thread of its own: a span that finds the queue
+//! full is lost, so that a collector that is slow or away costs spans, and neither requests nor memory.
 
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
 
-use serde_json::{Value, json};
-use tokio::sync::{mpsc, oneshot};
-use tokio::task::JoinHandle;
+use axum::body::Bytes;
+use axum::http::{HeaderMap, Request, Response};
+use http_body_util::{BodyExt as _, Full, Limited};
+use hyper_rustls::{HttpsConnector, HttpsConnectorBuilder};
+use hyper_util::client::legacy::Client;
+use hyper_util::client::legacy::connect::HttpConnector;
+use hyper_util::rt::TokioExecutor;
+use opentelemetry::Context;
+use opentelemetry::propagation::TextMapPropagator as _;
+use opentelemetry::trace::TracerProvider as _;
+use opentelemetry_http::{HeaderExtractor, HttpClient, HttpError};
+use opentelemetry_otlp::{Protocol, SpanExporter, WithExportConfig as _, WithHttpConfig as _};
+use opentelemetry_sdk::Resource;
+use opentelemetry_sdk::propagation::TraceContextPropagator;
+use opentelemetry_sdk::trace::{BatchConfigBuilder, BatchSpanProcessor, SdkTracerProvider};
+use rustls::crypto::ring;
+use rustls::{ClientConfig, RootCertStore};
+use tokio::runtime::Handle;
 use tokio::time::timeout;
-use tracing::field::{Field, Visit};
-use tracing::{Event, Level, Subscriber};
+use tracing::subscriber::Interest;
+use tracing::{Metadata, Subscriber};
 use tracing_subscriber::Layer;
-use tracing_subscriber::filter::Targets;
-use tracing_subscriber::layer::Context;
+use tracing_subscriber::filter::{LevelFilter, dynamic_filter_fn};
 use tracing_subscriber::registry::LookupSpan;
-use uuid::Uuid;
+
+/// The target of all spans that are sent; the log leaves it out.
+pub const SPANS: &str = "stickslip::spans";
+/// The name of the span that a request is, which the others are parts of.
+pub const REQUEST: &str = "request";
+
+/// A span of a part of a request, such as `store`.
+macro_rules! part {
+    ($name:literal) => {
+        tracing::info_span!(target: $crate::otlp::SPANS, $name)
+    };
+}
+pub(crate) use part;
 
 /// Spans that may wait.
 const QUEUE: usize = 8_192;
@@ -23,203 +52,149 @@ const QUEUE: usize = 8_192;
 const BATCH: usize = 512;
 /// How long spans wait for others to go with.
 const PERIOD: Duration = Duration::from_secs(1);
-/// How long a collector may take.
+/// How long a collector may take for a batch, and for all that waits at the end.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// What a collector takes for the kind of a span that answers a request, and for a status of failure.
-const SERVER: u8 = 2;
-const FAILED: u8 = 2;
-
-/// A span as it is sent, but for the frame around it.
-type Span = Value;
-
-/// Where spans are made.
-struct Spans(mpsc::Sender<Span>);
+/// Bytes of an answer of a collector that are read.
+const ANSWER: usize = 64 * 1024;
 
 /// Where spans are sent from. It ends by [`Exporter::finish`].
-pub struct Exporter {
-    task: JoinHandle<()>,
-    end: oneshot::Sender<()>,
-}
+pub struct Exporter(SdkTracerProvider);
 
-/// A layer that makes spans out of log lines, and the exporter that sends them to the collector at `endpoint`, such as
-/// `http://localhost:4318`. To be called within a runtime.
-pub fn layer<S>(endpoint: &str) -> (impl Layer<S> + use<S>, Exporter)
+/// A layer that sends spans to the collector at `endpoint`, such as `http://localhost:4318`, by way of `runtime`, and the
+/// exporter that ends it.
+///
+/// # Errors
+/// Why nothing can be sent to such an endpoint.
+pub fn layer<S>(endpoint: &str, runtime: Handle) -> Result<(impl Layer<S> + use<S>, Exporter), String>
 where
     S: Subscriber + for<'a> LookupSpan<'a>,
 {
-    let (sender, spans) = mpsc::channel(QUEUE);
-    let (end, ended) = oneshot::channel();
-    let url = format!("{}/v1/traces", endpoint.trim_end_matches('/'));
-    let task = tokio::spawn(export(url, spans, ended));
-    let requests = Targets::new().with_target("stickslip::api", Level::INFO);
-    (Spans(sender).with_filter(requests), Exporter { task, end })
+    let collector = Collector { http: client(endpoint)?, runtime, reached: Arc::new(AtomicBool::new(true)) };
+    let exporter = SpanExporter::builder()
+        .with_http()
+        .with_http_client(collector)
+        .with_protocol(Protocol::HttpJson)
+        .with_endpoint(format!("{}/v1/traces", endpoint.trim_end_matches('/')))
+        .with_timeout(PATIENCE)
+        .build()
+        .map_err(|error| error.to_string())?;
+    let batches = BatchConfigBuilder::default()
+        .with_max_queue_size(QUEUE)
+        .with_max_export_batch_size(BATCH)
+        .with_scheduled_delay(PERIOD);
+    let processor = BatchSpanProcessor::builder(exporter).with_batch_config(batches.build()).build();
+    let resource = Resource::builder()
+        .with_service_name("stickslip")
+        .with_attribute(opentelemetry::KeyValue::new("service.version", env!("CARGO_PKG_VERSION")));
+    let provider = SdkTracerProvider::builder().with_span_processor(processor).with_resource(resource.build()).build();
+    let layer = tracing_opentelemetry::layer()
+        .with_tracer(provider.tracer("stickslip"))
+        .with_context_activation(false)
+        .with_location(false)
+        .with_target(false)
+        .with_threads(false)
+        .with_tracked_inactivity(false);
+    // Work outside requests, such as that of jobs, is not traced: its parts would each be a trace of their own.
+    let traced = dynamic_filter_fn(|span, context| {
+        is_ours(span) && (span.name() == REQUEST || context.lookup_current().is_some())
+    });
+    let traced = traced
+        .with_callsite_filter(|site| if is_ours(site) { Interest::sometimes() } else { Interest::never() })
+        .with_max_level_hint(LevelFilter::INFO);
+    Ok((layer.with_filter(traced), Exporter(provider)))
+}
+
+fn is_ours(metadata: &Metadata<'_>) -> bool {
+    metadata.is_span() && metadata.target() == SPANS
 }
 
 impl Exporter {
-    /// Sends what waits, as long as that takes no longer than a collector may.
-    pub async fn finish(self) {
-        // A task that has ended has nothing left to send.
-        let _ = self.end.send(());
-        if timeout(PATIENCE, self.task).await.is_err() {
+    /// Sends what waits, as long as that takes no longer than a collector may. It blocks the thread, which must be none of
+    /// the runtime.
+    pub fn finish(self) {
+        if self.0.shutdown_with_timeout(PATIENCE).is_err() {
             tracing::warn!("the last traces were not sent in time");
         }
     }
 }
 
-async fn export(url: String, mut spans: mpsc::Receiver<Span>, mut ended: oneshot::Receiver<()>) {
-    let (http, mut reached, mut over) = (reqwest::Client::new(), true, false);
-    while !over || !spans.is_empty() {
-        let mut batch = Vec::new();
-        while batch.len() < BATCH
-            && let Ok(span) = spans.try_recv()
-        {
-            batch.push(span);
-        }
-        let full = batch.len() == BATCH;
-        if !batch.is_empty() {
-            let sent = http.post(&url).timeout(PATIENCE).json(&framed(batch)).send().await;
-            let sent = sent.and_then(reqwest::Response::error_for_status);
-            match &sent {
-                Ok(_) if !reached => tracing::info!("traces are sent again"),
-                Err(error) if reached => tracing::warn!(%error, "traces cannot be sent, and are lost until they can"),
-                _ => {}
-            }
-            reached = sent.is_ok();
-        }
-        if !full && !over {
-            over = timeout(PERIOD, &mut ended).await.is_ok();
+type Http = Client<HttpsConnector<HttpConnector>, Full<Bytes>>;
+
+fn client(endpoint: &str) -> Result<Http, String> {
+    let mut roots = RootCertStore::empty();
+    if endpoint.starts_with("https:") {
+        let (added, _) = roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
+        if added == 0 {
+            return Err("no certificate authority found to verify the collector with".to_owned());
         }
     }
+    let tls = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()));
+    let tls = tls.with_safe_default_protocol_versions().map_err(|error| error.to_string())?;
+    let tls = tls.with_root_certificates(roots).with_no_client_auth();
+    let connector = HttpsConnectorBuilder::new().with_tls_config(tls).https_or_http().enable_http1().build();
+    Ok(Client::builder(TokioExecutor::new()).build(connector))
 }
 
-/// Spans in the frame that says whose they are.
-fn framed(spans: Vec<Span>) -> Value {
-    let about = [text("service.name", "stickslip"), text("service.version", env!("CARGO_PKG_VERSION"))];
-    let scope = json!({"scope": {"name": "stickslip"}, "spans": spans});
-    json!({"resourceSpans": [{"resource": {"attributes": about}, "scopeSpans": [scope]}]})
+/// The way to a collector. The thread of the batches has no runtime, and HTTP needs one.
+#[derive(Debug)]
+struct Collector {
+    http: Http,
+    runtime: Handle,
+    /// Whether the last batch arrived: the log is told of changes alone.
+    reached: Arc<AtomicBool>,
 }
 
-fn text(key: &str, value: &str) -> Value {
-    json!({"key": key, "value": {"stringValue": value}})
-}
-
-impl<S: Subscriber> Layer<S> for Spans {
-    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
-        let mut line = Line::default();
-        event.record(&mut line);
-        if let Some(span) = line.span(SystemTime::now()) {
-            // A queue that is full loses the span.
-            let _ = self.0.try_send(span);
-        }
-    }
-}
-
-/// The fields of a line in the log.
-#[derive(Default)]
-struct Line {
-    method: String,
-    route: Option<String>,
-    status: u64,
-    duration_ms: f64,
-    request_id: String,
-    code: Option<String>,
-    cause: Option<String>,
-    traceparent: Option<String>,
-}
-
-impl Visit for Line {
-    fn record_str(&mut self, field: &Field, value: &str) {
-        let value = value.to_owned();
-        match field.name() {
-            "route" => self.route = Some(value),
-            "request_id" => self.request_id = value,
-            "code" => self.code = Some(value),
-            "cause" => self.cause = Some(value),
-            "traceparent" => self.traceparent = Some(value),
+#[async_trait::async_trait]
+impl HttpClient for Collector {
+    async fn send_bytes(&self, request: Request<Bytes>) -> Result<Response<Bytes>, HttpError> {
+        let sent = self.runtime.spawn(timeout(PATIENCE, exchange(self.http.clone(), request))).await;
+        let sent = sent.map_err(HttpError::from).and_then(|sent| sent.map_err(HttpError::from)).flatten();
+        let problem = match &sent {
+            Ok(answer) if answer.status().is_success() => None,
+            Ok(answer) => Some(format!("the collector answered {}", answer.status())),
+            Err(error) => Some(error.to_string()),
+        };
+        match (self.reached.swap(problem.is_none(), Relaxed), problem) {
+            (true, Some(error)) => tracing::warn!(error, "traces cannot be sent, and are lost until they can"),
+            (false, None) => tracing::info!("traces are sent again"),
             _ => {}
         }
-    }
-
-    fn record_u64(&mut self, field: &Field, value: u64) {
-        if field.name() == "status" {
-            self.status = value;
-        }
-    }
-
-    fn record_f64(&mut self, field: &Field, value: f64) {
-        if field.name() == "duration_ms" {
-            self.duration_ms = value;
-        }
-    }
-
-    fn record_debug(&mut self, field: &Field, value: &dyn std::fmt::Debug) {
-        if field.name() == "method" {
-            self.method = format!("{value:?}");
-        }
+        sent
     }
 }
 
-impl Line {
-    /// The span of a request that ends now; none if the line is about something else, or the caller wants no trace.
-    fn span(self, now: SystemTime) -> Option<Span> {
-        let route = self.route?;
-        let (trace, parent) = match self.traceparent.as_deref().and_then(parse) {
-            Some(Parent { sampled: false, .. }) => return None,
-            Some(Parent { trace, span, .. }) => (trace.to_owned(), span.to_owned()),
-            None => (Uuid::now_v7().simple().to_string(), String::new()),
-        };
-        let end = now.duration_since(UNIX_EPOCH).unwrap_or_default();
-        let start = end.saturating_sub(Duration::from_secs_f64(self.duration_ms / 1e3));
-        let mut attributes = vec![
-            text("http.request.method", &self.method),
-            text("http.route", &route),
-            json!({"key": "http.response.status_code", "value": {"intValue": self.status.to_string()}}),
-            text("stickslip.request_id", &self.request_id),
-        ];
-        attributes.extend(self.code.as_deref().map(|code| text("error.type", code)));
-        let failed = json!({"code": FAILED, "message": self.cause.unwrap_or_default()});
-        Some(json!({
-            "traceId": trace,
-            "spanId": format!("{:016x}", Uuid::now_v7().as_u64_pair().1),
-            "parentSpanId": parent,
-            "name": format!("{} {route}", self.method),
-            "kind": SERVER,
-            "startTimeUnixNano": start.as_nanos().to_string(),
-            "endTimeUnixNano": end.as_nanos().to_string(),
-            "attributes": attributes,
-            "status": if self.status >= 500 { failed } else { json!({}) },
-        }))
-    }
+async fn exchange(http: Http, request: Request<Bytes>) -> Result<Response<Bytes>, HttpError> {
+    let (parts, body) = http.request(request.map(Full::new)).await?.into_parts();
+    Ok(Response::from_parts(parts, Limited::new(body, ANSWER).collect().await?.to_bytes()))
 }
 
-/// The span that a request belongs to, by its `traceparent` (W3C Trace Context).
-struct Parent<'a> {
-    trace: &'a str,
-    span: &'a str,
-    sampled: bool,
-}
-
-fn parse(header: &str) -> Option<Parent<'_>> {
-    let hex = |text: &str, length: usize| {
-        text.len() == length && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
-    };
-    let mut parts = header.split('-');
-    let (version, trace, span, flags) = (parts.next()?, parts.next()?, parts.next()?, parts.next()?);
-    let sound = hex(version, 2) && version != "ff" && hex(trace, 32) && hex(span, 16) && hex(flags, 2);
-    let named = trace.bytes().any(|byte| byte != b'0') && span.bytes().any(|byte| byte != b'0');
-    // Later versions may have more to say.
-    let whole = version != "00" || parts.next().is_none();
-    let sampled = u8::from_str_radix(flags, 16).ok()? & 1 == 1;
-    (sound && named && whole).then_some(Parent { trace, span, sampled })
+/// The span that a request belongs to, by its `traceparent` (W3C Trace Context); none if that is not as the standard has it.
+#[must_use]
+pub fn parent(headers: &HeaderMap) -> Option<Context> {
+    let header = headers.get("traceparent")?.to_str().ok()?;
+    // The library takes numbers of any length.
+    let lengths = header.split('-').map(str::len).take(4);
+    let sound = lengths.eq([2, 32, 16, 2]) && header.bytes().all(|byte| byte.is_ascii_graphic() && byte != b'+');
+    let context =
+        sound.then(|| TraceContextPropagator::new().extract_with_context(&Context::new(), &HeaderExtractor(headers)));
+    context.filter(opentelemetry::trace::TraceContextExt::has_active_span)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::parse;
+    use super::parent;
+    use axum::http::{HeaderMap, HeaderValue};
+    use opentelemetry::trace::TraceContextExt as _;
 
     #[test]
     fn a_parent_is_taken_as_the_standard_has_it() {
-        let of = |header: &str| parse(header).map(|parent| (parent.span.to_owned(), parent.sampled));
+        let of = |header: &str| {
+            let headers =
+                HeaderMap::from_iter([("traceparent".parse().unwrap(), HeaderValue::from_str(header).unwrap())]);
+            let context = parent(&headers)?;
+            let span = context.span().span_context().clone();
+            Some((span.span_id().to_string(), span.is_sampled()))
+        };
         let trace = "0af7651916cd43dd8448eb211c80319c";
         assert_eq!(of(&format!("00-{trace}-b7ad6b7169203331-01")), Some(("b7ad6b7169203331".to_owned(), true)));
         assert_eq!(of(&format!("00-{trace}-b7ad6b7169203331-00")), Some(("b7ad6b7169203331".to_owned(), false)));

@@ -9,11 +9,13 @@ use std::sync::Arc;
 use std::task::Poll;
 use std::time::{Duration, Instant};
 
+use prometheus::{Histogram, IntCounter, IntGauge, Opts};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
+use tracing::Span;
 
-use crate::metrics::{Counter, Gauge, Histogram, SECONDS, SHORT_SECONDS};
+use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, counter, gauge, histogram};
 
 use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
 
@@ -92,11 +94,11 @@ pub struct PoolMeters {
     /// Its threads.
     pub threads: usize,
     /// Work that waits for a thread.
-    pub waiting: Gauge,
+    pub waiting: IntGauge,
     /// Work on a thread.
-    pub running: Gauge,
+    pub running: IntGauge,
     /// Work for which no thread became free in time.
-    pub refused: Counter,
+    pub refused: IntCounter,
     /// How long work waited for a thread, s.
     pub wait: Histogram,
     /// How long work took, at once or on a thread, s.
@@ -131,6 +133,18 @@ pub enum PoolError {
 }
 
 impl Reservation {
+    /// This and another one, as one.
+    #[must_use]
+    pub fn with(self, other: Reservation) -> Reservation {
+        match (self.0, other.0) {
+            (Some(mut permit), Some(more)) => {
+                permit.merge(more);
+                Reservation(Some(permit))
+            }
+            (one, another) => Reservation(one.or(another)),
+        }
+    }
+
     /// Whether it is large enough to be counted.
     #[must_use]
     pub fn is_counted(&self) -> bool {
@@ -222,6 +236,13 @@ impl Pool {
         Ok(reservation)
     }
 
+    /// Reserves bytes if they are free now.
+    #[must_use]
+    pub fn try_reserve(&self, bytes: usize) -> Option<Reservation> {
+        let units = u32::try_from(bytes.div_ceil(UNIT)).ok()?;
+        Arc::clone(&self.0.units).try_acquire_many_owned(units).ok().map(|permit| Reservation(Some(permit)))
+    }
+
     /// Grows or shrinks a reservation.
     ///
     /// # Errors
@@ -267,7 +288,7 @@ impl Pool {
             permit.merge(another);
         }
         let task = spawn_blocking(move || {
-            let _running: Vec<_> = (0..permit.num_permits()).map(|_| meters.running.enter()).collect();
+            let _running: Vec<_> = (0..permit.num_permits()).map(|_| Counted::by(&meters.running)).collect();
             meters.timed(|| work(permit.num_permits()))
         });
         task.await.map_err(|_| PoolError::Panicked)
@@ -290,14 +311,16 @@ impl Pool {
             return Ok(self.0.meters.timed(work));
         }
         let meters = Arc::clone(&self.0.meters);
-        let (waiting, begin) = (self.0.meters.waiting.enter(), Instant::now());
-        let permit = self.permits(&self.0.threads, 1).await.inspect_err(|_| meters.refused.add(1))?;
-        meters.wait.observe_time(begin.elapsed());
+        let (waiting, begin) = (Counted::by(&self.0.meters.waiting), Instant::now());
+        let permit = self.permits(&self.0.threads, 1).await.inspect_err(|_| meters.refused.inc())?;
+        meters.wait.observe(begin.elapsed().as_secs_f64());
         drop(waiting);
+        let request = Span::current();
         let task = spawn_blocking(move || {
             // The permit stays with the work: a caller that gives up does not free a thread that is still busy.
             let _permit = permit;
-            let _running = meters.running.enter();
+            let _running = Counted::by(&meters.running);
+            let _request = request.entered();
             meters.timed(work)
         });
         task.await.map_err(|_| PoolError::Panicked)
@@ -308,18 +331,30 @@ impl PoolMeters {
     fn new(threads: usize) -> PoolMeters {
         PoolMeters {
             threads,
-            waiting: Gauge::default(),
-            running: Gauge::default(),
-            refused: Counter::default(),
-            wait: Histogram::new(SECONDS),
-            work: Histogram::new(SHORT_SECONDS),
+            waiting: gauge(Opts::new("stickslip_solver_waiting", "Long work that waits for a thread.")),
+            running: gauge(Opts::new("stickslip_solver_running", "Long work on a thread.")),
+            refused: counter(Opts::new(
+                "stickslip_solver_refused_total",
+                "Work for which no thread became free in time.",
+            )),
+            wait: histogram(
+                Opts::new("stickslip_solver_wait_seconds", "How long work waited for its thread."),
+                SECONDS,
+            ),
+            work: histogram(
+                Opts::new(
+                    "stickslip_solver_seconds",
+                    "Time of a piece of work of the solver: moves, replays, stresses, simulations.",
+                ),
+                SHORT_SECONDS,
+            ),
         }
     }
 
     fn timed<T>(&self, work: impl FnOnce() -> T) -> T {
         let begin = Instant::now();
         let done = work();
-        self.work.observe_time(begin.elapsed());
+        self.work.observe(begin.elapsed().as_secs_f64());
         done
     }
 }

@@ -13,6 +13,7 @@ use sha2::{Digest as _, Sha256};
 use uuid::Uuid;
 
 use crate::admission::{Place, Pool, Reservation};
+use crate::otlp;
 use crate::simulation::cost;
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
@@ -112,7 +113,8 @@ async fn command<T: Document + 'static>(request: Request, app: &App, optional: b
     }
     let work = move || {
         let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
-        wire::read::<T>(&bytes).map(|body| (body, key))
+        let read = || wire::read::<T>(&bytes);
+        otlp::part!("parse").in_scope(read).map(|body| (body, key))
     };
     let (body, key) = app.pool.run(price, work).await??;
     Ok(Command { body, key, held: Held { memory, _place: place } })

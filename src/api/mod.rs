@@ -16,15 +16,25 @@ use std::io;
 use std::sync::Arc;
 
 use axum::Router;
-use axum::middleware::from_fn_with_state;
+use axum::http::header::AUTHORIZATION;
+use axum::middleware::{from_fn, from_fn_with_state};
 use tokio::net::TcpListener;
+use tower::ServiceBuilder;
+use tower_http::CompressionLevel;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::CompressionLayer;
+use tower_http::request_id::{PropagateRequestIdLayer, SetRequestIdLayer};
+use tower_http::sensitive_headers::SetSensitiveRequestHeadersLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
+use crate::admission::Pool;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 
-use middleware::{access_control, request_log, request_metrics::RequestMetrics, security_headers};
+use middleware::request_id::{OwnId, REQUEST_ID};
+use middleware::request_metrics::RequestMetrics;
+use middleware::{access_control, compression, request_id, request_log, security_headers};
 use resources::{accuracy, contacts, events, jobs, meta, metrics, moves, page, protocols, reads, simulate, sweep};
 
 pub use openapi::document;
@@ -52,7 +62,7 @@ pub async fn serve_within(
     let (sessions, jobs, pool) = (app.sessions.clone(), app.jobs.clone(), app.pool.clone());
     // Our own document is sound; without it, endpoints would be shown from their first request on.
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
-    let (router, refusals) = (router(app, Arc::clone(&metrics)), refusals(metrics));
+    let (router, refusals) = (router(app, Arc::clone(&metrics)), refusals(metrics, pool.clone()));
     let service = Service { router, refusals, pool, body_time: limiter.limits().body };
     server::serve(limiter, listener, service, stop, || {
         // A client that follows a contact or a job would never be done.
@@ -67,24 +77,34 @@ fn router(app: App, metrics: Arc<RequestMetrics>) -> Router {
     let (api, _) = described().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
-    with_middleware(api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here), access, metrics)
+    let pool = app.pool.clone();
+    let routes = api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here);
+    with_middleware(routes, access, metrics, pool)
 }
 
 /// The answer to requests that are not admitted to [`router`].
-fn refusals(metrics: Arc<RequestMetrics>) -> Router {
-    with_middleware(Router::new().fallback(meta::refused), Access::default(), metrics)
+fn refusals(metrics: Arc<RequestMetrics>, pool: Pool) -> Router {
+    with_middleware(Router::new().fallback(meta::refused), Access::default(), metrics, pool)
 }
 
-/// What is common to all replies.
-fn with_middleware(mut routes: Router, Access { keys, origins }: Access, metrics: Arc<RequestMetrics>) -> Router {
-    if let Some(keys) = keys {
-        routes = routes.layer(from_fn_with_state(keys, access_control::admit));
-    }
-    if !origins.is_empty() {
+/// What is common to all replies, from the outside to the inside.
+fn with_middleware(routes: Router, access: Access, metrics: Arc<RequestMetrics>, pool: Pool) -> Router {
+    let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
+    let keys = access.keys.map(|keys| from_fn_with_state(keys, access_control::admit));
+    let layers = ServiceBuilder::new()
+        .map_request(request_id::without_unsound)
+        .layer(SetRequestIdLayer::new(REQUEST_ID, OwnId))
+        .layer(PropagateRequestIdLayer::new(REQUEST_ID))
+        .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
+        .layer(from_fn(compression::tag))
+        .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compression::is_offered))
+        .layer(from_fn_with_state(pool, compression::offer))
+        .layer(from_fn_with_state(metrics, request_log::log_request))
+        .layer(CatchPanicLayer::custom(meta::panicked))
         // Before keys are asked for: a browser asks whether it may send one.
-        routes = routes.layer(security_headers::cross_origin(&origins));
-    }
-    routes.layer(from_fn_with_state(metrics, request_log::log_request))
+        .option_layer(origins)
+        .option_layer(keys);
+    routes.layer(layers)
 }
 
 /// The routes that the OpenAPI document describes.

@@ -7,6 +7,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::admission::Reservation;
+use crate::otlp;
 use crate::store::Reply;
 
 use crate::api::problem::Problem;
@@ -89,6 +90,7 @@ pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
 /// # Errors
 /// As [`written`].
 pub fn written_in(room: usize, value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
+    let _span = otlp::part!("write").entered();
     let mut text = Vec::with_capacity(room);
     match serde_json::to_writer(&mut text, value) {
         Ok(()) => Ok(text),

@@ -5,12 +5,14 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use axum::http::Uri;
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use stickslip::admission::Pool;
 use stickslip::api::middleware::security_headers::Origin;
 use stickslip::api::{self, Access, App};
 use stickslip::jobs::{self, Jobs};
+use stickslip::otlp;
 use stickslip::server::{ConnectionLimiter, memory_budget};
 use stickslip::sessions::{self, Sessions};
 use stickslip::store::{self, Store};
@@ -90,13 +92,13 @@ enum LogFormat {
 /// Serves until a signal stops it.
 pub fn serve(options: Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
+    // Spans go to a collector alone, and are not even made where there is none.
+    let filter = filter.add_directive(format!("{}=off", otlp::SPANS).parse().map_err(|error| format!("{error}"))?);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
-    let traces = options.otlp_endpoint.as_deref().map(|endpoint| {
-        let _inside = runtime.enter();
-        stickslip::otlp::layer(endpoint)
-    });
-    let (spans, exporter) = traces.unzip();
+    let endpoint = options.otlp_endpoint.as_deref();
+    let traces = endpoint.map(|endpoint| otlp::layer(endpoint, runtime.handle().clone())).transpose();
+    let (spans, exporter) = traces.map_err(|error| format!("--otlp-endpoint: {error}"))?.unzip();
     let log = fmt::layer().with_writer(io::stderr);
     let lines = match options.log_format {
         LogFormat::Text => log.with_ansi(false).boxed(),
@@ -117,7 +119,7 @@ pub fn serve(options: Serve) -> Result<(), String> {
     );
     let served = runtime.block_on(listen(&options, access, Arc::clone(&store)));
     if let Some(exporter) = exporter {
-        runtime.block_on(exporter.finish());
+        exporter.finish();
     }
     runtime.shutdown_timeout(SHUTDOWN_TIMEOUT);
     // The last handle: dropping it closes the store before the process ends.
@@ -137,9 +139,10 @@ fn log_panics() {
 }
 
 fn collector(text: &str) -> Result<String, String> {
-    match text.strip_prefix("http://") {
-        Some(place) if !place.is_empty() => Ok(text.to_owned()),
-        _ => Err("expected http:// and the address of a collector".to_owned()),
+    let place = text.strip_prefix("http://").or_else(|| text.strip_prefix("https://"));
+    match place.map(|_| text.parse::<Uri>()) {
+        Some(Ok(uri)) if uri.authority().is_some() => Ok(text.to_owned()),
+        _ => Err("expected http:// or https:// and the address of a collector".to_owned()),
     }
 }
 

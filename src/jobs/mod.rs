@@ -12,12 +12,13 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use jiff::Timestamp;
+use prometheus::{IntCounter, IntGauge, Opts};
 use tokio::sync::{Notify, Semaphore, watch};
 use uuid::Uuid;
 
 use crate::admission::{INLINE, Nanoseconds};
 use crate::admission::{Pool, Stop};
-use crate::metrics::{Counter, Gauge};
+use crate::metrics::{counter, gauge};
 use crate::simulation::{Rows, Sweep, Workers};
 use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_wire::sweep::CheckedSweep;
@@ -67,18 +68,34 @@ struct Common {
 }
 
 /// What this process has done for sweeps since its start.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct JobMeters {
     /// Points computed, at once and for jobs; those without an answer too.
-    pub points: Counter,
+    pub points: IntCounter,
     /// Chunks of jobs whose results are stored.
-    pub chunks: Counter,
+    pub chunks: IntCounter,
     /// Chunks that were given back, for this process or another one to do.
-    pub returned: Counter,
+    pub returned: IntCounter,
     /// Jobs that were given up.
-    pub failed: Counter,
+    pub failed: IntCounter,
     /// Chunks under way.
-    pub running: Gauge,
+    pub running: IntGauge,
+}
+
+impl Default for JobMeters {
+    fn default() -> JobMeters {
+        let count = |name, help| counter(Opts::new(name, help));
+        JobMeters {
+            points: count(
+                "stickslip_sweep_points_total",
+                "Points of sweeps computed by this process, at once or for jobs.",
+            ),
+            chunks: count("stickslip_job_chunks_total", "Chunks of jobs that this process has computed and stored."),
+            returned: count("stickslip_job_chunks_returned_total", "Chunks that this process gave back undone."),
+            failed: count("stickslip_jobs_failed_total", "Jobs that this process gave up; the log says why."),
+            running: gauge(Opts::new("stickslip_job_chunks_running", "Chunks under way in this process.")),
+        }
+    }
 }
 
 impl Jobs {
@@ -110,7 +127,7 @@ impl Jobs {
     /// [`JobError::Sweep`] if it was stopped or took too long.
     pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<Rows, JobError> {
         let rows = sweep.compute(0..sweep.points(), &self.common.pool, self.workers()?, stop, None).await?;
-        self.common.meters.points.add(sweep.points() as u64);
+        self.common.meters.points.inc_by(sweep.points() as u64);
         Ok(rows)
     }
 

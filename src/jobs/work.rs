@@ -8,6 +8,7 @@ use uuid::Uuid;
 
 use crate::admission::INLINE;
 use crate::admission::{PoolError, Stop};
+use crate::metrics::Counted;
 use crate::simulation::{Rows, Sweep, SweepError};
 use crate::store::{ChunkResult, Claim, Job, StoreError};
 use stickslip_wire::{self as wire, SweepRequest};
@@ -62,7 +63,7 @@ impl Jobs {
     /// Does a chunk, or gives it back.
     async fn advance(&self, claim: Claim, known: &mut Known, lease: Duration) {
         let meters = &self.common.meters;
-        let running = meters.running.enter();
+        let running = Counted::by(&meters.running);
         let done = self.chunk(claim, known, lease).await;
         drop(running);
         let error = match done {
@@ -80,12 +81,12 @@ impl Jobs {
         let done = match hopeless {
             Some(why) => {
                 tracing::error!(job = %claim.job, chunk = claim.chunk, %error, "a job has failed");
-                meters.failed.add(1);
+                meters.failed.inc();
                 self.common.store.fail_job(claim.job, why).await
             }
             None => {
                 tracing::debug!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is given back");
-                meters.returned.add(1);
+                meters.returned.inc();
                 self.common.store.release(claim).await
             }
         };
@@ -109,10 +110,10 @@ impl Jobs {
             return self.common.store.release(claim).await.map_err(refused(claim.job));
         };
         let count = points.len() as u64;
-        self.common.meters.points.add(count);
+        self.common.meters.points.inc_by(count);
         let result = ChunkResult { points: count, failed: rows.failed, content: rows.to_bytes() };
         self.keep(claim, result, lease).await?;
-        self.common.meters.chunks.add(1);
+        self.common.meters.chunks.inc();
         Ok(())
     }
 

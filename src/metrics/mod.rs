@@ -1,13 +1,11 @@
-//! Numbers that tell how the service is doing: counters, gauges and histograms.
+//! Numbers that tell how the service is doing: counters, gauges and histograms of the library `prometheus`.
 //!
-//! To count something takes a few atomic operations, no lock and no memory: what is counted is a field of whatever counts it,
-//! and has no name there. Names are given where the numbers are shown, in `api/metrics.rs`, in the way of [`page`].
+//! To count something takes a few atomic operations, no lock and no memory: whoever counts keeps a handle.
+//! `api/resources/metrics.rs` puts all of them on the page that Prometheus reads.
 
-pub mod page;
 pub mod process;
 
-use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
-use std::time::Duration;
+use prometheus::{Histogram, HistogramOpts, IntCounter, IntGauge, Opts};
 
 /// Bounds for what takes from a tenth of a millisecond to ten seconds, s.
 pub const SECONDS: &[f64] =
@@ -18,123 +16,77 @@ pub const SHORT_SECONDS: &[f64] =
 /// Bounds for how many go together.
 pub const SIZES: &[f64] = &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0];
 
+/// Why a name that the program gives a metric is never refused.
+pub const OWN_NAME: &str = "the name, the labels and the buckets of a metric are constants that the format allows";
+
 /// A number that only grows.
-#[derive(Debug, Default)]
-pub struct Counter(AtomicU64);
-
-impl Counter {
-    /// Adds to it.
-    pub fn add(&self, count: u64) {
-        self.0.fetch_add(count, Relaxed);
-    }
-
-    /// What it has come to.
-    #[must_use]
-    pub fn get(&self) -> u64 {
-        self.0.load(Relaxed)
-    }
+///
+/// # Panics
+/// If the format of Prometheus does not allow the name.
+#[must_use]
+pub fn counter(options: Opts) -> IntCounter {
+    IntCounter::with_opts(options).expect(OWN_NAME)
 }
 
 /// How many there are of something that comes and goes.
-#[derive(Debug, Default)]
-pub struct Gauge(AtomicI64);
+///
+/// # Panics
+/// As [`counter`].
+#[must_use]
+pub fn gauge(options: Opts) -> IntGauge {
+    IntGauge::with_opts(options).expect(OWN_NAME)
+}
 
-/// One of those that a [`Gauge`] counts, until it is dropped.
+/// How many observations fell below each of some bounds, which rise, and their sum.
+///
+/// # Panics
+/// As [`counter`].
+#[must_use]
+pub fn histogram(options: Opts, bounds: &[f64]) -> Histogram {
+    Histogram::with_opts(HistogramOpts::from(options).buckets(bounds.to_vec())).expect(OWN_NAME)
+}
+
+/// One of those that a gauge counts, until it is dropped.
 #[must_use]
 #[derive(Debug)]
-pub struct Stay<'a>(&'a Gauge);
+pub struct Counted<'a>(&'a IntGauge);
 
-impl Gauge {
-    /// One more, until the guard is dropped.
-    pub fn enter(&self) -> Stay<'_> {
-        self.0.fetch_add(1, Relaxed);
-        Stay(self)
-    }
-
-    /// How many there are.
-    #[must_use]
-    pub fn get(&self) -> i64 {
-        self.0.load(Relaxed)
+impl<'a> Counted<'a> {
+    /// One more in the gauge.
+    pub fn by(gauge: &'a IntGauge) -> Counted<'a> {
+        gauge.inc();
+        Counted(gauge)
     }
 }
 
-impl Drop for Stay<'_> {
+impl Drop for Counted<'_> {
     fn drop(&mut self) {
-        self.0.0.fetch_sub(1, Relaxed);
-    }
-}
-
-/// How many observations fell below each of some bounds, and their sum.
-#[derive(Debug)]
-pub struct Histogram {
-    bounds: &'static [f64],
-    // One for each bound, and one for what lies beyond the last.
-    counts: Box<[AtomicU64]>,
-    // The bits of an f64.
-    sum: AtomicU64,
-}
-
-impl Histogram {
-    /// An empty one with these bounds, which rise.
-    #[must_use]
-    pub fn new(bounds: &'static [f64]) -> Histogram {
-        let counts = (0..=bounds.len()).map(|_| AtomicU64::new(0)).collect();
-        Histogram { bounds, counts, sum: AtomicU64::new(0) }
-    }
-
-    /// Counts an observation.
-    pub fn observe(&self, value: f64) {
-        let place = self.bounds.iter().position(|bound| value <= *bound).unwrap_or(self.bounds.len());
-        self.counts[place].fetch_add(1, Relaxed);
-        let add = |sum: u64| Some((f64::from_bits(sum) + value).to_bits());
-        // It is never refused, as it always has a new value.
-        let _ = self.sum.fetch_update(Relaxed, Relaxed, add);
-    }
-
-    /// Counts a time, in seconds.
-    pub fn observe_time(&self, time: Duration) {
-        self.observe(time.as_secs_f64());
-    }
-
-    /// How many observations there were.
-    #[must_use]
-    pub fn count(&self) -> u64 {
-        self.counts.iter().map(|count| count.load(Relaxed)).sum()
-    }
-
-    /// Their sum.
-    #[must_use]
-    pub fn sum(&self) -> f64 {
-        f64::from_bits(self.sum.load(Relaxed))
-    }
-
-    /// The bounds, each with the count of the observations up to it; the last bound is infinite.
-    fn cumulated(&self) -> impl Iterator<Item = (f64, u64)> {
-        let bounds = self.bounds.iter().copied().chain([f64::INFINITY]);
-        bounds.zip(&self.counts).scan(0, |below, (bound, count)| {
-            *below += count.load(Relaxed);
-            Some((bound, *below))
-        })
+        self.0.dec();
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Gauge, Histogram};
+    use super::{Counted, gauge, histogram};
+    use prometheus::core::Collector as _;
+    use prometheus::{Opts, TextEncoder};
 
     #[test]
     fn an_observation_on_a_bound_counts_as_below_it() {
-        let histogram = Histogram::new(&[1.0, 2.0]);
-        [0.5, 1.0, 1.5, 2.0, 3.0].into_iter().for_each(|value| histogram.observe(value));
-        assert_eq!(histogram.cumulated().collect::<Vec<_>>(), [(1.0, 2), (2.0, 4), (f64::INFINITY, 5)]);
-        assert_eq!((histogram.count(), histogram.sum().to_bits()), (5, 8.0_f64.to_bits()));
+        let histogram = histogram(Opts::new("wait_seconds", "Waits.").const_label("by", "\"me\""), &[1.0, 2.5]);
+        [0.5, 1.0, 1.5, 2.5, 3.0].into_iter().for_each(|value| histogram.observe(value));
+        let expected = "# HELP wait_seconds Waits.\n# TYPE wait_seconds histogram\n\
+            wait_seconds_bucket{by=\"\\\"me\\\"\",le=\"1\"} 2\nwait_seconds_bucket{by=\"\\\"me\\\"\",le=\"2.5\"} 4\n\
+            wait_seconds_bucket{by=\"\\\"me\\\"\",le=\"+Inf\"} 5\nwait_seconds_sum{by=\"\\\"me\\\"\"} 8.5\n\
+            wait_seconds_count{by=\"\\\"me\\\"\"} 5\n";
+        assert_eq!(TextEncoder::new().encode_to_string(&histogram.collect()).unwrap(), expected);
     }
 
     #[test]
-    fn whoever_enters_leaves_even_by_a_panic() {
-        let gauge = Gauge::default();
+    fn whoever_is_counted_leaves_even_by_a_panic() {
+        let gauge = gauge(Opts::new("guests", "Guests."));
         let caught = std::panic::catch_unwind(|| {
-            let _stay = gauge.enter();
+            let _counted = Counted::by(&gauge);
             assert_eq!(gauge.get(), 2, "not yet");
         });
         assert!(caught.is_err());

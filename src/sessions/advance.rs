@@ -4,9 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use jiff::Timestamp;
+use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::Stop;
+use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{Timer, accuracy, equal_peaks, follow, missed, news, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
@@ -80,9 +82,10 @@ impl Sessions {
             // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
             let receipt = idempotency::receipt(key.clone(), &reply);
             let moves = records.len() as u64;
-            match self.common.store.append(guard.id(), sequence, records, receipt).await {
+            let stored = self.common.store.append(guard.id(), sequence, records, receipt);
+            match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
-                    self.common.meters.moves.add(moves);
+                    self.common.meters.moves.inc_by(moves);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);
@@ -146,6 +149,7 @@ fn attempt(mut live: Box<Live>, advance: &Advance, stop: &Stop) -> (Box<Live>, R
 
 /// Makes the moves, and writes the reply: all that needs a processor.
 fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, SessionError> {
+    let solving = otlp::part!("solve").entered();
     let timer = Timer::start();
     let now = Timestamp::now();
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());
@@ -173,6 +177,7 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     let missed = missed(error, tolerance, advance.plan.curved());
     let warnings = news(&live.contact, before, largest, missed);
     let id = live.session.id;
+    drop(solving);
     let states = records.iter().map(|record| record.state);
     let body = match (&advance.plan, advance.steps) {
         _ if let (Some(relax), Some(protocol)) = (advance.relax, relaxed) => {

@@ -8,11 +8,12 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hashlink::LruCache;
+use prometheus::{IntCounter, Opts};
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::metrics::Counter;
+use crate::metrics::counter;
 use crate::store::Tenant;
 
 use super::live::Live;
@@ -31,7 +32,7 @@ pub(super) struct Cache {
     states: Mutex<States>,
     capacity: usize,
     // How often a state that was asked for was at hand.
-    hits: Counter,
+    hits: IntCounter,
 }
 
 /// A session that somebody works on or waits for. It goes with the last of them, so that a session has one lock at a time.
@@ -68,8 +69,10 @@ struct Place {
 impl Cache {
     /// A cache of at most so many bytes.
     pub(super) fn new(capacity: usize) -> Cache {
+        let hits = Opts::new("stickslip_cache_hits_total", "Times that a contact that was asked for was in memory.");
+        let hits = counter(hits);
         let states = States { by_name: LruCache::new_unbounded(), bytes: 0 };
-        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity, hits: Counter::default() }
+        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity, hits }
     }
 
     /// Waits until the session is one's own. Whoever gives up waiting has left.
@@ -90,8 +93,8 @@ impl Cache {
     }
 
     /// How often a state was at hand.
-    pub(super) fn hits(&self) -> u64 {
-        self.hits.get()
+    pub(super) fn hits(&self) -> &IntCounter {
+        &self.hits
     }
 
     /// Bytes of the states at hand, and how many they are.
@@ -111,7 +114,7 @@ impl Cache {
         let mut states = self.states();
         let (live, bytes) = states.by_name.remove(name)?;
         states.bytes -= bytes;
-        self.hits.add(1);
+        self.hits.inc();
         Some(live)
     }
 

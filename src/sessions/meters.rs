@@ -1,6 +1,8 @@
 //! What the sessions count.
 
-use crate::metrics::{Counter, Histogram, SECONDS};
+use prometheus::{Histogram, IntCounter, Opts};
+
+use crate::metrics::{SECONDS, counter, histogram};
 use crate::store::Commits;
 
 use super::Sessions;
@@ -8,23 +10,27 @@ use super::Sessions;
 /// What happens as it happens.
 pub(super) struct Meters {
     /// Moves that are stored.
-    pub(super) moves: Counter,
+    pub(super) moves: IntCounter,
     /// How long it took to bring a session that was not at hand from the store, s.
     pub(super) open: Histogram,
 }
 
 impl Default for Meters {
     fn default() -> Meters {
-        Meters { moves: Counter::default(), open: Histogram::new(SECONDS) }
+        let help = "Time to bring a contact from the store: its snapshot, and the moves beyond it.";
+        Meters {
+            moves: counter(Opts::new("stickslip_moves_total", "Moves made and stored.")),
+            open: histogram(Opts::new("stickslip_contact_open_seconds", help), SECONDS),
+        }
     }
 }
 
 /// How the sessions are doing.
 pub struct Readings<'a> {
     /// Moves that have been made and stored.
-    pub moves: u64,
+    pub moves: &'a IntCounter,
     /// How often a session that was asked for was at hand.
-    pub hits: u64,
+    pub hits: &'a IntCounter,
     /// How long it took to bring those that were not, s.
     pub open: &'a Histogram,
     /// Sessions at hand that nobody works on.
@@ -45,7 +51,7 @@ impl Sessions {
     pub fn readings(&self) -> Readings<'_> {
         let (bytes, at_hand) = self.common.cache.held();
         Readings {
-            moves: self.common.meters.moves.get(),
+            moves: &self.common.meters.moves,
             hits: self.common.cache.hits(),
             open: &self.common.meters.open,
             at_hand,

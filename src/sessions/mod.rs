@@ -31,9 +31,11 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 use tokio::sync::Semaphore;
+use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::Pool;
+use crate::otlp;
 use crate::store::{Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip_wire::session::Creation;
 
@@ -130,8 +132,8 @@ impl Sessions {
         let reply = live.introduce()?;
         // Whoever finds the new session in the store waits until it is at hand.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
-        let stored = self.common.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
-        match stored {
+        let stored = self.common.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply));
+        match stored.instrument(otlp::part!("store")).await {
             Ok(()) => guard.live = Some(Box::new(live)),
             Err(error) => return self.lost(error, key).await,
         }
@@ -162,7 +164,8 @@ impl Sessions {
             let reply = copy.introduce()?;
             let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
             let receipt = idempotency::receipt(key.clone(), &reply);
-            match self.common.store.fork(id, copy.session.clone(), receipt).await {
+            let stored = self.common.store.fork(id, copy.session.clone(), receipt);
+            match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
                     new.live = Some(Box::new(copy));
                     return Ok(reply);
@@ -189,7 +192,8 @@ impl Sessions {
         };
         let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {
-            match (self.common.store.delete(id, at).await, expected) {
+            let deleted = self.common.store.delete(id, at).instrument(otlp::part!("store"));
+            match (deleted.await, expected) {
                 (Ok(()), _) => {
                     guard.live = None;
                     return Ok(());
@@ -209,6 +213,7 @@ impl Sessions {
 const REPLY: usize = 768;
 
 fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {
+    let _writing = otlp::part!("write").entered();
     let mut bytes = Vec::with_capacity(REPLY);
     serde_json::to_writer(&mut bytes, reply)
         .map_err(|error| SessionError::Broken(format!("a reply cannot be written: {error}")))?;

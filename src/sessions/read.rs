@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use tracing::Instrument as _;
 use uuid::Uuid;
 
 use crate::admission::Nanoseconds;
 use crate::admission::Reservation;
+use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{self, stresses};
 use stickslip_mechanics::Contact;
@@ -73,6 +75,7 @@ impl Sessions {
         let looking = Work { depth: contact.memory_depth(), radii: sampling.length(), residual, ..Work::default() };
         let cost = looking.cost(contact.profile()).saturating_add(longer);
         let work = move || {
+            let solving = otlp::part!("solve").entered();
             let stress = stresses(&contact, &sampling, &stop)?;
             let reply = StressReply {
                 radius: stress.radius,
@@ -82,6 +85,7 @@ impl Sessions {
                 displacement: stress.displacement,
                 residual: residual.then(|| simulation::residual(&contact, &stop)).transpose()?,
             };
+            drop(solving);
             Ok::<_, SessionError>(write(&reply, &contact, sequence))
         };
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
@@ -114,8 +118,13 @@ impl Sessions {
 
     /// The same of a session that is known to be one's own.
     pub(super) async fn past(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let mut found =
-            self.common.store.history(id, after, limit + 1).await.map_err(|error| self.refused(id, error))?;
+        let mut found = self
+            .common
+            .store
+            .history(id, after, limit + 1)
+            .instrument(otlp::part!("store"))
+            .await
+            .map_err(|error| self.refused(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

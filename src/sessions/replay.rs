@@ -103,7 +103,7 @@ impl Sessions {
             }
             live.shared = false;
         }
-        self.common.meters.open.observe_time(begin.elapsed());
+        self.common.meters.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }
 

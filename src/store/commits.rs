@@ -2,34 +2,40 @@
 
 use std::time::Duration;
 
-use crate::metrics::{Counter, Gauge, Histogram, SECONDS, SIZES};
+use prometheus::{Histogram, IntCounter, IntGauge, Opts};
+
+use crate::metrics::{SECONDS, SIZES, counter, gauge, histogram};
 
 /// The changes that a store makes, and the transactions in which it makes them.
 #[derive(Debug)]
 pub struct Commits {
-    /// The kind of store.
-    pub store: &'static str,
     /// Changes that somebody waits for.
-    pub pending: Gauge,
+    pub pending: IntGauge,
     /// How many changes a transaction made.
     pub size: Histogram,
     /// How long a transaction took until it was durable, s.
     pub time: Histogram,
     /// Transactions that failed.
-    pub failed: Counter,
+    pub failed: IntCounter,
 }
 
 impl Commits {
-    /// Nothing counted yet.
+    /// Nothing counted yet, of this kind of store.
     #[must_use]
     pub fn new(store: &'static str) -> Commits {
-        let (size, time) = (Histogram::new(SIZES), Histogram::new(SECONDS));
-        Commits { store, pending: Gauge::default(), size, time, failed: Counter::default() }
+        let named = |name, help| Opts::new(name, help).const_label("store", store);
+        let help = "Changes that wait for their transaction, or are in it.";
+        let pending = gauge(named("stickslip_store_pending_changes", help));
+        let size = histogram(named("stickslip_commit_changes", "Changes in a transaction."), SIZES);
+        let help = "Time of a transaction of the store, until it is durable.";
+        let time = histogram(named("stickslip_commit_seconds", help), SECONDS);
+        let failed = counter(named("stickslip_commit_failures_total", "Transactions that failed."));
+        Commits { pending, size, time, failed }
     }
 
     /// Counts a transaction that is durable.
     pub fn committed(&self, changes: usize, time: Duration) {
         self.size.observe(changes as f64);
-        self.time.observe_time(time);
+        self.time.observe(time.as_secs_f64());
     }
 }

@@ -12,6 +12,7 @@ mod requests;
 mod access;
 mod accuracy;
 mod bad_input;
+mod compression;
 mod contract;
 mod corners;
 mod events;

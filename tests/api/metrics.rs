@@ -230,7 +230,7 @@ async fn clients_that_listen_and_clients_that_leave_are_counted() {
         "solver": {"springs": {"count": 1_000_000}}});
     let call = tokio::time::timeout(Duration::from_millis(300), server.post("/simulate", &long)).await;
     assert!(call.is_err(), "too quick to leave");
-    let left = "stickslip_http_requests_total{route=\"/simulate\",method=\"POST\",status=\"499\"}";
+    let left = "stickslip_http_requests_total{method=\"POST\",route=\"/simulate\",status=\"499\"}";
     let streams = "stickslip_event_streams";
     let noticed = async {
         loop {

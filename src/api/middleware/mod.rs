@@ -1,6 +1,8 @@
 //! What surrounds every handler, one layer a file.
 
 pub mod access_control;
+pub mod compression;
+pub mod request_id;
 pub mod request_log;
 pub mod request_metrics;
 pub mod security_headers;

@@ -1,27 +1,25 @@
-//! Around every request: an identifier, one line in the log, one count, and the document of a problem.
+//! Around every request: one line in the log, one count, one span, and the document of a problem.
 
-use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Instant;
 
 use axum::body::Body;
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::Response;
-use futures::FutureExt as _;
-use uuid::Uuid;
+use tower_http::request_id::RequestId;
+use tracing::field::Empty;
+use tracing::{Instrument as _, Span, info_span};
+use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 
 use crate::api::limits;
 use crate::api::middleware::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::middleware::security_headers;
 use crate::api::problem::{Kind, MEDIA_TYPE, Problem};
-use crate::api::resources::meta;
-use crate::api::resources::metrics;
-use crate::api::resources::page;
-
-/// The header that carries a request's identifier, both ways.
-pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+use crate::api::resources::{metrics, page};
+use crate::metrics::Counted;
+use crate::otlp;
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
@@ -32,13 +30,15 @@ struct RequestGuard<'a> {
     method: &'a Method,
     route: Option<&'a str>,
     endpoint: &'a Endpoint,
+    span: Span,
     answered: bool,
 }
 
 /// Serves a request, and sees to all that is common to every reply.
 pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
-    let id = request_id(&request);
+    let id = request.extensions().get::<RequestId>().map(|id| id.header_value().clone());
+    let id = id.as_ref().and_then(|id| id.to_str().ok()).unwrap_or_default();
     let method = request.method().clone();
     let traceparent =
         request.headers().get("traceparent").filter(|value| value.len() <= limits::REQUEST_ID_LENGTH).cloned();
@@ -49,17 +49,18 @@ pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request
         request.extensions_mut().insert(Arc::clone(&traffic));
     }
     let endpoint = traffic.endpoint(route, &method);
-    let _in_flight = endpoint.in_flight.enter();
+    let _in_flight = Counted::by(&endpoint.in_flight);
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
-    let mut guard = RequestGuard { start, id: &id, traceparent, method: &method, route, endpoint, answered: false };
-    let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
-    let mut response = answer.unwrap_or_else(meta::panicked);
+    let span = span(&request, route.unwrap_or(NO_ROUTE), id);
+    let mut guard =
+        RequestGuard { start, id, traceparent, method: &method, route, endpoint, span: span.clone(), answered: false };
+    let mut response = next.run(request).instrument(span).await;
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
     let code = problem.as_ref().map(|problem| problem.code().as_str());
     let cause = problem.as_ref().and_then(Problem::cause).map(str::to_owned);
     if let Some(problem) = problem {
-        response = dressed(response, problem, &id);
+        response = with_document(response, problem, id);
     }
     let kind = match route {
         Some("/" | page::FOLDER) => security_headers::Kind::Page,
@@ -67,11 +68,36 @@ pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request
         _ => security_headers::Kind::Data,
     };
     security_headers::protect(response.headers_mut(), &method, kind);
-    if let Ok(value) = HeaderValue::from_str(&id) {
-        response.headers_mut().insert(REQUEST_ID, value);
-    }
     guard.answer(response.status(), code, cause.as_deref());
     response
+}
+
+/// What stands for the route of a request that matches none.
+const NO_ROUTE: &str = "none";
+
+/// The span of a request, below that of its caller; its fields have the names that OpenTelemetry gives them.
+fn span(request: &Request, route: &str, id: &str) -> Span {
+    let method = request.method();
+    let span = info_span!(
+        target: otlp::SPANS,
+        otlp::REQUEST,
+        "otel.name" = format!("{method} {route}"),
+        "otel.kind" = "server",
+        "otel.status_code" = Empty,
+        "otel.status_description" = Empty,
+        "http.request.method" = %method,
+        "http.route" = route,
+        "http.response.status_code" = Empty,
+        "error.type" = Empty,
+        "stickslip.request_id" = id,
+    );
+    if !span.is_disabled()
+        && let Some(parent) = otlp::parent(request.headers())
+    {
+        // It fails where there is no trace.
+        let _ = span.set_parent(parent);
+    }
+    span
 }
 
 impl RequestGuard<'_> {
@@ -80,7 +106,13 @@ impl RequestGuard<'_> {
         let time = self.start.elapsed();
         self.endpoint.answered(status.as_u16(), time);
         let RequestGuard { id: request_id, traceparent, method, .. } = *self;
-        let (route, status, duration_ms) = (self.route.unwrap_or("none"), status.as_u16(), time.as_secs_f64() * 1e3);
+        let (route, status, duration_ms) = (self.route.unwrap_or(NO_ROUTE), status.as_u16(), time.as_secs_f64() * 1e3);
+        self.span.record("http.response.status_code", status);
+        self.span.record("error.type", code);
+        if status >= 500 {
+            self.span.record("otel.status_code", "ERROR");
+            self.span.record("otel.status_description", cause);
+        }
         match status {
             500 => {
                 tracing::error!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
@@ -100,19 +132,11 @@ impl Drop for RequestGuard<'_> {
             let RequestGuard { id: request_id, traceparent, method, .. } = *self;
             let time = self.start.elapsed();
             self.endpoint.answered(ABANDONED, time);
-            let (route, duration_ms) = (self.route.unwrap_or("none"), time.as_secs_f64() * 1e3);
+            self.span.record("http.response.status_code", ABANDONED);
+            let (route, duration_ms) = (self.route.unwrap_or(NO_ROUTE), time.as_secs_f64() * 1e3);
             tracing::info!(request_id, %method, route, status = ABANDONED, duration_ms, traceparent, "the client left");
         }
     }
-}
-
-/// The identifier that the client has given the request, or one of our own.
-fn request_id(request: &Request) -> String {
-    let given = request.headers().get(REQUEST_ID).and_then(|value| value.to_str().ok());
-    let sound = |id: &&str| {
-        (1..=limits::REQUEST_ID_LENGTH).contains(&id.len()) && id.bytes().all(|byte| byte.is_ascii_graphic())
-    };
-    given.filter(sound).map_or_else(|| Uuid::now_v7().to_string(), str::to_owned)
 }
 
 /// The problem behind a refusal that does not come from our handlers but from the framework.
@@ -131,7 +155,7 @@ fn foreign(response: &Response) -> Option<Problem> {
 }
 
 /// The response with the document as its body; other headers, such as `Allow`, stay.
-fn dressed(response: Response, problem: Problem, id: &str) -> Response {
+fn with_document(response: Response, problem: Problem, id: &str) -> Response {
     let (mut parts, _) = response.into_parts();
     let document = problem.document(id);
     parts.headers.remove(header::CONTENT_LENGTH);

@@ -5,6 +5,7 @@ use axum::response::Response;
 use utoipa::IntoParams;
 
 use crate::admission::{INLINE, Nanoseconds};
+use crate::otlp;
 use crate::sessions::Sessions;
 use stickslip_mechanics::Contact;
 use stickslip_report::plot::Plot;
@@ -210,8 +211,8 @@ fn written(
 ) -> Result<Vec<u8>, Problem> {
     match format {
         Format::Columns => reply::written(page),
-        Format::Svg | Format::Png => plots::written(format, &plot()),
-        flat => table().written(flat),
+        Format::Svg | Format::Png => otlp::part!("write").in_scope(|| plots::written(format, &plot())),
+        flat => otlp::part!("write").in_scope(|| table().written(flat)),
     }
 }
 

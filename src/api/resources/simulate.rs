@@ -3,6 +3,7 @@
 use axum::extract::State;
 use axum::response::Response;
 
+use crate::otlp;
 use crate::simulation::{self, cost};
 use stickslip_wire::{SimulateReply, SimulateRequest};
 
@@ -56,6 +57,7 @@ pub async fn simulate(State(app): State<App>, command: Command<SimulateRequest>)
     held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;
     let cost = cost::of_simulation(&simulation);
     let room = cost::length_of_simulation(&simulation);
-    let work = move || reply::written_in(room, &simulation::simulate(&simulation, &stop)?);
+    let solve = move || simulation::simulate(&simulation, &stop);
+    let work = move || reply::written_in(room, &otlp::part!("solve").in_scope(solve)?);
     Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
 }

@@ -86,8 +86,6 @@ impl TrackedBody {
         place: Option<Place>,
         memory: Option<Arc<Reservation>>,
     ) -> TrackedBody {
-        // An endless stream has a limit of its own and occupies no solver.
-        let place = place.filter(|_| http_body::Body::size_hint(&body).exact().is_some());
         TrackedBody { body, rest: Bytes::new(), _request: request, _place: place, _memory: memory }
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::body::Body;
+use axum::body::{Body, HttpBody as _};
 use axum::http::{HeaderValue, Method, Request, Response, header};
 use hyper::body::Incoming;
 use tower_service::Service as _;
@@ -80,6 +80,9 @@ impl Service {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
         let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
+        // An endless stream has a limit of its own and occupies no solver. A compressed reply ends, but has no length.
+        let ends = reply.body().size_hint().exact().is_some() || reply.headers().contains_key(header::CONTENT_ENCODING);
+        let place = place.filter(|_| ends);
         Ok(reply.map(|body| TrackedBody::new(body, in_progress, place, memory)))
     }
 }

@@ -8,6 +8,7 @@ use futures::future::join_all;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
+use crate::metrics::Counted;
 use crate::store::{Changes, Commits, RECEIPT_LIFETIME, StoreError};
 
 use super::explain::{Verdict, explain};
@@ -46,7 +47,7 @@ impl Writer {
         &self,
         job: impl FnOnce(oneshot::Sender<Result<(), StoreError>>) -> Job,
     ) -> Result<(), StoreError> {
-        let _pending = self.commits.pending.enter();
+        let _pending = Counted::by(&self.commits.pending);
         let (answer, answered) = oneshot::channel();
         match timeout(PATIENCE, self.queue.send(job(answer))).await {
             Ok(Ok(())) => {}
@@ -109,7 +110,7 @@ impl Desk {
                 },
                 Err(fault) => fault,
             };
-            self.commits.failed.add(1);
+            self.commits.failed.inc();
             match fault {
                 Fault::Lost(text) => {
                     self.line = None;

@@ -31,6 +31,7 @@ use uuid::Uuid;
 
 use super::jobs::Board;
 use super::{Answer, Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use crate::metrics::Counted;
 use change::{Change, Fork};
 use readers::{ReadError, Readers};
 use rusqlite::Connection;
@@ -100,7 +101,7 @@ impl SqliteStore {
 
     async fn change(&self, change: Change) -> Result<u64, StoreError> {
         let gone = || StoreError::Failed("the writer of the database has ended".to_owned());
-        let _pending = self.commits.pending.enter();
+        let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
         let queue = self.queue.as_ref().ok_or_else(gone)?;
         queue.send(Request { change, reply }).await.map_err(|_| gone())?;

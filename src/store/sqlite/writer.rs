@@ -219,7 +219,7 @@ impl Writer {
     fn note(&mut self, failure: Option<&rusqlite::Error>) {
         match failure {
             Some(error) => {
-                self.commits.failed.add(1);
+                self.commits.failed.inc();
                 if self.healthy {
                     tracing::error!(%error, "the database takes no changes; their clients are told until it does");
                 }

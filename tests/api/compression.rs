@@ -1,0 +1,200 @@
+//! Compressed replies hold the same bytes, and their tags work as the client got them.
+
+use crate::common;
+
+use std::io::Read as _;
+use std::sync::Arc;
+use std::time::Duration;
+
+use common::{Server, ball};
+use flate2::read::GzDecoder;
+use reqwest::{Method, Response};
+use serde_json::{Value, json};
+use stickslip::admission::Pool;
+use stickslip::sessions::{CAPACITY, Sessions};
+use stickslip::store::MemoryStore;
+
+const CODINGS: [&str; 2] = ["gzip", "zstd"];
+
+/// A server, and the path of a contact with three moves behind it.
+async fn moved() -> (Server, String) {
+    let server = Server::start().await;
+    let contact = format!("/contacts/{}", server.contact().await);
+    let path = json!({"path": {"displacement": [1e-7, -5e-8, 2e-8]}});
+    assert!(server.post(&format!("{contact}/path"), &path).await.status().is_success());
+    (server, contact)
+}
+
+async fn get(server: &Server, path: &str, headers: &[(&str, &str)]) -> Response {
+    server.send(Method::GET, path, None, headers).await
+}
+
+fn header<'a>(response: &'a Response, name: &str) -> Option<&'a str> {
+    response.headers().get(name).map(|value| value.to_str().unwrap())
+}
+
+/// The fields that a reply varies by.
+fn vary(response: &Response) -> Vec<&str> {
+    response.headers().get_all("vary").iter().map(|value| value.to_str().unwrap()).collect()
+}
+
+fn decoded(coding: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut plain = Vec::new();
+    match coding {
+        "gzip" => GzDecoder::new(bytes).read_to_end(&mut plain).unwrap(),
+        _ => zstd::Decoder::new(bytes).unwrap().read_to_end(&mut plain).unwrap(),
+    };
+    plain
+}
+
+#[tokio::test]
+async fn each_format_decodes_to_the_bytes_that_it_has_without_a_coding() {
+    let (server, contact) = moved().await;
+    for format in ["columns", "rows", "csv", "ndjson", "arrow", "svg"] {
+        let path = format!("{contact}/stress?points=500&format={format}");
+        let plain = get(&server, &path, &[]).await;
+        assert_eq!((header(&plain, "content-encoding"), vary(&plain)), (None, vec!["accept", "accept-encoding"]));
+        let tag = header(&plain, "etag").unwrap().trim_end_matches('"').to_owned();
+        let plain = plain.bytes().await.unwrap();
+        for coding in CODINGS {
+            let response = get(&server, &path, &[("accept-encoding", coding)]).await;
+            assert_eq!(response.status(), 200);
+            assert_eq!(header(&response, "content-encoding"), Some(coding), "{format}");
+            assert_eq!(header(&response, "content-length"), None);
+            assert_eq!(vary(&response), ["accept", "accept-encoding"]);
+            assert_eq!(header(&response, "etag").unwrap(), format!("{tag}+{coding}\""));
+            let packed = response.bytes().await.unwrap();
+            assert!(packed.len() < plain.len(), "{format} {coding}: {} {}", packed.len(), plain.len());
+            assert_eq!(decoded(coding, &packed), plain, "{format} {coding}");
+        }
+        // What a client likes better is taken, and nothing that it refuses.
+        let response = get(&server, &path, &[("accept-encoding", "gzip;q=0.5, zstd;q=0.2, br")]).await;
+        assert_eq!(header(&response, "content-encoding"), Some("gzip"));
+        for refusal in ["identity", "br", "gzip;q=0", "*;q=0"] {
+            let response = get(&server, &path, &[("accept-encoding", refusal)]).await;
+            assert_eq!((response.status().as_u16(), header(&response, "content-encoding")), (200, None), "{refusal}");
+            assert_eq!(response.bytes().await.unwrap(), plain);
+        }
+    }
+}
+
+#[tokio::test]
+async fn what_is_short_or_packed_or_a_stream_stays_as_it_is() {
+    let (server, contact) = moved().await;
+    let accept = [("accept-encoding", "gzip, zstd")];
+    for path in ["/healthz", &contact, &format!("{contact}/stress?format=png"), &format!("{contact}/events"), "/none"] {
+        let response = get(&server, path, &accept).await;
+        assert_eq!(header(&response, "content-encoding"), None, "{path}");
+        assert!(!vary(&response).contains(&"accept-encoding"), "{path}");
+    }
+    // An event comes at once, and does not wait for others to be packed with.
+    let mut events = get(&server, &format!("{contact}/events?after=0"), &accept).await;
+    let first = tokio::time::timeout(Duration::from_secs(30), events.chunk()).await.unwrap().unwrap().unwrap();
+    assert!(!first.is_empty());
+
+    // The files of the page were packed when the program was built.
+    let page = get(&server, "/", &accept).await;
+    assert_eq!((header(&page, "content-encoding"), vary(&page)), (Some("gzip"), vec!["accept-encoding"]));
+    let tag = header(&page, "etag").unwrap().to_owned();
+    assert!(tag.ends_with("-gzip\""), "{tag}");
+    let again = get(&server, "/", &[accept[0], ("if-none-match", &tag)]).await;
+    assert_eq!((again.status().as_u16(), header(&again, "etag").unwrap()), (304, tag.as_str()));
+}
+
+#[tokio::test]
+async fn a_tag_is_taken_as_the_client_got_it() {
+    let (server, contact) = moved().await;
+    let path = format!("{contact}/stress?points=500");
+    for coding in CODINGS {
+        let plain_tag = header(&get(&server, &path, &[]).await, "etag").unwrap().to_owned();
+        let accept = ("accept-encoding", coding);
+        let tag = header(&get(&server, &path, &[accept]).await, "etag").unwrap().to_owned();
+        assert_ne!(tag, plain_tag);
+        for (given, expected) in [
+            (tag.as_str(), tag.as_str()),
+            (&format!("\"0\", W/{tag}"), &tag),
+            (&plain_tag, &plain_tag),
+            ("*", &plain_tag),
+        ] {
+            let response = get(&server, &path, &[accept, ("if-none-match", given)]).await;
+            assert_eq!((response.status().as_u16(), header(&response, "etag").unwrap()), (304, expected), "{given}");
+            assert_eq!(response.bytes().await.unwrap().len(), 0);
+        }
+        let other = get(&server, &path, &[accept, ("if-none-match", "\"0+gzip\"")]).await;
+        assert_eq!((other.status().as_u16(), header(&other, "etag").unwrap()), (200, tag.as_str()));
+
+        let body = json!({"displacement": 1e-9, "relative": true, "stress": {"points": 500}}).to_string();
+        let moving = async |condition: &str| {
+            let headers = [accept, ("if-match", condition)];
+            server.send(Method::POST, &format!("{contact}/move"), Some(&body), &headers).await
+        };
+        let moved = moving(&tag).await;
+        assert_eq!((moved.status().as_u16(), header(&moved, "content-encoding")), (200, Some(coding)));
+        let next = header(&moved, "etag").unwrap().to_owned();
+        assert!(next != tag && next.ends_with(&format!("+{coding}\"")), "{next}");
+        // The state that the first tag stood for is gone.
+        assert_eq!(moving(&tag).await.status(), 412);
+        assert_eq!(moving(&next).await.status(), 200);
+        let response = get(&server, &path, &[accept, ("if-none-match", &tag)]).await;
+        assert_eq!(response.status(), 200);
+    }
+}
+
+#[tokio::test]
+async fn the_head_is_that_of_the_reply() {
+    let (server, contact) = moved().await;
+    let path = format!("{contact}/stress?points=500");
+    for accept in [&[][..], &[("accept-encoding", "gzip")], &[("accept-encoding", "zstd")]] {
+        let whole = get(&server, &path, accept).await;
+        let head = server.send(Method::HEAD, &path, None, accept).await;
+        for name in ["content-type", "content-encoding", "content-length", "etag"] {
+            assert_eq!(header(&head, name), header(&whole, name), "{name} {accept:?}");
+        }
+        assert_eq!(vary(&head), vary(&whole));
+        assert_eq!(head.bytes().await.unwrap().len(), 0);
+    }
+}
+
+#[tokio::test]
+async fn a_client_that_accepts_nothing_gets_the_reply_to_what_was_done() {
+    let (server, contact) = moved().await;
+    let body = json!({"displacement": 1e-9, "relative": true}).to_string();
+    let headers = [("accept-encoding", "identity;q=0")];
+    let response = server.send(Method::POST, &format!("{contact}/move"), Some(&body), &headers).await;
+    assert_eq!((response.status().as_u16(), header(&response, "etag")), (200, Some("\"4\"")));
+    let state: Value = get(&server, &contact, &[]).await.json().await.unwrap();
+    assert_eq!(state["sequence"], 4);
+}
+
+#[tokio::test]
+async fn an_encoder_counts_as_memory_until_its_reply_is_sent() {
+    let pool = Pool::of_the_machine();
+    let server = Server::over(Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY), pool.clone()).await;
+    let contact = format!("/contacts/{}", server.contact().await);
+    let long = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}}}).to_string();
+    for coding in CODINGS {
+        let response = server.send(Method::POST, "/simulate", Some(&long), &[("accept-encoding", coding)]).await;
+        assert_eq!(header(&response, "content-encoding"), Some(coding));
+        // More than the sockets between the two hold is still to come.
+        let held = pool.taken().bytes;
+        let whole = response.bytes().await.unwrap();
+        assert!(serde_json::from_slice::<Value>(&decoded(coding, &whole)).unwrap()["steps"][1899].is_object());
+        let free = async {
+            while pool.taken().bytes > 0 {
+                tokio::time::sleep(Duration::from_millis(5)).await;
+            }
+        };
+        tokio::time::timeout(Duration::from_secs(60), free)
+            .await
+            .unwrap_or_else(|_| panic!("{held} are held for good"));
+    }
+    // Without memory for an encoder the reply goes as it is.
+    let all = pool.reserve(pool.capacity().bytes / 2).await.unwrap();
+    let rest = pool.reserve(pool.capacity().bytes / 2 - 1024 * 1024).await.unwrap();
+    let path = format!("{contact}/stress?points=500");
+    let response = get(&server, &path, &[("accept-encoding", "gzip")]).await;
+    assert_eq!((response.status().as_u16(), header(&response, "content-encoding")), (200, None));
+    drop((all, rest));
+    let response = get(&server, &path, &[("accept-encoding", "gzip")]).await;
+    assert_eq!(header(&response, "content-encoding"), Some("gzip"));
+}
