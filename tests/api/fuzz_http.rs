@@ -171,7 +171,7 @@ async fn requests_by_the_schemas() {
     let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
     let base = format!("http://{}", service.address);
     let contacts: Vec<&[String]> = contacts.chunks(CONTACTS_PER_TASK).collect();
-    run(20_000, async |task, number, random| {
+    run(15_000, async |task, number, random| {
         let request = request(&schemas, contacts[task], random);
         // Most cases should find their contact.
         if request.method == "DELETE" && number % 50 != 0 {
