@@ -25,7 +25,6 @@ pub mod protocol;
 pub mod reply;
 pub mod session;
 pub mod simulate;
-mod slope;
 pub mod stress;
 mod strict;
 pub mod sweep;
