@@ -35,8 +35,6 @@ pub mod reply;
 pub mod session;
 pub mod simulate;
 mod single_key;
-#[allow(clippy::arithmetic_side_effects, reason = "the lengths of the columns of a table have been checked")]
-mod slope;
 pub mod stress;
 pub mod sweep;
 

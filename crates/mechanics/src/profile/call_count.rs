@@ -12,13 +12,13 @@ pub(crate) struct Calls {
     /// Their slopes: what the search for extrema costs.
     pub(crate) kernel_slope: usize,
     /// Shares of a displacement of the surface.
-    pub(crate) lift: usize,
+    pub(crate) displacement_integral: usize,
     /// States of a contact.
     pub(crate) states: usize,
 }
 
 thread_local! {
-    static CALLS: Cell<Calls> = const { Cell::new(Calls { moments: 0, kernel: 0, kernel_slope: 0, lift: 0, states: 0 }) };
+    static CALLS: Cell<Calls> = const { Cell::new(Calls { moments: 0, kernel: 0, kernel_slope: 0, displacement_integral: 0, states: 0 }) };
 }
 
 /// Counts a call.

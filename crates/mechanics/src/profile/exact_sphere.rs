@@ -6,10 +6,10 @@
 
 use super::super::error::Error;
 use super::super::range;
-use super::chart::{self, Chart};
 use super::gauss::{Singular, along_strip};
 use super::roots::increasing;
 use super::shape::{End, Shape};
+use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A sphere, not its osculating paraboloid.
@@ -41,7 +41,7 @@ impl ExactSphere {
         (radius / self.radius).min(1.0 - 0.5 * f64::EPSILON)
     }
 
-    /// R^2 less a square, kept off nought where rounding has x = R.
+    /// R^2 less a square, kept off zero where rounding has x = R.
     fn height_square(&self, square: DoubleDouble) -> f64 {
         let whole = self.radius * self.radius;
         (DoubleDouble::square_of(self.radius) - square).value().max(1e-30 * whole)
@@ -87,8 +87,8 @@ fn shortfall(s: f64) -> f64 {
     }
 }
 
-impl Chart for ExactSphere {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for ExactSphere {
+    fn kink_radius(&self) -> f64 {
         0.0
     }
 
@@ -117,7 +117,7 @@ impl Chart for ExactSphere {
         self.rise(&Span::under(DoubleDouble::square_of(top), top, dt * (t + top)))
     }
 
-    fn start(&self, level: f64) -> f64 {
+    fn upper_bound(&self, level: f64) -> f64 {
         self.radius(level)
     }
 
@@ -240,12 +240,12 @@ impl Shape for ExactSphere {
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         if at.radius > 0.0 || span.inner_radius > 0.0 {
-            return chart::kernel_slope(self, at, span);
+            return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
         let start = 1e-9 * span.outer_radius;
         let (radius, square) = (start, DoubleDouble::square_of(start));
-        chart::kernel_slope(self, &StressRadius { radius, square }, span)
+        smooth_coordinate::kernel_slope(self, &StressRadius { radius, square }, span)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Gauss-Legendre rules, and how far one may reach.
+//! Gauss-Legendre rules, and how wide a panel each may cover.
 //!
 //! A rule of n points errs like rho^(-2n), rho the sum of the half-axes of the largest ellipse about the panel, foci at its ends
 //! and half its width the unit, that holds no singularity (Trefethen 2008). Eight points need rho = 10,
@@ -66,7 +66,7 @@ impl Panel {
 /// Where an integrand fails to be analytic, seen from the axis of integration.
 #[derive(Clone, Copy)]
 pub(super) struct Singular {
-    /// It is singular at nought plus and minus this times i.
+    /// It is singular at zero plus and minus this times i.
     pub(super) below: f64,
     /// It is singular at this point of the axis, above the panels.
     pub(super) above: f64,

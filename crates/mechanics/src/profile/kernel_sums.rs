@@ -84,7 +84,7 @@ impl Roots {
         let (one, other) = self.edge.parts();
         let mut reached: [f64; LANES] = std::array::from_fn(|lane| root_of(excess(lane, one, other)));
         let mut sums = [0.0; LANES];
-        // Most rings lie clearly beyond all the radii at hand, and need no choice.
+        // Most rings lie clearly beyond all the radii of this chunk, and need no choice.
         let clear = greatest * (1.0 + 4.0 * f64::EPSILON);
         let (beyond, others) = self.rings.split_at(self.rings.partition_point(|ring| ring.square > clear));
         for ring in beyond {
@@ -114,7 +114,7 @@ impl Roots {
     }
 }
 
-/// The root of what is positive, and nought of all else.
+/// The root of what is positive, and zero of all else.
 fn root_of(square: f64) -> f64 {
     (if square > 0.0 { square } else { 0.0 }).sqrt()
 }

@@ -14,7 +14,6 @@
 mod angle;
 #[cfg(test)]
 pub(crate) mod call_count;
-mod chart;
 mod cone;
 mod exact_sphere;
 mod flat_punch;
@@ -28,13 +27,14 @@ mod rounded_cone;
 mod rounded_punch;
 mod shape;
 mod singularities;
+mod smooth_coordinate;
+mod smooth_interval;
 mod span;
 mod sphere;
 mod sum;
 mod tabulated;
 mod truncated_cone;
 mod truncated_sphere;
-mod zone;
 
 pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;
@@ -189,7 +189,7 @@ impl Profile {
         Shape::slope(self, radius)
     }
 
-    /// The largest radius below `radius`, m, at which g is not analytic; nought, the tip, if there is none.
+    /// The largest radius below `radius`, m, at which g is not analytic; zero, the tip, if there is none.
     pub(super) fn kink_below(&self, radius: f64) -> f64 {
         Shape::kink_below(self, radius)
     }
@@ -248,12 +248,12 @@ impl Profile {
     /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the displacement
     /// of the surface at r.
     #[must_use]
-    pub fn lift(&self, at: &StressRadius, ring: &Ring) -> f64 {
+    pub fn displacement_integral(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
-        call_count::add(|calls| &mut calls.lift);
+        call_count::add(|calls| &mut calls.displacement_integral);
         each!(self, shape => {
             let span = shape.span(ring);
-            let face = shape.lift(at, &span);
+            let face = shape.displacement_integral(at, &span);
             if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
         })
     }

@@ -5,9 +5,9 @@
 
 use super::super::error::Error;
 use super::super::range;
-use super::chart::{self, Chart};
 use super::gauss::Singular;
 use super::shape::Shape;
+use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
@@ -99,8 +99,8 @@ fn kappa(exponent: f64) -> f64 {
     share.value() * (std::f64::consts::PI * w).sqrt() * series
 }
 
-impl Chart for PowerLaw {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for PowerLaw {
+    fn kink_radius(&self) -> f64 {
         0.0
     }
 
@@ -133,7 +133,7 @@ impl Chart for PowerLaw {
         -self.level(top) * (-self.exponent * decades).exp_m1()
     }
 
-    fn start(&self, level: f64) -> f64 {
+    fn upper_bound(&self, level: f64) -> f64 {
         self.radius(level)
     }
 
@@ -254,13 +254,13 @@ impl Shape for PowerLaw {
         beyond
             + near.map_or(0.0, |near| match self.order {
                 Some(order) => self.by_recursion(order, at, &near),
-                None => chart::kernel(self, at, &near),
+                None => smooth_coordinate::kernel(self, at, &near),
             })
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         if at.radius > 0.0 || span.inner_radius > 0.0 {
-            return chart::kernel_slope(self, at, span);
+            return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip: (n/2) B x^(n-3)/(n - 3), where that integral exists.
         let n = self.exponent;

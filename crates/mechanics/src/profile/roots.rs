@@ -1,4 +1,4 @@
-//! Roots of increasing functions, found without fail whatever their size.
+//! Roots of increasing functions, whatever their size.
 
 /// More steps than any of these functions takes; a guard, never the way out.
 const MOST_STEPS: usize = 200;
@@ -40,7 +40,7 @@ pub(super) fn increasing(guess: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let newton = x - value / slope;
         let step = (newton - x).abs();
         let bracketed = low > 0.0 && high < f64::INFINITY;
-        // Now and then the bracket alone, lest Newton's steps creep.
+        // Every eighth step uses the bracket alone: Newton's steps may be tiny.
         let near = step <= if bracketed { 0.4 * x } else { 0.1 * x };
         let next = if near && newton > low && newton < high && count % 8 > 0 {
             newton

@@ -7,9 +7,9 @@
 use super::super::error::Error;
 use super::super::range;
 use super::angle::tangent_less_angle;
-use super::chart::{self, Chart};
 use super::roots::descend;
 use super::shape::Shape;
+use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::sphere::Sphere;
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
@@ -26,7 +26,7 @@ struct Flank {
     slope: f64,
     tip_radius: f64,
     /// The level at the end of the tip, from the paraboloid so that both sides agree on it.
-    seam: DoubleDouble,
+    tip_level: DoubleDouble,
 }
 
 impl RoundedCone {
@@ -37,8 +37,8 @@ impl RoundedCone {
     pub fn new(slope: f64, tip_radius: f64) -> Result<RoundedCone, Error> {
         let (slope, tip_radius) = (range::SLOPE.check(slope)?, range::TIP_RADIUS.check(tip_radius)?);
         let curvature_radius = tip_radius / slope;
-        let seam = DoubleDouble::square_of(tip_radius).over(DoubleDouble::from(curvature_radius));
-        Ok(RoundedCone { tip: Sphere::of_curvature(curvature_radius), flank: Flank { slope, tip_radius, seam } })
+        let tip_level = DoubleDouble::square_of(tip_radius).over(DoubleDouble::from(curvature_radius));
+        Ok(RoundedCone { tip: Sphere::of_curvature(curvature_radius), flank: Flank { slope, tip_radius, tip_level } })
     }
 
     fn parts(&self, span: &Span) -> (Option<Span>, Option<Span>) {
@@ -55,8 +55,8 @@ impl Flank {
     }
 }
 
-impl Chart for Flank {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for Flank {
+    fn kink_radius(&self) -> f64 {
         self.tip_radius
     }
 
@@ -94,16 +94,16 @@ impl Chart for Flank {
         self.slope * (x_top * turn + (b / (x + t) + t.atan2(b)) * dx)
     }
 
-    fn start(&self, level: f64) -> f64 {
+    fn upper_bound(&self, level: f64) -> f64 {
         // Q >= pi/2, so g rises by at least T (pi/2)(x - b); here `level` is that rise.
         let more = (level / self.slope * std::f64::consts::FRAC_2_PI).max(0.0);
         (more * (more + 2.0 * self.tip_radius)).sqrt()
     }
 
     fn square_above(&self, level: DoubleDouble) -> DoubleDouble {
-        // From the seam on, lest t drown in the level of the seam.
-        let climb = (level - self.seam).value();
-        let start = self.start(climb);
+        // From the end of the tip on: t would be lost in the rounding of the level there.
+        let climb = (level - self.tip_level).value();
+        let start = self.upper_bound(climb);
         DoubleDouble::square_of(if start > 0.0 {
             descend(start, |t| (self.rise_at(0.0, t, t) - climb, self.slope_at(t)))
         } else {
@@ -117,12 +117,16 @@ impl Shape for RoundedCone {
         if radius <= self.flank.tip_radius {
             self.tip.level(radius)
         } else {
-            self.flank.level_at(chart::t_of(&self.flank, radius))
+            self.flank.level_at(smooth_coordinate::t_of(&self.flank, radius))
         }
     }
 
     fn slope(&self, radius: f64) -> f64 {
-        if radius <= self.flank.tip_radius { self.tip.slope(radius) } else { chart::slope(&self.flank, radius) }
+        if radius <= self.flank.tip_radius {
+            self.tip.slope(radius)
+        } else {
+            smooth_coordinate::slope(&self.flank, radius)
+        }
     }
 
     fn radius(&self, level: f64) -> f64 {
@@ -130,7 +134,7 @@ impl Shape for RoundedCone {
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
-        if level <= self.flank.seam {
+        if level <= self.flank.tip_level {
             self.tip.square(level)
         } else {
             DoubleDouble::square_of(self.flank.tip_radius) + self.flank.square_above(level)
@@ -141,7 +145,7 @@ impl Shape for RoundedCone {
         if radius <= self.flank.tip_radius {
             self.tip.load(radius)
         } else {
-            self.flank.load_at(chart::t_of(&self.flank, radius))
+            self.flank.load_at(smooth_coordinate::t_of(&self.flank, radius))
         }
     }
 
@@ -149,13 +153,14 @@ impl Shape for RoundedCone {
         if load <= self.tip.load(self.flank.tip_radius) {
             self.tip.indentation_for(load)
         } else {
-            chart::indentation_for(&self.flank, load, |t| self.flank.load_at(t))
+            smooth_coordinate::indentation_for(&self.flank, load, |t| self.flank.load_at(t))
         }
     }
 
     fn rise(&self, span: &Span) -> f64 {
         let (tip, flank) = self.parts(span);
-        tip.map_or(0.0, |span| self.tip.rise(&span)) + flank.map_or(0.0, |span| chart::rise(&self.flank, &span))
+        tip.map_or(0.0, |span| self.tip.rise(&span))
+            + flank.map_or(0.0, |span| smooth_coordinate::rise(&self.flank, &span))
     }
 
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
@@ -164,9 +169,9 @@ impl Shape for RoundedCone {
             return self.tip.gap(ring, depth);
         }
         if ring.inner.square >= square {
-            return chart::gap(&self.flank, ring, depth);
+            return smooth_coordinate::gap(&self.flank, ring, depth);
         }
-        // Both parts from the seam: a difference of squares would lose what a thin ring has on either side.
+        // Both parts from the end of the tip: a difference of squares would lose what a thin ring has on either side.
         let above = (ring.outer.square - square).value();
         above + (square - ring.inner.square).value()
     }
@@ -177,21 +182,21 @@ impl Shape for RoundedCone {
 
     fn moments(&self, span: &Span) -> Moments {
         let (tip, flank) = self.parts(span);
-        let above = flank.map_or(0.0, |span| chart::rise(&self.flank, &span));
-        let outer = flank.map_or(Moments::default(), |span| chart::moments(&self.flank, &span));
+        let above = flank.map_or(0.0, |span| smooth_coordinate::rise(&self.flank, &span));
+        let outer = flank.map_or(Moments::default(), |span| smooth_coordinate::moments(&self.flank, &span));
         Moments::stack(tip.map_or(Moments::default(), |span| self.tip.moments(&span)), outer, above)
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         let (tip, flank) = self.parts(span);
         tip.map_or(0.0, |span| self.tip.kernel(at, &span))
-            + flank.map_or(0.0, |span| chart::kernel(&self.flank, at, &span))
+            + flank.map_or(0.0, |span| smooth_coordinate::kernel(&self.flank, at, &span))
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let (tip, flank) = self.parts(span);
         tip.map_or(0.0, |span| self.tip.kernel_slope(at, &span))
-            + flank.map_or(0.0, |span| chart::kernel_slope(&self.flank, at, &span))
+            + flank.map_or(0.0, |span| smooth_coordinate::kernel_slope(&self.flank, at, &span))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -6,7 +6,7 @@
 use super::super::error::Error;
 use super::super::range;
 use super::angle::tangent_less_angle;
-use super::chart::{self, Chart, flat_core};
+use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A flat punch with a rounded edge.
@@ -39,8 +39,8 @@ impl RoundedPunch {
     }
 }
 
-impl Chart for RoundedPunch {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for RoundedPunch {
+    fn kink_radius(&self) -> f64 {
         self.flat_radius
     }
 
@@ -53,7 +53,7 @@ impl Chart for RoundedPunch {
     }
 
     fn bend_at(&self, t: f64) -> f64 {
-        // t gamma' - gamma = (t^2/(R x)) (1 - (t - b phi) t/x^2), in which the bracket is above nought.
+        // t gamma' - gamma = (t^2/(R x)) (1 - (t - b phi) t/x^2), in which the bracket is above zero.
         let (x, excess) = (self.radius_at(t), self.excess(t));
         t * t * (1.0 - excess * t / (x * x)) / (x * self.edge_radius)
     }
@@ -67,7 +67,7 @@ impl Chart for RoundedPunch {
         (x_top * step + self.excess(t) * dt * (t + top) / (x + x_top)) / self.edge_radius
     }
 
-    fn start(&self, level: f64) -> f64 {
+    fn upper_bound(&self, level: f64) -> f64 {
         // t - b phi is above t - b pi/2; for t < b it is above t^3/(6 b^2).
         let (b, area) = (self.flat_radius, level * self.edge_radius);
         let quarter = std::f64::consts::FRAC_PI_4 * b;

@@ -1,7 +1,7 @@
 //! What a family must offer, and what follows for all of them.
 
 use super::roots::increasing;
-use super::zone::{Node, Zone};
+use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
 
 /// Where contacts end.
@@ -13,7 +13,7 @@ pub(super) struct End {
     pub(super) falls: bool,
 }
 
-/// The functions of one family. Radii in m, levels in m; a span's vertical edge is the caller's affair, not theirs.
+/// The functions of one family. Radii in m, levels in m; the caller adds what a span crosses at a vertical edge.
 pub(super) trait Shape {
     /// g(x).
     fn level(&self, radius: f64) -> f64;
@@ -45,7 +45,7 @@ pub(super) trait Shape {
         if plain > 0.3 * outer.square.value() || ring.inner.level <= DoubleDouble::ZERO {
             return plain;
         }
-        // No ring reaches into a flat core, over which the rise tells nothing.
+        // No ring reaches into a flat core, where g is constant.
         let square = (outer.square - DoubleDouble::square_of(self.radius(0.0))).value();
         let steepness = |radius: f64| self.slope(radius) / (2.0 * radius);
         let start = depth / steepness(outer.radius);
@@ -64,7 +64,7 @@ pub(super) trait Shape {
         None
     }
 
-    /// The largest kink below `radius`; nought, the tip, if there is none.
+    /// The largest kink below `radius`; zero, the tip, if there is none.
     fn kink_below(&self, _radius: f64) -> f64 {
         0.0
     }
@@ -100,14 +100,14 @@ pub(super) trait Shape {
         Span::of(ring, gap, edge)
     }
 
-    /// The outermost zone of a span, and what is left inside it.
-    fn zone(&self, span: &Span) -> (Zone, Span, Option<Span>) {
+    /// The outermost interval of a span, and what is left inside it.
+    fn outermost_interval(&self, span: &Span) -> (SmoothInterval, Span, Option<Span>) {
         let base = self.kink_below(span.outer_radius);
         let square = DoubleDouble::square_of(base);
         let (Some(outer), rest) = (span.above(square, base), span.below(square, base)) else {
-            return (Zone::new(span, 0.0, 0.0, self.ceiling(), self.power()), *span, None);
+            return (SmoothInterval::new(span, 0.0, 0.0, self.ceiling(), self.power()), *span, None);
         };
-        let reach = if base > 0.0 {
+        let singularity = if base > 0.0 {
             let next = self.kink_below(base);
             ((base - next) * (base + next)).sqrt()
         } else if self.analytic_tip() {
@@ -115,7 +115,7 @@ pub(super) trait Shape {
         } else {
             0.0
         };
-        (Zone::new(&outer, base, reach, self.ceiling(), self.power()), outer, rest)
+        (SmoothInterval::new(&outer, base, singularity, self.ceiling(), self.power()), outer, rest)
     }
 
     /// The moments of h = g(x_outer) - g(x).
@@ -123,8 +123,8 @@ pub(super) trait Shape {
         let (mut sum, mut above) = (Moments::default(), 0.0);
         let mut rest = Some(*span);
         while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-            let (zone, outer, inner) = self.zone(&span);
-            let part = zone.moments(|node| self.rise(&under(&outer, &zone, node)));
+            let (interval, outer, inner) = self.outermost_interval(&span);
+            let part = interval.moments(|node| self.rise(&under(&outer, &interval, node)));
             sum = Moments::stack(part, sum, above);
             above += self.rise(&outer);
             rest = inner;
@@ -133,12 +133,12 @@ pub(super) trait Shape {
     }
 
     /// int h dx / sqrt(r^2 - x^2) below r, with h = g(x_outer) - g(x).
-    fn lift(&self, at: &StressRadius, span: &Span) -> f64 {
+    fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let (mut sum, mut above) = (0.0, 0.0);
         let mut rest = Some(*span);
         while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-            let (zone, outer, inner) = self.zone(&span);
-            sum += zone.lift(&outer, at, above, |node| self.rise(&under(&outer, &zone, node)));
+            let (interval, outer, inner) = self.outermost_interval(&span);
+            sum += interval.displacement_integral(&outer, at, above, |node| self.rise(&under(&outer, &interval, node)));
             above += self.rise(&outer);
             rest = inner;
         }
@@ -215,12 +215,12 @@ pub(super) trait Shape {
     }
 }
 
-/// The stretch from a node of a zone up to the zone's top.
-fn under(top: &Span, zone: &Zone, node: Node) -> Span {
-    if node.dt < 0.5 * zone.high {
-        return Span::under(top.outer, top.outer_radius, node.dt * (zone.high + node.t));
+/// The stretch from a node of an interval up to the interval's outer end.
+fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
+    if node.dt < 0.5 * interval.high {
+        return Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t));
     }
-    // Low in the zone its own square is what must be exact, not how much it lacks.
-    let inner = DoubleDouble::square_of(zone.base) + DoubleDouble::square_of(node.t);
+    // Near the inner end its own square must be exact, not the difference from the outer one.
+    let inner = DoubleDouble::square_of(interval.base) + DoubleDouble::square_of(node.t);
     Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
 }

@@ -2,7 +2,7 @@
 //!
 //! Only X(y) does not: it lies between the least of the parts' X(y/n) and the least of their X(y), and is found there by a
 //! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
-//! the others make up for it: X(y) then lies between the foot of the sum and where it ends or falls.
+//! the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or falls.
 
 use super::super::double_double::DoubleDouble;
 use super::super::error::Error;
@@ -22,12 +22,12 @@ const FARTHEST: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
     parts: Vec<Profile>,
-    /// Radii at which one of the parts is not smooth, rising.
+    /// Radii at which one of the parts is not smooth, increasing.
     kinks: Vec<f64>,
     rim: Option<(f64, f64)>,
     /// Where contacts end.
     limit: Option<End>,
-    /// Where X(y) is sought if a part's own inverse is of no help: from the foot of the sum to its rim, m.
+    /// Where X(y) is sought if a part's own inverse is of no help: from the flat radius of the sum to its rim, m.
     bracket: Option<(f64, f64)>,
     ceiling: f64,
     power: f64,
@@ -80,11 +80,11 @@ impl Sum {
             sum.rim = Some((rim, sum.level(rim)));
         }
         if sum.parts.iter().any(Shape::falls_within) {
-            let foot = sum.parts.iter().map(Shape::flat_radius).fold(rim, f64::min);
+            let flat_radius = sum.parts.iter().map(Shape::flat_radius).fold(rim, f64::min);
             if !sum.rim.is_some_and(|(_, top)| top > 0.0) {
-                return Err(Error::NotConvexEnough { radius: foot });
+                return Err(Error::NotConvexEnough { radius: flat_radius });
             }
-            sum.bracket = Some((foot, rim));
+            sum.bracket = Some((flat_radius, rim));
         }
         Ok(sum)
     }
@@ -95,14 +95,14 @@ impl Sum {
             Profile::Tabulated(table) => Some(table),
             _ => None,
         });
-        let mut looks: Vec<f64> =
+        let mut samples: Vec<f64> =
             tables.flat_map(Tabulated::slope_check_radii).filter(|&radius| radius < rim).collect();
-        looks.sort_by(f64::total_cmp);
+        samples.sort_by(f64::total_cmp);
         let sizes = |x: f64| self.total(|part| part.slope(x).abs());
         // Parts that cancel leave their rounding.
         let falls = |x: f64| Shape::slope(self, x) < -1e-12 * sizes(x);
-        let index = looks.iter().position(|&x| falls(x))?;
-        let (mut low, mut high) = (index.checked_sub(1).map_or(0.0, |before| looks[before]), looks[index]);
+        let index = samples.iter().position(|&x| falls(x))?;
+        let (mut low, mut high) = (index.checked_sub(1).map_or(0.0, |before| samples[before]), samples[index]);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if falls(middle) { high = middle } else { low = middle }
@@ -144,20 +144,20 @@ impl Sum {
     ) -> f64 {
         let least = |target: f64| self.parts.iter().map(|part| radius(part, target)).fold(f64::INFINITY, f64::min);
         if target <= 0.0 {
-            return self.bracket.map_or_else(|| least(target), |(foot, _)| foot);
+            return self.bracket.map_or_else(|| least(target), |(flat_radius, _)| flat_radius);
         }
         #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
         let (low, high) = self.bracket.unwrap_or_else(|| (least(target / self.parts.len() as f64), least(target)));
-        let reach = high - low;
-        if reach <= 1e-15 * high {
+        let width = high - low;
+        if width <= 1e-15 * high {
             return high;
         }
         // Measured from below, so that a flat core does not hide how far beyond it the root lies.
-        low + increasing(0.5 * reach, |step| {
-            let x = low + step.min(reach);
+        low + increasing(0.5 * width, |step| {
+            let x = low + step.min(width);
             (self.total(|part| f(part, x)) - target, slope(x))
         })
-        .min(reach)
+        .min(width)
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::super::error::Error;
 use super::super::range;
-use super::chart::{self, Chart, flat_core};
+use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A truncated cone.
@@ -30,8 +30,8 @@ impl TruncatedCone {
     }
 }
 
-impl Chart for TruncatedCone {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for TruncatedCone {
+    fn kink_radius(&self) -> f64 {
         self.flat_radius
     }
 
@@ -57,7 +57,7 @@ impl Chart for TruncatedCone {
         self.slope * (x_top * turn + t.atan2(b) * dt * (t + top) / (x + x_top))
     }
 
-    fn start(&self, level: f64) -> f64 {
+    fn upper_bound(&self, level: f64) -> f64 {
         // phi >= t/x.
         level / self.slope
     }
@@ -80,7 +80,7 @@ mod tests {
             let cone = TruncatedCone::new(0.3, flat).unwrap();
             for level in [1e-9, 1e-3, 1.0, 1e3] {
                 let back = cone.level(cone.radius(level));
-                // Near the flat the level hangs on x - b, of which a rounded x keeps few digits.
+                // Near the flat the level depends on x - b, of which a rounded x keeps few digits.
                 let allowed = 1e-15 * (level + cone.slope(cone.radius(level)) * cone.radius(level));
                 assert!((back - level).abs() < allowed, "{flat} {level} {back}");
             }

@@ -5,7 +5,7 @@
 
 use super::super::error::Error;
 use super::super::range;
-use super::chart::{self, Chart, flat_core};
+use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A paraboloid with a flat end.
@@ -33,8 +33,8 @@ impl TruncatedSphere {
     }
 }
 
-impl Chart for TruncatedSphere {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for TruncatedSphere {
+    fn kink_radius(&self) -> f64 {
         self.flat_radius
     }
 
@@ -57,17 +57,17 @@ impl Chart for TruncatedSphere {
         dt * (x_top + t * (t + top) / (x + x_top)) / self.curvature_radius
     }
 
-    fn start(&self, level: f64) -> f64 {
+    fn upper_bound(&self, level: f64) -> f64 {
         self.square_above(level.into()).value().sqrt()
     }
 
     fn solve(&self, level: f64) -> f64 {
-        self.start(level)
+        self.upper_bound(level)
     }
 
     fn square_above(&self, level: DoubleDouble) -> DoubleDouble {
-        let reach = level * self.curvature_radius;
-        let (b, four) = (DoubleDouble::square_of(self.flat_radius), reach * reach * 4.0);
+        let product = level * self.curvature_radius;
+        let (b, four) = (DoubleDouble::square_of(self.flat_radius), product * product * 4.0);
         let root = (b * b + four).sqrt() + b;
         if four.value() > 0.0 { (four * 0.5).over(root) } else { DoubleDouble::ZERO }
     }

@@ -49,7 +49,7 @@ fn evaluate(profile: &Profile, function: &str, a: &[f64]) -> f64 {
         "second" => profile.moments(&ring(profile, a[0], a[1])).second,
         "kernel" => profile.kernel(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
         "kernel_slope" => profile.kernel_slope(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
-        "lift" => profile.lift(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
+        "lift" => profile.displacement_integral(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
         other => panic!("no function {other}"),
     }
 }
@@ -157,7 +157,10 @@ fn infinities_are_where_they_belong_and_never_nan() {
             let at = StressRadius::new(r);
             let (k, s) = (profile.kernel(&at, &whole), profile.kernel_slope(&at, &whole));
             assert!(!k.is_nan() && k >= 0.0 && !s.is_nan(), "{family} {r}: {k} {s}");
-            assert!(profile.lift(&at, &whole) >= 0.0 && profile.arc(&at, &whole) >= 0.0, "{family} {r}");
+            assert!(
+                profile.displacement_integral(&at, &whole) >= 0.0 && profile.arc(&at, &whole) >= 0.0,
+                "{family} {r}"
+            );
         }
         if let Some(r) = singular {
             assert!(profile.kernel(&StressRadius::new(r), &whole).is_infinite(), "{family}");
@@ -267,8 +270,8 @@ proptest! {
         if apart {
             let (one, two) = (profile.kernel(&at, &below) + profile.kernel(&at, &above), profile.kernel(&at, &whole));
             prop_assert!(close(one, two, tolerance), "{one} {two}");
-            let one = profile.lift(&at, &below) + profile.lift(&at, &above) + above.depth * profile.arc(&at, &below);
-            prop_assert!(close(one, profile.lift(&at, &whole), tolerance), "{one}");
+            let one = profile.displacement_integral(&at, &below) + profile.displacement_integral(&at, &above) + above.depth * profile.arc(&at, &below);
+            prop_assert!(close(one, profile.displacement_integral(&at, &whole), tolerance), "{one}");
         }
     }
 
@@ -283,7 +286,7 @@ proptest! {
         let at = StressRadius::new(r * a);
         if (one.inner.radius / at.radius - 1.0).abs() > 1e-3 && r < 0.999 {
             prop_assert!(close(whole.kernel(&at, &one), sum.kernel(&at, &two), 1e-12));
-            prop_assert!(close(whole.lift(&at, &one), sum.lift(&at, &two), 1e-12));
+            prop_assert!(close(whole.displacement_integral(&at, &one), sum.displacement_integral(&at, &two), 1e-12));
         }
     }
 
@@ -301,7 +304,7 @@ proptest! {
         for at in [StressRadius::new(r * ring.outer.radius), StressRadius::new(0.0), StressRadius::of_point(&ring.inner), StressRadius::of_point(&ring.outer)] {
             prop_assert!(profile.kernel(&at, &ring) >= 0.0, "{at:?}");
             prop_assert!(!profile.kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
-            prop_assert!(profile.lift(&at, &ring) >= 0.0 && profile.arc(&at, &ring) >= 0.0, "{at:?}");
+            prop_assert!(profile.displacement_integral(&at, &ring) >= 0.0 && profile.arc(&at, &ring) >= 0.0, "{at:?}");
         }
         prop_assert!(profile.indentation_for(y * y) > 0.0);
     }

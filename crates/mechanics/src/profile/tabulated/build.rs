@@ -24,7 +24,7 @@ struct Segment {
 struct Stretch {
     knot: usize,
     base: f64,
-    reach: f64,
+    singularity: f64,
     low: f64,
     high: f64,
 }
@@ -62,7 +62,8 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
         for stretch in block {
             let values =
                 |low, high| panel::places(low, high).map(|t| field.slope(&segments, stretch, t) / stretch.radius(t));
-            let make = |low, high| Panel::new((stretch.base, stretch.reach), (low, high), &values(low, high), &cosines);
+            let make =
+                |low, high| Panel::new((stretch.base, stretch.singularity), (low, high), &values(low, high), &cosines);
             let panel = make(stretch.low, stretch.high);
             let Some(t) = first_fall(&panel) else {
                 built.panels.push(panel);
@@ -95,7 +96,7 @@ fn stretches(knots: &[Knot], segments: &[Segment]) -> Vec<Stretch> {
     for knot in flat..segments.len() {
         let (base, end) = (knots[knot].radius, knots[knot + 1].radius);
         let mut high = ((end - base) * (end + base)).sqrt();
-        let reach = if knot > flat {
+        let singularity = if knot > flat {
             let next = knots[knot - 1].radius;
             ((base - next) * (base + next)).sqrt()
         } else if base > 0.0 {
@@ -106,9 +107,9 @@ fn stretches(knots: &[Knot], segments: &[Segment]) -> Vec<Stretch> {
         let from = all.len();
         loop {
             // Twenty-four terms suffice where the singularity is off the ellipse of half-axes that add up to four.
-            let fits = reach + (high * high + reach * reach).sqrt() >= 2.2 * high;
+            let fits = singularity + (high * high + singularity * singularity).sqrt() >= 2.2 * high;
             let low = if fits { 0.0 } else { 0.4 * high };
-            all.push(Stretch { knot, base, reach, low, high });
+            all.push(Stretch { knot, base, singularity, low, high });
             if fits {
                 break;
             }
@@ -178,7 +179,7 @@ impl Field {
     }
 }
 
-/// The first t at which q is below nought by more than rounding could make it.
+/// The first t at which q is below zero by more than rounding could make it.
 fn first_fall(panel: &Panel) -> Option<f64> {
     let mut places = panel::places(panel.low, panel.high).to_vec();
     places.extend([panel.low, panel.high]);

@@ -78,7 +78,7 @@ fn place(low: f64, high: f64, index: usize) -> f64 {
     0.5 * (low + high) + 0.5 * (high - low) * POINTS[index]
 }
 
-/// The values at `place` of the polynomials that are one at one Chebyshev point of the interval and nought at the others.
+/// The values at `place` of the polynomials that are one at one Chebyshev point of the interval and zero at the others.
 fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
     let u = (at - 0.5 * (low + high)) / (0.5 * (high - low));
     let mut shares = [0.0; PROXIES];

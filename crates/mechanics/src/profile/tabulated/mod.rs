@@ -18,9 +18,9 @@ mod tests;
 use super::super::double_double::DoubleDouble;
 use super::super::error::{Error, TableFault};
 use super::super::range;
-use super::chart::{self, Chart};
 use super::gauss;
 use super::shape::{End, Shape};
+use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{Moments, Point, Ring, Span, StressRadius};
 use far_field::FarField;
 pub use interpolation_error::InterpolationError;
@@ -49,7 +49,7 @@ pub struct Tabulated {
 }
 
 impl Tabulated {
-    /// The profile through the points (r, z), m. `radii` begin at nought and rise; an offset of z does not matter.
+    /// The profile through the points (r, z), m. `radii` begin at zero and increase; an offset of z does not matter.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::TABLE_POINTS`], [`range::TABLE_RADIUS`] and [`range::TABLE_HEIGHT`], [`Error::Table`] for a
@@ -320,7 +320,11 @@ impl Shape for Tabulated {
     fn rise(&self, span: &Span) -> f64 {
         let (low, whole, high) = self.parts(span);
         let between = self.run(whole.start, whole.end).1;
-        [low, high].into_iter().flatten().map(|(index, span)| chart::rise(&self.panels[index], &span)).sum::<f64>()
+        [low, high]
+            .into_iter()
+            .flatten()
+            .map(|(index, span)| smooth_coordinate::rise(&self.panels[index], &span))
+            .sum::<f64>()
             + between
     }
 
@@ -331,20 +335,20 @@ impl Shape for Tabulated {
         let inside = Ring { outer, ..*ring };
         let first = self.find(inside.inner.radius);
         if self.panels.get(first + 1).is_some_and(|next| next.radius < outer.radius) {
-            // Over a seam: the squares know the distance to it on either side.
+            // Across a knot: the squares have the distance to it on either side.
             return (outer.square - inside.inner.square).value();
         }
-        chart::gap(&self.panels[first], &inside, depth)
+        smooth_coordinate::gap(&self.panels[first], &inside, depth)
     }
 
-    fn lift(&self, at: &StressRadius, span: &Span) -> f64 {
+    fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let (low, whole, high) = self.parts(span);
         let whole = whole.map(|index| (index, self.panels[index].span()));
         let (mut sum, mut above) = (0.0, 0.0);
         for (index, span) in high.into_iter().chain(whole.rev()).chain(low) {
             let panel = &self.panels[index];
-            sum += panel.lift(at, &span, above);
-            above += chart::rise(panel, &span);
+            sum += panel.displacement_integral(at, &span, above);
+            above += smooth_coordinate::rise(panel, &span);
         }
         sum
     }
@@ -366,18 +370,23 @@ impl Shape for Tabulated {
         }
         if let Some((index, span)) = high {
             let panel = &self.panels[index];
-            sum.0 = Moments::stack(sum.0, panel.moments(&span), chart::rise(panel, &span));
+            sum.0 = Moments::stack(sum.0, panel.moments(&span), smooth_coordinate::rise(panel, &span));
         }
         sum.0
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.gather(at, span, |panel, span| chart::kernel(panel, at, span), |gap, weight| weight / gap.sqrt())
+        self.gather(
+            at,
+            span,
+            |panel, span| smooth_coordinate::kernel(panel, at, span),
+            |gap, weight| weight / gap.sqrt(),
+        )
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
-        self.gather(at, span, |panel, span| chart::kernel_slope(panel, at, span), far)
+        self.gather(at, span, |panel, span| smooth_coordinate::kernel_slope(panel, at, span), far)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

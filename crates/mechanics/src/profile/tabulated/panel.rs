@@ -1,11 +1,11 @@
 //! One stretch of a table between two knots, as Chebyshev series in t = sqrt(x^2 - k^2), k the knot beneath.
 //!
 //! Stored are q = g'/x and its primitive P = int t q dt (Clenshaw 1955; Mason & Handscomb 2003): g' is analytic in t, though not
-//! in x, and q keeps gamma = dg/dt = t q exact as t goes to nought.
+//! in x, and q keeps gamma = dg/dt = t q exact as t goes to zero.
 
 use super::super::super::double_double::DoubleDouble;
-use super::super::chart::Chart;
-use super::super::zone::Zone;
+use super::super::smooth_coordinate::SmoothCoordinate;
+use super::super::smooth_interval::SmoothInterval;
 use super::super::{Moments, Span, StressRadius};
 
 /// Values that fix a series.
@@ -17,7 +17,7 @@ pub(super) struct Panel {
     /// k, m.
     pub(super) base: f64,
     /// Distance in t, along the imaginary axis, at which g is singular, m.
-    pub(super) reach: f64,
+    pub(super) singularity: f64,
     /// t where it begins and where it ends, m.
     pub(super) low: f64,
     pub(super) high: f64,
@@ -48,7 +48,7 @@ fn cosine(index: usize) -> f64 {
     (std::f64::consts::PI * index / 48.0).cos()
 }
 
-/// The series with these values; what rounding alone keeps from nought is cut off.
+/// The series with these values; what rounding alone keeps from zero is cut off.
 fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
     let mut series = Vec::with_capacity(POINTS);
     for order in 0..POINTS {
@@ -75,7 +75,7 @@ pub(super) fn cosines() -> [f64; 4 * POINTS] {
 impl Panel {
     /// The panel on low..high in t above the knot `base`, by the values of q at its [`places`].
     pub(super) fn new(
-        (base, reach): (f64, f64),
+        (base, singularity): (f64, f64),
         (low, high): (f64, f64),
         values: &[f64; POINTS],
         cosines: &[f64; 4 * POINTS],
@@ -99,7 +99,7 @@ impl Panel {
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
         Panel {
             base,
-            reach,
+            singularity,
             low,
             high,
             radius: square.value().sqrt(),
@@ -148,20 +148,20 @@ impl Panel {
         (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
     }
 
-    fn zone(&self, span: &Span) -> Zone {
-        Zone::new(span, self.base, self.reach, f64::INFINITY, 2.0)
+    fn interval(&self, span: &Span) -> SmoothInterval {
+        SmoothInterval::new(span, self.base, self.singularity, f64::INFINITY, 2.0)
     }
 
     /// The moments of a span within.
     pub(super) fn moments(&self, span: &Span) -> Moments {
-        let zone = self.zone(span);
-        zone.moments(|node| self.rise_at(node.t, zone.high, node.dt))
+        let interval = self.interval(span);
+        interval.moments(|node| self.rise_at(node.t, interval.high, node.dt))
     }
 
-    /// The lift of a span within, `above` the level added to h.
-    pub(super) fn lift(&self, at: &StressRadius, span: &Span, above: f64) -> f64 {
-        let zone = self.zone(span);
-        zone.lift(span, at, above, |node| self.rise_at(node.t, zone.high, node.dt))
+    /// The displacement integral of a span within, `above` the level added to h.
+    pub(super) fn displacement_integral(&self, at: &StressRadius, span: &Span, above: f64) -> f64 {
+        let interval = self.interval(span);
+        interval.displacement_integral(span, at, above, |node| self.rise_at(node.t, interval.high, node.dt))
     }
 
     /// int x dg from the beginning to t.
@@ -174,8 +174,8 @@ impl Panel {
         load
     }
 
-    /// The t at which a rising function of t, given with its slope, is nought: Newton's steps inside a bracket. `share` is how
-    /// much of the function's rise over the panel lies below the root, and `power` how it begins at the foot of a table, where a
+    /// The t at which a rising function of t, given with its slope, is zero: Newton's steps inside a bracket. `share` is how
+    /// much of the function's rise over the panel lies below the root, and `power` how it begins where a table leaves the plane, where a
     /// root can be as small as numbers are and no bisection would get there.
     pub(super) fn find(&self, share: f64, power: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (mut low, mut high) = (self.low, self.high);
@@ -200,8 +200,8 @@ impl Panel {
     }
 }
 
-impl Chart for Panel {
-    fn core(&self) -> f64 {
+impl SmoothCoordinate for Panel {
+    fn kink_radius(&self) -> f64 {
         self.base
     }
 
@@ -224,7 +224,7 @@ impl Chart for Panel {
         dt * difference * 2.0 / (self.high - self.low)
     }
 
-    fn start(&self, _level: f64) -> f64 {
+    fn upper_bound(&self, _level: f64) -> f64 {
         self.high
     }
 

@@ -20,7 +20,7 @@ const MARGIN: f64 = 0.125;
 /// parabolas that stay convex comes no nearer to an end than [`MARGIN`] then.
 const RATIO: f64 = 7.0;
 
-/// The knots of the curve through points of strictly increasing radius, three at least and the first at nought.
+/// The knots of the curve through points of strictly increasing radius, three at least and the first at zero.
 pub(super) fn knots(radii: &[f64], heights: &[f64]) -> Vec<Knot> {
     let chords: Vec<f64> =
         radii.windows(2).zip(heights.windows(2)).map(|(r, z)| (z[1] - z[0]) / (r[1] - r[0])).collect();

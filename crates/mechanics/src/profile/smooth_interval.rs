@@ -1,7 +1,7 @@
-//! Integrals over a zone: a stretch of radii without a kink inside.
+//! Integrals over an interval of radii without a kink inside.
 //!
 //! Beside a kink at k, g is smooth not in x but in t = sqrt(x^2 - k^2), so every integral here runs over t (k = 0: t = x).
-//! The one thing asked of a profile is its rise from a radius up to the zone's top, to round-off of itself: then
+//! The one thing asked of a profile is its rise from a radius up to the interval's outer end, to round-off of itself: then
 //! h = y_outer - g is a sum of positive terms and nothing cancels, however thin the ring.
 
 use std::f64::consts::FRAC_PI_2;
@@ -11,12 +11,12 @@ use super::{DoubleDouble, Moments, Span, StressRadius};
 
 /// A stretch of radii in the coordinate t of the kink beneath it.
 #[derive(Clone, Copy)]
-pub(super) struct Zone {
+pub(super) struct SmoothInterval {
     /// The kink's radius k, m.
     pub(super) base: f64,
     /// t at the outer end, m.
     pub(super) high: f64,
-    /// Difference of t over the zone, m, exact.
+    /// Difference of t over the interval, m, exact.
     pub(super) drop: f64,
     /// Where g, as a function of t, is singular.
     pub(super) singular: Singular,
@@ -30,25 +30,34 @@ pub(super) struct Zone {
     gap: f64,
 }
 
-/// A point of a zone, t below its top by `dt`.
+/// A point of an interval, t below its top by `dt`.
 #[derive(Clone, Copy)]
 pub(super) struct Node {
     pub(super) t: f64,
     pub(super) dt: f64,
 }
 
-impl Zone {
-    /// `span` above a kink at `base`. `reach` is the distance in t to the next singularity beneath the kink, along the imaginary
-    /// axis; g is analytic up to the radius `ceiling`.
-    pub(super) fn new(span: &Span, base: f64, reach: f64, ceiling: f64, power: f64) -> Zone {
+impl SmoothInterval {
+    /// `span` above a kink at `base`. `singularity` is the distance in t to the next singularity beneath the kink, along the
+    /// imaginary axis; g is analytic up to the radius `ceiling`.
+    pub(super) fn new(span: &Span, base: f64, singularity: f64, ceiling: f64, power: f64) -> SmoothInterval {
         let (low, high) = span.excess(DoubleDouble::square_of(base));
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
         // Far beyond the ceiling there is no contact, only steps of a search that went astray: any finite effort will do.
         let above = ((ceiling - base) * (ceiling + base)).sqrt();
         let above = if above > 0.99 * high { above } else { f64::INFINITY };
-        let singular = Singular { below: reach, above };
-        Zone { base, high, drop, singular, power, low, radii: span.inner_radius + span.outer_radius, gap: span.gap }
+        let singular = Singular { below: singularity, above };
+        SmoothInterval {
+            base,
+            high,
+            drop,
+            singular,
+            power,
+            low,
+            radii: span.inner_radius + span.outer_radius,
+            gap: span.gap,
+        }
     }
 
     /// dx/dt = t/x.
@@ -73,9 +82,9 @@ impl Zone {
                 // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
                 let steep = rate + bend * done;
                 // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the sweep stand still.
-                let reach = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
-                if reach > 0.0 && reach < panel.width {
-                    panel = Panel::fine(reach);
+                let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
+                if width > 0.0 && width < panel.width {
+                    panel = Panel::fine(width);
                 }
             }
             panel.visit(|below, weight| visit(done + below, weight));
@@ -83,7 +92,7 @@ impl Zone {
         }
     }
 
-    /// int dx, int h dx and int h^2 dx with h the rise from x to the top of the zone.
+    /// int dx, int h dx and int h^2 dx with h the rise from x to the top of the interval.
     pub(super) fn moments(&self, rise: impl Fn(Node) -> f64) -> Moments {
         if self.gap <= 0.0 {
             return Moments::default();
@@ -99,8 +108,14 @@ impl Zone {
         Moments { width: self.gap / self.radii, first, second }
     }
 
-    /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the zone below r, with t = tau sin(theta), tau^2 = r^2 - k^2.
-    pub(super) fn lift(&self, span: &Span, at: &StressRadius, above: f64, rise: impl Fn(Node) -> f64) -> f64 {
+    /// int (above + rise) dx / sqrt(r^2 - x^2) over the part of the interval below r, with t = tau sin(theta), tau^2 = r^2 - k^2.
+    pub(super) fn displacement_integral(
+        &self,
+        span: &Span,
+        at: &StressRadius,
+        above: f64,
+        rise: impl Fn(Node) -> f64,
+    ) -> f64 {
         let (inner, outer) = span.excess(at.square);
         if inner >= 0.0 || self.gap <= 0.0 {
             return 0.0;

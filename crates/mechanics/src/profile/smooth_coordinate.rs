@@ -1,4 +1,4 @@
-//! Families with a kink at b, in the coordinate t = sqrt(x^2 - b^2) where they are smooth.
+//! Integrals of families with a kink at b, in the coordinate t = sqrt(x^2 - b^2) where they are smooth.
 //!
 //! A truncated cone or sphere, a rounded punch, the flank of a rounded cone: each is analytic in t but at t = +-ib, and its
 //! gamma(t) = dg/dt does not fall. With kappa = r^2 - b^2 and v = sqrt(x^2 - r^2), so t^2 - v^2 = kappa,
@@ -8,13 +8,13 @@
 
 use super::gauss::along_strip;
 use super::roots::{descend, increasing};
-use super::zone::Zone;
+use super::smooth_interval::SmoothInterval;
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
-/// A profile for x >= b, given through t.
-pub(super) trait Chart {
+/// A profile for x >= b, given as a function of the coordinate t = sqrt(x^2 - b^2) in which it is smooth.
+pub(super) trait SmoothCoordinate {
     /// b, m.
-    fn core(&self) -> f64;
+    fn kink_radius(&self) -> f64;
 
     /// g, m.
     fn level_at(&self, t: f64) -> f64;
@@ -29,11 +29,11 @@ pub(super) trait Chart {
     fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64;
 
     /// A t at which g less g(b) is not below `level`.
-    fn start(&self, level: f64) -> f64;
+    fn upper_bound(&self, level: f64) -> f64;
 
     /// The t of a level.
     fn solve(&self, level: f64) -> f64 {
-        descend(self.start(level), |t| (self.level_at(t) - level, self.slope_at(t)))
+        descend(self.upper_bound(level), |t| (self.level_at(t) - level, self.slope_at(t)))
     }
 
     /// t^2 of a level, m^2, as exact as can be.
@@ -43,7 +43,7 @@ pub(super) trait Chart {
 
     /// x, m.
     fn radius_at(&self, t: f64) -> f64 {
-        (self.core() * self.core() + t * t).sqrt()
+        (self.kink_radius() * self.kink_radius() + t * t).sqrt()
     }
 
     /// gamma(t) again, at `drop` below the outer end: for a steep gamma the difference says more than t.
@@ -73,54 +73,54 @@ pub(super) trait Chart {
 }
 
 /// t at a radius.
-pub(super) fn t_of(chart: &impl Chart, radius: f64) -> f64 {
-    ((radius - chart.core()) * (radius + chart.core())).max(0.0).sqrt()
+pub(super) fn t_of(family: &impl SmoothCoordinate, radius: f64) -> f64 {
+    ((radius - family.kink_radius()) * (radius + family.kink_radius())).max(0.0).sqrt()
 }
 
 /// g'(x).
-pub(super) fn slope(chart: &impl Chart, radius: f64) -> f64 {
-    let t = t_of(chart, radius);
+pub(super) fn slope(family: &impl SmoothCoordinate, radius: f64) -> f64 {
+    let t = t_of(family, radius);
     if t > 0.0 {
-        chart.slope_at(t) * radius / t
-    } else if radius < chart.core() {
+        family.slope_at(t) * radius / t
+    } else if radius < family.kink_radius() {
         0.0
-    } else if chart.jumps() {
+    } else if family.jumps() {
         f64::INFINITY
     } else {
         // gamma is of the first order in t where a parabola turns into a slope, of the second where a flat turns into a parabola.
         let t = 1e-9 * radius;
-        chart.slope_at(t) * radius / t
+        family.slope_at(t) * radius / t
     }
 }
 
 /// Both ends of a span in t, and their difference.
-fn ends(chart: &impl Chart, span: &Span) -> (f64, f64, f64) {
-    let (low, high) = span.excess(DoubleDouble::square_of(chart.core()));
+fn ends(family: &impl SmoothCoordinate, span: &Span) -> (f64, f64, f64) {
+    let (low, high) = span.excess(DoubleDouble::square_of(family.kink_radius()));
     let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
     (low, high, if high > 0.0 { span.gap / (low + high) } else { 0.0 })
 }
 
 /// g over a span, to round-off of itself.
-pub(super) fn rise(chart: &impl Chart, span: &Span) -> f64 {
-    let square = DoubleDouble::square_of(chart.core());
-    let Some(span) = span.above(square, chart.core()) else { return 0.0 };
-    let (low, high, dt) = ends(chart, &span);
-    chart.rise_at(low, high, dt)
+pub(super) fn rise(family: &impl SmoothCoordinate, span: &Span) -> f64 {
+    let square = DoubleDouble::square_of(family.kink_radius());
+    let Some(span) = span.above(square, family.kink_radius()) else { return 0.0 };
+    let (low, high, dt) = ends(family, &span);
+    family.rise_at(low, high, dt)
 }
 
 /// Difference of the squares over a ring of this depth.
-pub(super) fn gap(chart: &impl Chart, ring: &Ring, depth: f64) -> f64 {
-    let square = DoubleDouble::square_of(chart.core());
+pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f64 {
+    let square = DoubleDouble::square_of(family.kink_radius());
     let low = (ring.inner.square - square).value().max(0.0);
     let high = (ring.outer.square - square).value().max(0.0);
     if low < 0.5 * high {
         return high - low;
     }
     let top = high.sqrt();
-    let mut dt = (depth / chart.slope_at(top)).min(0.5 * top);
+    let mut dt = (depth / family.slope_at(top)).min(0.5 * top);
     for _ in 0..8 {
         let t = top - dt;
-        let step = (depth - chart.rise_at(t, top, dt)) / chart.slope_at(t);
+        let step = (depth - family.rise_at(t, top, dt)) / family.slope_at(t);
         dt = (dt + step).clamp(0.5 * dt, top);
         if step.abs() <= 1e-9 * dt {
             break;
@@ -130,20 +130,20 @@ pub(super) fn gap(chart: &impl Chart, ring: &Ring, depth: f64) -> f64 {
 }
 
 /// The moments over a span above the core.
-pub(super) fn moments(chart: &impl Chart, span: &Span) -> Moments {
-    let zone = zone(chart, span);
-    zone.moments(|node| chart.rise_at(node.t, zone.high, node.dt))
+pub(super) fn moments(family: &impl SmoothCoordinate, span: &Span) -> Moments {
+    let interval = interval(family, span);
+    interval.moments(|node| family.rise_at(node.t, interval.high, node.dt))
 }
 
-/// The span as one zone above the kink.
-fn zone(chart: &impl Chart, span: &Span) -> Zone {
-    Zone::new(span, chart.core(), chart.core(), f64::INFINITY, 2.0)
+/// The span as one interval above the kink.
+fn interval(family: &impl SmoothCoordinate, span: &Span) -> SmoothInterval {
+    SmoothInterval::new(span, family.kink_radius(), family.kink_radius(), f64::INFINITY, 2.0)
 }
 
-/// The lift of a span above the core, `above` the level added to h.
-pub(super) fn lift(chart: &impl Chart, at: &StressRadius, span: &Span, above: f64) -> f64 {
-    let zone = zone(chart, span);
-    zone.lift(span, at, above, |node| chart.rise_at(node.t, zone.high, node.dt))
+/// The displacement integral of a span above the core, `above` the level added to h.
+pub(super) fn displacement_integral(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span, above: f64) -> f64 {
+    let interval = interval(family, span);
+    interval.displacement_integral(span, at, above, |node| family.rise_at(node.t, interval.high, node.dt))
 }
 
 /// The path of integration of a kernel: from its outer end inward.
@@ -158,14 +158,14 @@ struct Path {
 
 impl Path {
     /// For radii above r in a span; none if there are none.
-    fn new(chart: &impl Chart, at: &StressRadius, span: &Span) -> Option<Path> {
-        let square = DoubleDouble::square_of(chart.core());
-        let span = span.above(square, chart.core())?;
+    fn new(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> Option<Path> {
+        let square = DoubleDouble::square_of(family.kink_radius());
+        let span = span.above(square, family.kink_radius())?;
         let (inner, outer) = span.excess(at.square);
         if outer <= 0.0 {
             return None;
         }
-        let (mut low, high, _) = ends(chart, &span);
+        let (mut low, high, _) = ends(family, &span);
         let kappa = (at.square - square).value();
         let (mut v_low, v_high) = (inner.max(0.0).sqrt(), outer.sqrt());
         let mut gap = span.gap;
@@ -198,75 +198,76 @@ impl Path {
 }
 
 /// K over a span.
-pub(super) fn kernel(chart: &impl Chart, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(chart, at, span) else { return 0.0 };
-    if path.low + path.v_low <= 0.0 && chart.jumps() {
+pub(super) fn kernel(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
+    let Some(path) = Path::new(family, at, span) else { return 0.0 };
+    if path.low + path.v_low <= 0.0 && family.jumps() {
         return f64::INFINITY;
     }
-    path.integrate(chart.power(), chart.ceiling(), |t, _, drop| chart.slope_below(t, path.high, drop))
+    path.integrate(family.power(), family.ceiling(), |t, _, drop| family.slope_below(t, path.high, drop))
 }
 
-/// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from nought or nearly so.
-pub(super) fn kernel_slope(chart: &impl Chart, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(chart, at, span) else { return 0.0 };
+/// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
+pub(super) fn kernel_slope(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
+    let Some(path) = Path::new(family, at, span) else { return 0.0 };
     let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
     if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
-        let integrand = |t, v, drop| chart.slope_below(t, high, drop) / (v * v);
-        return 0.5 * path.integrate(chart.power(), chart.ceiling(), integrand);
+        let integrand = |t, v, drop| family.slope_below(t, high, drop) / (v * v);
+        return 0.5 * path.integrate(family.power(), family.ceiling(), integrand);
     }
-    if low <= 0.0 && chart.jumps() {
+    if low <= 0.0 && family.jumps() {
         return f64::NEG_INFINITY;
     }
-    let bend = path.integrate(chart.power(), chart.ceiling(), |t, _, drop| chart.bend_below(t, high, drop) / (t * t));
-    let start = if v_low > 0.0 { chart.slope_at(low) / (low * v_low) } else { 0.0 };
-    0.5 * (bend + start - chart.slope_at(high) / (high * v_high))
+    let bend =
+        path.integrate(family.power(), family.ceiling(), |t, _, drop| family.bend_below(t, high, drop) / (t * t));
+    let start = if v_low > 0.0 { family.slope_at(low) / (low * v_low) } else { 0.0 };
+    0.5 * (bend + start - family.slope_at(high) / (high * v_high))
 }
 
-/// A whole family out of a chart with a flat core: everything but its loads and the methods given.
+/// Implements `Shape` for a family with a flat core through its [`SmoothCoordinate`]: all but its loads and the given methods.
 macro_rules! flat_core {
     ($family:ty { $($methods:item)* }) => {
         impl $crate::profile::shape::Shape for $family {
             fn level(&self, radius: f64) -> f64 {
-                self.level_at(chart::t_of(self, radius))
+                self.level_at(smooth_coordinate::t_of(self, radius))
             }
             fn slope(&self, radius: f64) -> f64 {
-                chart::slope(self, radius)
+                smooth_coordinate::slope(self, radius)
             }
             fn radius(&self, level: f64) -> f64 {
                 self.radius_at(self.solve(level))
             }
             fn square(&self, level: DoubleDouble) -> DoubleDouble {
-                DoubleDouble::square_of(self.core()) + self.square_above(level)
+                DoubleDouble::square_of(self.kink_radius()) + self.square_above(level)
             }
             fn load(&self, radius: f64) -> f64 {
-                self.load_at(chart::t_of(self, radius))
+                self.load_at(smooth_coordinate::t_of(self, radius))
             }
             fn indentation_for(&self, load: f64) -> f64 {
-                chart::indentation_for(self, load, |t| self.load_at(t))
+                smooth_coordinate::indentation_for(self, load, |t| self.load_at(t))
             }
             fn rise(&self, span: &Span) -> f64 {
-                chart::rise(self, span)
+                smooth_coordinate::rise(self, span)
             }
             fn gap(&self, ring: &Ring, depth: f64) -> f64 {
-                chart::gap(self, ring, depth)
+                smooth_coordinate::gap(self, ring, depth)
             }
             fn kink_below(&self, radius: f64) -> f64 {
-                if radius > self.core() { self.core() } else { 0.0 }
+                if radius > self.kink_radius() { self.kink_radius() } else { 0.0 }
             }
             fn moments(&self, span: &Span) -> Moments {
-                chart::moments(self, span)
+                smooth_coordinate::moments(self, span)
             }
-            fn lift(&self, at: &StressRadius, span: &Span) -> f64 {
-                chart::lift(self, at, span, 0.0)
+            fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
+                smooth_coordinate::displacement_integral(self, at, span, 0.0)
             }
             fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
-                chart::kernel(self, at, span)
+                smooth_coordinate::kernel(self, at, span)
             }
             fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-                chart::kernel_slope(self, at, span)
+                smooth_coordinate::kernel_slope(self, at, span)
             }
             fn singular_radii(&self) -> Vec<f64> {
-                if self.jumps() { vec![self.core()] } else { Vec::new() }
+                if self.jumps() { vec![self.kink_radius()] } else { Vec::new() }
             }
             $($methods)*
         }
@@ -275,11 +276,11 @@ macro_rules! flat_core {
 pub(super) use flat_core;
 
 /// The level that carries a load, given the load as a function of t.
-pub(super) fn indentation_for(chart: &impl Chart, load: f64, load_at: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn indentation_for(family: &impl SmoothCoordinate, load: f64, load_at: impl Fn(f64) -> f64) -> f64 {
     if load <= 0.0 {
         return 0.0;
     }
-    let guess = chart.core();
-    let t = increasing(guess, |t| (load_at(t) - load, chart.radius_at(t) * chart.slope_at(t)));
-    chart.level_at(t)
+    let guess = family.kink_radius();
+    let t = increasing(guess, |t| (load_at(t) - load, family.radius_at(t) * family.slope_at(t)));
+    family.level_at(t)
 }
