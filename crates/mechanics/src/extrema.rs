@@ -4,7 +4,7 @@
 //! that its derivative is infinite there with a known sign; where f'' of the profile jumps it is log-infinite with one
 //! sign on both sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
-//! stretch a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
+//! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
 
 use super::contact::Contact;
 use super::double_double::DoubleDouble;
@@ -12,47 +12,47 @@ use super::profile::StressRadius;
 use super::shear_stress::Peak;
 
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
-/// derivative has structure of every size from the whole stretch down to the ring's depth.
-const STEP: f64 = 0.511;
+/// derivative has structure of every size from the whole interval down to the ring's depth.
+const KINK_STEP: f64 = 0.511;
 /// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
-const FINEST: f64 = 1e-3;
+const KINK_FLOOR: f64 = 1e-3;
 /// The same limit where the profile makes the derivative infinite: at this part of the square of the radius, half that
 /// of the radius.
-const FLOOR: f64 = 1e-14;
+const KNOT_FLOOR: f64 = 1e-14;
 /// Beyond this place a distance is below the round-off of twice the digits.
-const LAST: f64 = 72.0;
+const MAX_PLACE: f64 = 72.0;
 /// Towards a knot a logarithm is followed by places that grow by this factor.
-const STRIDE: f64 = 2.0;
-/// With more stretches than this between the knots of a table, each is sampled at its middle and its ends alone.
-const MANY: usize = 100;
+const KNOT_STRIDE: f64 = 2.0;
+/// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
+const SPARSE_ABOVE: usize = 100;
 
 /// A derivative below this share of what it is the sum of is zero: the kernels of some families are good to 1e-13.
 const NOISE: f64 = 1e-12;
 
-/// How the derivative behaves at the end of a stretch.
+/// How the derivative behaves at the end of an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum End {
+enum EndBehaviour {
     /// It is smooth, or ends there.
     Smooth,
     /// It is infinite as the inverse root of the distance; the difference of the squares of the ring beyond, m^2.
-    Root(f64),
+    InverseRoot(f64),
     /// It is infinite as the logarithm of the distance, or a power nearly so.
     Logarithm,
     /// It is infinite as the inverse of the distance.
     Inverse,
 }
 
-/// A stretch of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end
+/// An interval of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end
 /// to infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their squares.
-struct Stretch {
+struct SmoothInterval {
     inner: StressRadius,
     outer: StressRadius,
     /// How it begins, and the sign of the derivative there, zero if unknown.
-    start: (End, f64),
+    start: (EndBehaviour, f64),
     /// How it ends, likewise.
-    end: (End, f64),
-    /// One of so many stretches that each gets a few samples only.
-    brief: bool,
+    end: (EndBehaviour, f64),
+    /// One of so many intervals that each gets a few samples only.
+    sparse: bool,
 }
 
 /// The derivative at a place.
@@ -62,7 +62,7 @@ struct Sample {
     value: f64,
 }
 
-impl Stretch {
+impl SmoothInterval {
     fn half(&self) -> f64 {
         0.5 * (self.outer.square - self.inner.square).value()
     }
@@ -80,24 +80,24 @@ impl Stretch {
     fn weight(&self, place: f64) -> f64 {
         let end = if place > 0.0 { self.end.0 } else { self.start.0 };
         match end {
-            End::Smooth | End::Logarithm => 1.0,
-            End::Root(_) => (-0.5 * place.abs()).exp(),
-            End::Inverse => (-place.abs()).exp(),
+            EndBehaviour::Smooth | EndBehaviour::Logarithm => 1.0,
+            EndBehaviour::InverseRoot(_) => (-0.5 * place.abs()).exp(),
+            EndBehaviour::Inverse => (-place.abs()).exp(),
         }
     }
 
     /// The place nearest to an end that is sampled where the profile makes the derivative infinite, without the sign.
     fn floor(&self) -> f64 {
-        (self.half() / (FLOOR * self.outer.square.value())).ln().clamp(0.0, LAST)
+        (self.half() / (KNOT_FLOOR * self.outer.square.value())).ln().clamp(0.0, MAX_PLACE)
     }
 
     /// Where the sign at an end is taken to hold, likewise: about a knot as far as the floor.
-    fn limit(&self, end: End) -> f64 {
-        if end == End::Logarithm { self.floor() } else { f64::INFINITY }
+    fn limit(&self, end: EndBehaviour) -> f64 {
+        if end == EndBehaviour::Logarithm { self.floor() } else { f64::INFINITY }
     }
 
     /// Places from the middle towards an end, likewise.
-    fn places(&self, (end, sign): (End, f64)) -> Vec<f64> {
+    fn places(&self, (end, sign): (EndBehaviour, f64)) -> Vec<f64> {
         let (half, floor) = (self.half(), self.floor());
         let by_steps = |step: f64, last: f64| {
             let steps = (1..).map(move |index| step * f64::from(index));
@@ -108,30 +108,31 @@ impl Stretch {
             places
         };
         match end {
-            End::Smooth => vec![0.6, 1.6, 4.0],
-            End::Root(beyond) => {
-                let least = if beyond > 0.0 { FINEST * beyond.min(2.0 * half) } else { FINEST * half };
-                by_steps(STEP, (half / least).ln().min(0.5 * LAST))
+            EndBehaviour::Smooth => vec![0.6, 1.6, 4.0],
+            EndBehaviour::InverseRoot(beyond) => {
+                let least = if beyond > 0.0 { KINK_FLOOR * beyond.min(2.0 * half) } else { KINK_FLOOR * half };
+                by_steps(KINK_STEP, (half / least).ln().min(0.5 * MAX_PLACE))
             }
-            End::Logarithm if self.brief && sign.abs() > 0.0 => Vec::new(),
-            End::Logarithm if self.brief => vec![floor],
-            End::Logarithm => {
+            EndBehaviour::Logarithm if self.sparse && sign.abs() > 0.0 => Vec::new(),
+            EndBehaviour::Logarithm if self.sparse => vec![floor],
+            EndBehaviour::Logarithm => {
                 let mut places = vec![0.25, 0.5];
                 places.extend(
-                    std::iter::successors(Some(1.0), |place| Some(place * STRIDE)).take_while(|&place| place < floor),
+                    std::iter::successors(Some(1.0), |place| Some(place * KNOT_STRIDE))
+                        .take_while(|&place| place < floor),
                 );
                 places.retain(|&place| place < floor);
                 places.push(floor);
                 places
             }
-            End::Inverse => by_steps(1.0, floor),
+            EndBehaviour::Inverse => by_steps(1.0, floor),
         }
     }
 }
 
 impl Contact {
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.
-    fn trend(&self, at: &StressRadius) -> f64 {
+    fn scaled_derivative(&self, at: &StressRadius) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
         for (ring, line) in self.history.rings() {
             if ring.outer.radius < at.radius {
@@ -170,36 +171,36 @@ impl Contact {
             let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
             let to = StressRadius::of_point(&outer);
             if settled[index] {
-                search.pass(&from, -bend);
+                search.cross(&from, -bend);
                 continue;
             }
             let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
             let last =
                 if to.square >= edge.square && self.history.edge().level.value() > self.profile.level(edge.radius) {
-                    (End::Logarithm, 0.0)
+                    (EndBehaviour::Logarithm, 0.0)
                 } else {
-                    (End::Root((beyond.square - outer.square).value()), -bend)
+                    (EndBehaviour::InverseRoot((beyond.square - outer.square).value()), -bend)
                 };
             let begins = knots.partition_point(|&knot| knot <= from.radius);
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
-            let brief = ends - begins > MANY;
+            let sparse = ends - begins > SPARSE_ABOVE;
             let within = knots[begins..ends].iter().map(|&knot| {
                 let at = StressRadius::new(knot);
                 let rim = singular.contains(&knot);
-                // StressRadius the same distance on either side a logarithm has the same value: one sample serves both.
-                let beside = DoubleDouble::square_of(knot) * (1.0 + FLOOR);
+                // At the same distance on either side a logarithm has the same value: one sample serves both.
+                let beside = DoubleDouble::square_of(knot) * (1.0 + KNOT_FLOOR);
                 let infinite = if rim {
-                    self.trend(&at)
-                } else if brief {
-                    self.trend(&StressRadius { radius: knot, square: beside })
+                    self.scaled_derivative(&at)
+                } else if sparse {
+                    self.scaled_derivative(&StressRadius { radius: knot, square: beside })
                 } else {
                     0.0
                 };
                 if rim && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
-                    (at, (End::Inverse, -infinite), (End::Inverse, infinite))
+                    (at, (EndBehaviour::Inverse, -infinite), (EndBehaviour::Inverse, infinite))
                 } else {
-                    (at, (End::Logarithm, infinite), (End::Logarithm, infinite))
+                    (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
             });
             let mut start = self.start(index, &from, &knots);
@@ -208,7 +209,7 @@ impl Contact {
                 if !keep_going() {
                     return None;
                 }
-                search.through(&Stretch { inner, outer, start, end, brief });
+                search.search_interval(&SmoothInterval { inner, outer, start, end, sparse });
                 (inner, start) = (outer, next);
             }
         }
@@ -218,15 +219,15 @@ impl Contact {
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
-    fn start(&self, index: usize, from: &StressRadius, knots: &[f64]) -> (End, f64) {
-        let sign = self.trend(from);
+    fn start(&self, index: usize, from: &StressRadius, knots: &[f64]) -> (EndBehaviour, f64) {
+        let sign = self.scaled_derivative(from);
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
-            if !slips || self.profile.smooth_centre() { End::Smooth } else { End::Inverse }
+            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse }
         } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
-            return (End::Logarithm, 0.0);
+            return (EndBehaviour::Logarithm, 0.0);
         } else {
-            End::Smooth
+            EndBehaviour::Smooth
         };
         (end, sign)
     }
@@ -263,59 +264,59 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn found(&mut self, at: &StressRadius) {
+    fn record(&mut self, at: &StressRadius) {
         self.peaks.push(Peak { radius: at.radius, shear: self.contact.shear_at(at) });
     }
 
     /// Crosses a radius beyond which the derivative has the sign of `value`.
-    fn pass(&mut self, at: &StressRadius, value: f64) {
+    fn cross(&mut self, at: &StressRadius, value: f64) {
         if self.sign * value.signum() < 0.0 {
-            self.found(at);
+            self.record(at);
         }
         self.sign = value.signum();
     }
 
-    fn sample(&self, stretch: &Stretch, place: f64) -> Sample {
-        Sample { place, value: self.contact.trend(&stretch.at(place)) * stretch.weight(place) }
+    fn sample(&self, interval: &SmoothInterval, place: f64) -> Sample {
+        Sample { place, value: self.contact.scaled_derivative(&interval.at(place)) * interval.weight(place) }
     }
 
-    /// Goes through a stretch from its inner end to its outer.
-    fn through(&mut self, stretch: &Stretch) {
-        if stretch.half() <= 0.0 {
+    /// Goes through an interval from its inner end to its outer.
+    fn search_interval(&mut self, interval: &SmoothInterval) {
+        if interval.half() <= 0.0 {
             return;
         }
-        let inward = stretch.places(stretch.start).into_iter().rev().map(|place| -place);
-        let outward = stretch.places(stretch.end);
-        let mut samples = vec![Sample { place: -stretch.limit(stretch.start.0), value: stretch.start.1 }];
-        samples.extend(inward.chain([0.0]).chain(outward).map(|place| self.sample(stretch, place)));
-        samples.push(Sample { place: stretch.limit(stretch.end.0), value: stretch.end.1 });
+        let inward = interval.places(interval.start).into_iter().rev().map(|place| -place);
+        let outward = interval.places(interval.end);
+        let mut samples = vec![Sample { place: -interval.limit(interval.start.0), value: interval.start.1 }];
+        samples.extend(inward.chain([0.0]).chain(outward).map(|place| self.sample(interval, place)));
+        samples.push(Sample { place: interval.limit(interval.end.0), value: interval.end.1 });
         samples.retain(|sample| sample.value.abs() > 0.0);
         let Some(first) = samples.first() else { return };
-        self.pass(&stretch.inner, first.value);
+        self.cross(&interval.inner, first.value);
         for (index, pair) in samples.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
-                self.turn(stretch, before, after.place);
+                self.bisect(interval, before, after.place);
             } else if let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
                 && before.place.is_finite()
                 && next.place.is_finite()
                 && after.value.abs() < before.value.abs().min(next.value.abs())
-                && let Some(dip) = self.dip(stretch, before, next)
+                && let Some(dip) = self.dip(interval, before, next)
             {
                 // Two roots between samples of one sign.
-                self.turn(stretch, before, dip.place);
-                self.turn(stretch, dip, next.place);
+                self.bisect(interval, before, dip.place);
+                self.bisect(interval, dip, next.place);
             }
         }
     }
 
     /// Where the derivative dips through zero between two samples of one sign, if it does.
-    fn dip(&self, stretch: &Stretch, mut low: Sample, mut high: Sample) -> Option<Sample> {
+    fn dip(&self, interval: &SmoothInterval, mut low: Sample, mut high: Sample) -> Option<Sample> {
         let sign = low.value.signum();
         for _ in 0..48 {
             let third = (high.place - low.place) / 3.0;
-            let (lower, upper) = (self.sample(stretch, low.place + third), self.sample(stretch, high.place - third));
+            let (lower, upper) = (self.sample(interval, low.place + third), self.sample(interval, high.place - third));
             if let Some(&through) = [lower, upper].iter().find(|sample| sample.value * sign < 0.0) {
                 return Some(through);
             }
@@ -333,14 +334,14 @@ impl Search<'_> {
 
     /// Bisects for the change of sign between a sample and a place. The derivative ends in an inverse root, for which
     /// faster methods need special care, and there are few of these searches.
-    fn turn(&mut self, stretch: &Stretch, from: Sample, to: f64) {
-        let (mut low, mut high) = (from.place.max(-LAST), to.min(LAST));
+    fn bisect(&mut self, interval: &SmoothInterval, from: Sample, to: f64) {
+        let (mut low, mut high) = (from.place.max(-MAX_PLACE), to.min(MAX_PLACE));
         loop {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
                 break;
             }
-            if self.contact.trend(&stretch.at(middle)) * from.value.signum() > 0.0 {
+            if self.contact.scaled_derivative(&interval.at(middle)) * from.value.signum() > 0.0 {
                 low = middle;
             } else {
                 high = middle;
@@ -348,8 +349,8 @@ impl Search<'_> {
         }
         self.sign = -from.value.signum();
         // An extremum this near to the centre cannot be distinguished from the centre.
-        if stretch.inner.square.value() > 0.0 || low > -LAST {
-            self.found(&stretch.at(high));
+        if interval.inner.square.value() > 0.0 || low > -MAX_PLACE {
+            self.record(&interval.at(high));
         }
     }
 }

@@ -12,7 +12,7 @@ use super::normal::{depth_for, load};
 use super::profile::{Point, Ring};
 
 /// The stack brought to a new edge, before the slip ring grows towards `sign`.
-struct Corner {
+struct SlipFront {
     edge: Point,
     sign: f64,
     /// Pieces that are still whole or cut at the edge; what lies beyond them slips.
@@ -45,7 +45,7 @@ impl Contact {
             }
             let sign = change.signum();
             let missing = (change.abs() - touched.depth) * stiffness;
-            self.slip_to(&Corner { edge, sign, held: history.pieces().len(), missing, room }, wanted)
+            self.slip_to(&SlipFront { edge, sign, held: history.pieces().len(), missing, room }, wanted)
         } else {
             let held = history.pieces().partition_point(|piece| piece.inner.level < indentation);
             let neutral = held.checked_sub(1).map_or(DoubleDouble::ZERO, |top| {
@@ -53,8 +53,8 @@ impl Contact {
                 history.force_below(top) - line.slope * load(&self.profile, &self.cut(top, held, &edge))
             });
             let change = (DoubleDouble::from(wanted) - neutral).value();
-            let corner = Corner { edge, sign: change.signum(), held, missing: change.abs(), room };
-            self.slip_to(&corner, wanted)
+            let front = SlipFront { edge, sign: change.signum(), held, missing: change.abs(), room };
+            self.slip_to(&front, wanted)
         }
     }
 
@@ -69,9 +69,9 @@ impl Contact {
         if index + 1 == held && edge.level < ring.outer.level { Ring::between(ring.inner, *edge) } else { ring }
     }
 
-    fn slip_to(&self, corner: &Corner, wanted: f64) -> DoubleDouble {
+    fn slip_to(&self, front: &SlipFront, wanted: f64) -> DoubleDouble {
         let history = &self.history;
-        let &Corner { edge, sign, held, mut missing, room } = corner;
+        let &SlipFront { edge, sign, held, mut missing, room } = front;
         let reference = history.position() - history.shift();
         for index in (0..held).rev() {
             let ring = self.cut(index, held, &edge);

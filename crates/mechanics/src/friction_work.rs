@@ -76,7 +76,7 @@ impl SlipRing {
 
 /// Work on the ring that leaves the contact when the indentation falls to `d1` while the indenter moves to `w1`: each
 /// point slips back to w = 0 before it lifts off, whatever the sign of its displacement.
-pub(super) fn work(history: &SlipHistory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+pub(super) fn unloading_work(history: &SlipHistory, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
     let d0 = history.edge().level;
     let (fall, advance) = (d0 - d1, w1 - history.position());
     let lowest = if d1.value() > 0.0 { d1 } else { DoubleDouble::ZERO };

@@ -1,9 +1,9 @@
 //! A lower bound on the stress that any sequence of reversals leaves, with its proof.
 //!
 //! After gross slip and N reversals w is made of N + 1 straight pieces of slope 1 or -1 over the levels. The stress is
-//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx; by Abel's inversion u(x) = (2/G*) int_x^a tau r dr/sqrt(r^2 -
-//! x^2). Between two radii x1 < x2 of one piece the difference of u is m (g(x2) - g(x1)). The difference of the two
-//! kernels of the inversion, by its magnitude, has the integral
+//! tau(r) = -(G*/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx; by Abel's inversion
+//! u(x) = (2/G*) int_x^a tau r dr/sqrt(r^2 - x^2). Between two radii x1 < x2 of one piece the difference of u is
+//! m (g(x2) - g(x1)). The difference of the two kernels of the inversion, by its magnitude, has the integral
 //!
 //! B(x1, x2) = 2 sqrt(x2^2 - x1^2) - (sqrt(a^2 - x1^2) - sqrt(a^2 - x2^2)),
 //!

@@ -1,9 +1,9 @@
 //! The slip history of a contact: a stack of straight pieces.
 //!
 //! Let y = g(x) run from 0 at the centre to the indentation d at the edge, w = u_x/m be the tangential displacement of
-//! the surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches d -
-//! y. For every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes within [-1,
-//! 1], and the slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole
+//! the surface and W = U/m that of the indenter, both scaled by m = mu E*/G*. A point at y slips where |w| reaches
+//! d - y. For every path straight in (d, W), w is a continuous, piecewise straight function of y with slopes from -1
+//! to 1, and the slip of one move is one outer ring y > y*. Hence each move works on the top of the stack alone: whole
 //! pieces beyond the bound are popped, the next is cut where it meets the bound, and one straight slip piece is pushed.
 //! Stuck pieces are stored relative to the indenter, so that a move does not change them. The rule is Masing's with
 //! wiping-out at constant load, and that of the memory diagrams of Aleshin & Van Den Abeele (2012) at a changing one.
@@ -184,7 +184,7 @@ impl SlipHistory {
             self.place(profile, DoubleDouble::ZERO, touching);
         }
         if d1.value() <= 0.0 {
-            let work = friction_work::work(self, profile, d1, w1);
+            let work = friction_work::unloading_work(self, profile, d1, w1);
             self.place(profile, d1, w1);
             return MoveResult { work };
         }
@@ -243,7 +243,7 @@ impl SlipHistory {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
-            work += friction_work::work(self, profile, d1, w1);
+            work += friction_work::unloading_work(self, profile, d1, w1);
             while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
                 self.pieces.pop();
             }

@@ -1,10 +1,9 @@
 //! Error estimates of the spring foundation: fewer springs, the exact normal contact, and second differences.
 //!
-//! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in
-//! a cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
-//! 1/sqrt(x^2
-//! - r^2): the second differences between the springs bound both. Where more than a bend falls into a cell, springs
-//! of another number differ.
+//! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in a
+//! cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
+//! 1/sqrt(x^2 - r^2): the second differences between the springs bound both. Where more than a bend falls into a cell,
+//! springs of another number differ.
 
 use std::f64::consts::PI;
 
