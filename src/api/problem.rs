@@ -15,7 +15,7 @@ use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
 use crate::api::limits;
 
-pub use stickslip_wire::Code as Kind;
+pub use stickslip_wire::{Code, Code as Kind};
 
 /// The media type of a problem document.
 pub const MEDIA_TYPE: &str = "application/problem+json";
@@ -23,33 +23,33 @@ pub const MEDIA_TYPE: &str = "application/problem+json";
 /// A refusal on its way to the client.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    kind: Kind,
+    code: Code,
     detail: String,
     errors: Vec<Fault>,
-    /// What the log is told and the client is not.
+    /// What goes to the log, and not to the client.
     cause: Option<String>,
 }
 
 impl Problem {
-    /// A problem of a kind, with what happened this time.
+    /// A problem of this code, with what happened this time.
     #[must_use]
-    pub fn new(kind: Kind, detail: impl Into<String>) -> Problem {
-        Problem { kind, detail: detail.into(), errors: Vec::new(), cause: None }
+    pub fn new(code: Code, detail: impl Into<String>) -> Problem {
+        Problem { code, detail: detail.into(), errors: Vec::new(), cause: None }
     }
 
     /// A problem with one place in the request.
     #[must_use]
-    pub fn at(kind: Kind, pointer: impl Into<String>, detail: impl Into<String>) -> Problem {
+    pub fn at(code: Code, pointer: impl Into<String>, detail: impl Into<String>) -> Problem {
         let (pointer, detail) = (pointer.into(), detail.into());
         let errors = vec![Fault { pointer, detail: detail.clone() }];
-        Problem { kind, detail, errors, cause: None }
+        Problem { code, detail, errors, cause: None }
     }
 
     /// A fault of this program; the cause is for the log.
     #[must_use]
     pub fn internal(cause: impl Into<String>) -> Problem {
         let detail = "this is not your fault; the operator finds the cause in the log under the request_id";
-        Problem { cause: Some(cause.into()), ..Problem::new(Kind::Internal, detail) }
+        Problem { cause: Some(cause.into()), ..Problem::new(Code::Internal, detail) }
     }
 
     /// The same problem, with a cause for the log.
@@ -58,7 +58,7 @@ impl Problem {
         Problem { cause: Some(cause), ..self }
     }
 
-    /// What the log is told and the client is not.
+    /// What goes to the log, and not to the client.
     #[must_use]
     pub fn cause(&self) -> Option<&str> {
         self.cause.as_deref()
@@ -66,26 +66,26 @@ impl Problem {
 
     /// The code.
     #[must_use]
-    pub fn code(&self) -> Kind {
-        self.kind
+    pub fn code(&self) -> Code {
+        self.code
     }
 
     /// The document that the client gets.
     #[must_use]
     pub fn document(self, request_id: &str) -> ProblemDocument {
-        ProblemDocument::new(self.kind, self.detail, self.errors, request_id)
+        ProblemDocument::new(self.code, self.detail, self.errors, request_id)
     }
 }
 
 impl IntoResponse for Problem {
     /// The status alone: the document waits in the extensions for `observe`, which knows the request's identifier.
     fn into_response(self) -> Response {
-        let status = StatusCode::from_u16(self.kind.status()).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let status = StatusCode::from_u16(self.code.status()).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let mut response = status.into_response();
-        if matches!(self.kind, Kind::Overloaded | Kind::StorageUnavailable | Kind::TooManyJobs) {
+        if matches!(self.code, Code::Overloaded | Code::StorageUnavailable | Code::TooManyJobs) {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER.as_secs()));
         }
-        if matches!(self.kind, Kind::Unauthorized) {
+        if matches!(self.code, Code::Unauthorized) {
             response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
         }
         response.extensions_mut().insert(self);
@@ -97,8 +97,8 @@ impl From<Rejection> for Problem {
     fn from(rejection: Rejection) -> Self {
         let detail = rejection.to_string();
         match rejection {
-            Rejection::NotJson(_) => Problem::new(Kind::NotJson, detail),
-            Rejection::Invalid(errors) => Problem { errors, ..Problem::new(Kind::InvalidInput, detail) },
+            Rejection::NotJson(_) => Problem::new(Code::NotJson, detail),
+            Rejection::Invalid(errors) => Problem { errors, ..Problem::new(Code::InvalidInput, detail) },
             Rejection::Refused { pointer, error } => Failure::Refused { pointer, error }.into(),
         }
     }
@@ -120,7 +120,7 @@ impl From<Failure> for Problem {
 impl From<PoolError> for Problem {
     fn from(error: PoolError) -> Self {
         match error {
-            PoolError::Busy | PoolError::QueueFull => Problem::new(Kind::Overloaded, error.to_string()),
+            PoolError::Busy | PoolError::QueueFull => Problem::new(Code::Overloaded, error.to_string()),
             PoolError::Panicked => Problem::internal(error.to_string()),
         }
     }
@@ -130,16 +130,16 @@ impl From<JobError> for Problem {
     fn from(error: JobError) -> Self {
         let detail = error.to_string();
         match error {
-            JobError::NotFound(_) => Problem::new(Kind::JobNotFound, detail),
-            JobError::Unfinished { .. } => Problem::new(Kind::JobNotDone, detail),
-            JobError::Failed(_) => Problem::new(Kind::JobFailed, detail),
-            JobError::TooMuch { .. } => Problem::at(Kind::TooMuchWork, "/axes", detail),
-            JobError::KeyReused => Problem::new(Kind::IdempotencyKeyReused, detail),
-            JobError::TooManyStreams => Problem::new(Kind::Overloaded, detail),
+            JobError::NotFound(_) => Problem::new(Code::JobNotFound, detail),
+            JobError::Unfinished { .. } => Problem::new(Code::JobNotDone, detail),
+            JobError::Failed(_) => Problem::new(Code::JobFailed, detail),
+            JobError::TooMuch { .. } => Problem::at(Code::TooMuchWork, "/axes", detail),
+            JobError::KeyReused => Problem::new(Code::IdempotencyKeyReused, detail),
+            JobError::TooManyStreams => Problem::new(Code::Overloaded, detail),
             JobError::Sweep(SweepError::Failure(failure)) => failure.into(),
             JobError::Sweep(SweepError::Pool(error)) | JobError::Pool(error) => error.into(),
             JobError::Store(StoreError::TooManyJobs(_)) => {
-                Problem::new(Kind::TooManyJobs, format!("{detail}: delete some, or wait until they are gone"))
+                Problem::new(Code::TooManyJobs, format!("{detail}: delete some, or wait until they are gone"))
             }
             JobError::Store(error) => SessionError::Store(error).into(),
             JobError::Broken(_) => Problem::internal(detail),
@@ -151,22 +151,22 @@ impl From<SessionError> for Problem {
     fn from(error: SessionError) -> Self {
         let detail = error.to_string();
         match error {
-            SessionError::NotFound(_) => Problem::new(Kind::ContactNotFound, detail),
-            SessionError::OtherDefinition(_) => Problem::at(Kind::InvalidInput, "/contact", detail),
-            SessionError::Stale { .. } => Problem::new(Kind::StaleSequence, detail),
-            SessionError::Overtaken { .. } => Problem::new(Kind::Conflict, detail),
-            SessionError::Ahead { .. } => Problem::at(Kind::InvalidInput, "/Last-Event-ID", detail),
-            SessionError::TooManyStreams => Problem::new(Kind::Overloaded, detail),
-            SessionError::KeyReused => Problem::new(Kind::IdempotencyKeyReused, detail),
+            SessionError::NotFound(_) => Problem::new(Code::ContactNotFound, detail),
+            SessionError::OtherDefinition(_) => Problem::at(Code::InvalidInput, "/contact", detail),
+            SessionError::Stale { .. } => Problem::new(Code::StaleSequence, detail),
+            SessionError::Overtaken { .. } => Problem::new(Code::Conflict, detail),
+            SessionError::Ahead { .. } => Problem::at(Code::InvalidInput, "/Last-Event-ID", detail),
+            SessionError::TooManyStreams => Problem::new(Code::Overloaded, detail),
+            SessionError::KeyReused => Problem::new(Code::IdempotencyKeyReused, detail),
             SessionError::Failure(failure) => failure.into(),
             SessionError::Pool(error) => error.into(),
-            SessionError::Expired(_) => Problem::new(Kind::ContactExpired, detail),
+            SessionError::Expired(_) => Problem::new(Code::ContactExpired, detail),
             SessionError::Store(StoreError::Full(_)) => {
-                Problem::new(Kind::StorageFull, "nothing has changed; try again when there is room").because(detail)
+                Problem::new(Code::StorageFull, "nothing has changed; try again when there is room").because(detail)
             }
             SessionError::Store(StoreError::Unavailable(_)) => {
                 let advice = "the change may or may not be stored; retry with the same Idempotency-Key, or look";
-                Problem::new(Kind::StorageUnavailable, advice).because(detail)
+                Problem::new(Code::StorageUnavailable, advice).because(detail)
             }
             SessionError::Store(_) | SessionError::Broken(_) => Problem::internal(detail),
         }

@@ -144,7 +144,7 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     let scan: Vec<f64> = (0..PRESSURE_SCAN).map(|index| at(radius(index))).collect();
     let best = (0..PRESSURE_SCAN).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
     let (mut low, mut high) = (radius(best.saturating_sub(1)), radius(best + 1));
-    // StressRadius a maximum the pressure depends on half the digits of the radius alone.
+    // At a maximum the pressure depends on half the digits of the radius alone.
     for _ in 0..40 {
         let third = (high - low) / 3.0;
         if at(low + third) >= at(high - third) { high -= third } else { low += third }

@@ -110,7 +110,11 @@ impl Faults {
         let fits = allowed.contains(&length);
         if !fits {
             let (least, most) = (allowed.start(), allowed.end());
-            self.add(at, format_args!("{length} elements: allowed are {least} to {most}"));
+            if least == most {
+                self.add(at, format_args!("{length} elements: allowed are exactly {most}"));
+            } else {
+                self.add(at, format_args!("{length} elements: allowed are {least} to {most}"));
+            }
         }
         fits
     }

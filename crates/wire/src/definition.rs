@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
 
 use super::check::{Faults, JsonPath};
-use super::limits::{Exactly, limits};
+use super::limits::{Items, limits};
 use super::profile::Profile;
 use super::single_key::single_key;
 
@@ -41,7 +41,7 @@ pub enum Material {
     Effective(Effective),
 }
 single_key!(Material { "bodies" => Bodies, "effective" => Effective });
-limits!(enum Material { Bodies "bodies": Exactly(2) });
+limits!(enum Material { Bodies "bodies": Items(2..=2) });
 
 /// One of the two bodies: its elastic constants, or the string `"rigid"`.
 // Untagged when written. It is read by hand below, so that a fault in the object names its member.
@@ -139,7 +139,7 @@ impl ContactDefinition {
         Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })
     }
 
-    /// Where in a definition with this preload the quantity stands that the mechanics finds fault with. A preload can be at
+    /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can be at
     /// fault by what follows from it, such as the indentation under a force.
     #[must_use]
     pub fn place_of(quantity: Quantity, preload: &mechanics::Preload) -> &'static str {

@@ -64,9 +64,6 @@ pub trait Limited {
 /// The number of elements of an array, whose elements have checks of their own.
 pub struct Items(pub RangeInclusive<usize>);
 
-/// The same where only one number is allowed.
-pub struct Exactly(pub usize);
-
 /// The number of elements of an array of numbers, and the range of each.
 pub struct Numbers(pub RangeInclusive<usize>, pub Range);
 
@@ -143,20 +140,6 @@ impl Keywords for Items {
 impl<T> Limit<Vec<T>> for Items {
     fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
         faults.length(at, value.len(), &self.0);
-    }
-}
-
-impl Keywords for Exactly {
-    fn keywords(&self) -> Value {
-        Items(self.0..=self.0).keywords()
-    }
-}
-
-impl<T> Limit<Vec<T>> for Exactly {
-    fn check(&self, value: &Vec<T>, at: JsonPath<'_>, faults: &mut Faults) {
-        if value.len() != self.0 {
-            faults.add(at, format_args!("{} elements: allowed are exactly {}", value.len(), self.0));
-        }
     }
 }
 
@@ -265,38 +248,22 @@ pub(crate) use limits;
 /// Schema, member and keywords of every limit but those of profiles.
 #[must_use]
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
-    use super::{definition, path, protocol, session, simulate, stress, sweep};
+    use super::protocol::{ProtocolStart, Robustness};
+    use super::{
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
+        ForkRequest, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
+        SimulateRequest, Span, Springs, StressRequest, SweepRequest,
+    };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
         D::limits().into_iter().map(|(member, keywords)| (D::SCHEMA, member, keywords))
     }
     macro_rules! of_all {
-        ($($document:ty),* $(,)?) => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
+        { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
-    of_all![
-        definition::ContactDefinition,
-        definition::ElasticBody,
-        definition::Effective,
-        definition::Material,
-        definition::Preload,
-        path::EqualPeaks,
-        path::FallingAmplitude,
-        path::Move,
-        path::Path,
-        protocol::ProtocolRequest,
-        protocol::ProtocolStart,
-        protocol::RelaxRequest,
-        protocol::Robustness,
-        session::CreateRequest,
-        session::ForkRequest,
-        session::MoveRequest,
-        session::PathRequest,
-        simulate::SimulateRequest,
-        simulate::Springs,
-        stress::StressRequest,
-        super::accuracy::AccuracyRequest,
-        sweep::Axis,
-        sweep::Span,
-        sweep::SweepRequest,
-    ]
+    of_all! {
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
+        ForkRequest, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest
+    }
 }

@@ -94,7 +94,7 @@ fn well_formed(body: &[u8]) -> Result<(), String> {
     serde_json::from_str::<IgnoredAny>(text).map(|_| ()).map_err(|error| error.to_string())
 }
 
-/// The fault that a message of serde tells of.
+/// The fault that a message of serde describes.
 fn fault(path: &Path, message: &str) -> Fault {
     let message = message.rsplit_once(" at line ").map_or(message, |(text, _)| text);
     let mut pointer = pointer(path);

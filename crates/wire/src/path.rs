@@ -246,7 +246,7 @@ impl Plan {
         }
     }
 
-    /// Where in the body the move of this number stands, as a JSON pointer; `quantity` is the member at fault, if one is.
+    /// The JSON pointer to the move of this number in the body; `quantity` is the member at fault, if one is.
     #[must_use]
     pub fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
         let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();

@@ -1,14 +1,13 @@
-//! One number out of a reply, without writing the rest of it: a serializer that walks along a JSON pointer and passes by
-//! whatever lies beside it.
+//! One number of a reply, without writing the rest of it: a serializer that follows a JSON pointer and skips everything else.
 
 use std::fmt;
 
-use serde::ser::{Impossible, Serialize, SerializeSeq, SerializeStruct, SerializeTuple, Serializer};
+use serde::ser::{Impossible, Serialize, SerializeSeq, SerializeStruct, Serializer};
 
 use super::json_value::{Pointer, index};
 use super::reply::finite;
 
-/// What stands where a pointer points to.
+/// What a pointer into a reply leads to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lookup {
     /// A number; none where JSON has `null` for it.
@@ -19,13 +18,12 @@ pub enum Lookup {
     Other,
 }
 
-/// What stands in a reply where a pointer points to.
+/// What `pointer` leads to in a reply.
 pub fn lookup(reply: &impl Serialize, pointer: &Pointer) -> Lookup {
-    // What is not made for walking holds no number.
     reply.serialize(NumberAt(pointer.segments())).unwrap_or(Lookup::Other)
 }
 
-/// The way that is left.
+/// The segments of the pointer that remain.
 struct NumberAt<'p>(&'p [String]);
 
 /// A value of a kind that no reply has on the way to a number.
@@ -52,7 +50,7 @@ impl NumberAt<'_> {
     }
 }
 
-/// Inside an object or an array: the member that is wanted, the way behind it, and what has been found.
+/// Inside an object or an array: the wanted member or element, the segments behind it, and what has been found.
 struct Inside<'p> {
     wanted: Option<&'p str>,
     element: Option<usize>,
@@ -72,6 +70,7 @@ impl<'p> Inside<'p> {
     }
 }
 
+/// Methods for numbers.
 macro_rules! numbers {
     ($($method:ident($type:ty))*) => {
         $(fn $method(self, value: $type) -> Result<Lookup, Unexpected> {
@@ -80,11 +79,29 @@ macro_rules! numbers {
     };
 }
 
+/// Methods for values that are no numbers.
+macro_rules! no_numbers {
+    ($($method:ident($($type:ty),*))*) => {
+        $(fn $method(self, $(_: $type),*) -> Result<Lookup, Unexpected> {
+            self.end(Lookup::Other)
+        })*
+    };
+}
+
+/// Methods for kinds of values that no reply has.
+macro_rules! unexpected {
+    ($($method:ident($($type:ty),*) -> $ok:ident)*) => {
+        $(fn $method(self, $(_: $type),*) -> Result<Self::$ok, Unexpected> {
+            Err(Unexpected)
+        })*
+    };
+}
+
 impl<'p> Serializer for NumberAt<'p> {
     type Ok = Lookup;
     type Error = Unexpected;
     type SerializeSeq = Inside<'p>;
-    type SerializeTuple = Inside<'p>;
+    type SerializeTuple = Impossible<Lookup, Unexpected>;
     type SerializeTupleStruct = Impossible<Lookup, Unexpected>;
     type SerializeTupleVariant = Impossible<Lookup, Unexpected>;
     type SerializeMap = Impossible<Lookup, Unexpected>;
@@ -97,20 +114,17 @@ impl<'p> Serializer for NumberAt<'p> {
         serialize_f32(f32) serialize_f64(f64)
     }
 
-    fn serialize_bool(self, _: bool) -> Result<Lookup, Unexpected> {
-        self.end(Lookup::Other)
+    no_numbers! {
+        serialize_bool(bool) serialize_char(char) serialize_str(&str) serialize_bytes(&[u8])
+        serialize_unit_struct(&'static str) serialize_unit_variant(&'static str, u32, &'static str)
     }
 
-    fn serialize_char(self, _: char) -> Result<Lookup, Unexpected> {
-        self.end(Lookup::Other)
-    }
-
-    fn serialize_str(self, _: &str) -> Result<Lookup, Unexpected> {
-        self.end(Lookup::Other)
-    }
-
-    fn serialize_bytes(self, _: &[u8]) -> Result<Lookup, Unexpected> {
-        self.end(Lookup::Other)
+    unexpected! {
+        serialize_tuple(usize) -> SerializeTuple
+        serialize_tuple_struct(&'static str, usize) -> SerializeTupleStruct
+        serialize_tuple_variant(&'static str, u32, &'static str, usize) -> SerializeTupleVariant
+        serialize_map(Option<usize>) -> SerializeMap
+        serialize_struct_variant(&'static str, u32, &'static str, usize) -> SerializeStructVariant
     }
 
     fn serialize_none(self) -> Result<Lookup, Unexpected> {
@@ -123,14 +137,6 @@ impl<'p> Serializer for NumberAt<'p> {
 
     fn serialize_unit(self) -> Result<Lookup, Unexpected> {
         self.end(Lookup::Number(None))
-    }
-
-    fn serialize_unit_struct(self, _: &'static str) -> Result<Lookup, Unexpected> {
-        self.end(Lookup::Other)
-    }
-
-    fn serialize_unit_variant(self, _: &'static str, _: u32, _: &'static str) -> Result<Lookup, Unexpected> {
-        self.end(Lookup::Other)
     }
 
     fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result<Lookup, Unexpected> {
@@ -155,40 +161,8 @@ impl<'p> Serializer for NumberAt<'p> {
         Ok(Inside::new(self.0))
     }
 
-    fn serialize_tuple(self, _: usize) -> Result<Inside<'p>, Unexpected> {
-        Ok(Inside::new(self.0))
-    }
-
-    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self::SerializeTupleStruct, Unexpected> {
-        Err(Unexpected)
-    }
-
-    fn serialize_tuple_variant(
-        self,
-        _: &'static str,
-        _: u32,
-        _: &'static str,
-        _: usize,
-    ) -> Result<Self::SerializeTupleVariant, Unexpected> {
-        Err(Unexpected)
-    }
-
-    fn serialize_map(self, _: Option<usize>) -> Result<Self::SerializeMap, Unexpected> {
-        Err(Unexpected)
-    }
-
     fn serialize_struct(self, _: &'static str, _: usize) -> Result<Inside<'p>, Unexpected> {
         Ok(Inside::new(self.0))
-    }
-
-    fn serialize_struct_variant(
-        self,
-        _: &'static str,
-        _: u32,
-        _: &'static str,
-        _: usize,
-    ) -> Result<Self::SerializeStructVariant, Unexpected> {
-        Err(Unexpected)
     }
 }
 
@@ -202,19 +176,6 @@ impl SerializeSeq for Inside<'_> {
         }
         self.passed = self.passed.saturating_add(1);
         Ok(())
-    }
-
-    fn end(self) -> Result<Lookup, Unexpected> {
-        Ok(self.found)
-    }
-}
-
-impl SerializeTuple for Inside<'_> {
-    type Ok = Lookup;
-    type Error = Unexpected;
-
-    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Unexpected> {
-        SerializeSeq::serialize_element(self, value)
     }
 
     fn end(self) -> Result<Lookup, Unexpected> {

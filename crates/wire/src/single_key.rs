@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Deserializer};
 
-/// Implements `Deserialize` for an enum whose variants are the keys of a one-key object, and perhaps bare words.
+/// Implements `Deserialize` for an enum whose variants are the keys of a one-key object, or bare words.
 macro_rules! single_key {
     ($name:ident { $($key:literal => $variant:ident),+ } $(or { $($word:literal => $unit:ident),+ })?) => {
         impl<'de> serde::Deserialize<'de> for $name {

@@ -325,7 +325,7 @@ impl CheckedSweep {
         }
     }
 
-    /// Where in the sweep a place in the body of a point stands.
+    /// The JSON pointer, in the sweep, to what `pointer` is in the body of a point.
     #[must_use]
     pub fn place_of(&self, pointer: &str) -> String {
         let axis = self.axes.iter().position(|axis| axis.pointer.to_string() == pointer);

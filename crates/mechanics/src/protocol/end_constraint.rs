@@ -108,7 +108,7 @@ impl Equations<'_> {
     fn by_core(&self) -> Option<Vec<Point>> {
         let evaluate =
             |stress: f64| self.evaluate(0, [stress, 1.0]).map(|(missed, marched)| (missed[0], marched.kinks));
-        // StressRadius about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
+        // At about 1 + 1/(2 N) the innermost kink is lost: it is the optimum of one reversal less.
         let mut step = PACE / self.problem.reversals as f64;
         let (mut low, mut at_low) = (1.0, evaluate(1.0)?.0);
         let (mut high, mut at_high) = (low, at_low);

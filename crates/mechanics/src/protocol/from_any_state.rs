@@ -5,7 +5,7 @@
 //! cut is then where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is
 //! lowered until the inside would be above it.
 //!
-//! StressRadius a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
+//! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
 //! a last stroke, during which nothing slips but the edge itself, unloads it.
 
 use super::super::contact::Contact;
@@ -57,7 +57,7 @@ struct Strokes {
 }
 
 impl<'a> FromAnyState<'a> {
-    /// StressRadius most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or
+    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or
     /// where the history is too deep.
     pub(super) fn new(contact: &'a Contact, strokes: usize, last: f64, end: PathEnd) -> Option<FromAnyState<'a>> {
         let (profile, history) = (&*contact.profile, &contact.history);

@@ -101,7 +101,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         Some(given) => given,
         None => cutoff_of(singular, edge),
     };
-    // StressRadius the very radius where s diverges there is no law.
+    // At the very radius where s diverges there is no law.
     let spread =
         (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.profile, cutoff, edge)).flatten();
     let full = contact.gross_slip_displacement();

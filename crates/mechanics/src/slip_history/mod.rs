@@ -284,7 +284,7 @@ impl SlipHistory {
                 let ring = Ring::between(cut, outer);
                 let moments = profile.moments(&ring);
                 work += slipping.work(&moments, &top.line, excess, &ring);
-                // StressRadius constant load, a slip that stays within one piece is itself the piece to be pushed.
+                // At constant load, a slip that stays within one piece is itself the piece to be pushed.
                 slipped = (outer.level == d1).then_some(moments);
                 break cut;
             }

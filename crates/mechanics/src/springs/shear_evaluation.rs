@@ -60,7 +60,7 @@ impl Springs {
     }
 
     fn shears_over_levels(&self, radii: &[f64]) -> Vec<f64> {
-        // StressRadius the level of the indentation nothing is carried, whatever the profile.
+        // At the level of the indentation nothing is carried, whatever the profile.
         let edge = (self.indentation, 0.0);
         let nodes = self.in_contact().map(|spring| (spring.level, spring.carried)).chain([edge]);
         let nodes: Vec<_> =

@@ -19,7 +19,7 @@ use crate::{
     StressReply, StressRequest,
 };
 
-/// A handle on a service; clones share its connections.
+/// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
 #[derive(Clone, Debug)]
 pub struct Client {
     base: String,
@@ -96,89 +96,56 @@ impl Client {
     }
 
     /// `POST /simulate`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn simulate(&self, request: &SimulateRequest) -> Result<SimulateReply, Error> {
         json(self.call(Method::POST, "/simulate").json(request)).await
     }
 
     /// `POST /accuracy`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn accuracy(&self, request: &AccuracyRequest) -> Result<AccuracyReply, Error> {
         json(self.call(Method::POST, "/accuracy").json(request)).await
     }
 
     /// `POST /contacts`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn create(&self, request: &CreateRequest, options: &Options) -> Result<NewSession, Error> {
         self.post("/contacts", request, options).await
     }
 
     /// `GET /contacts`: a page, beyond the `next` of the page before.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn contacts(&self, after: Option<Uuid>, limit: Option<usize>) -> Result<SessionPage, Error> {
         json(self.call(Method::GET, "/contacts").query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
     /// `GET /contacts/{id}`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn contact(&self, id: Uuid) -> Result<SessionReply, Error> {
         json(self.call(Method::GET, &format!("/contacts/{id}"))).await
     }
 
     /// `GET /contacts/{id}/definition`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn definition(&self, id: Uuid) -> Result<ContactDefinition, Error> {
         json(self.call(Method::GET, &format!("/contacts/{id}/definition"))).await
     }
 
     /// `POST /contacts/{id}/move`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn apply(&self, id: Uuid, request: &MoveRequest, options: &Options) -> Result<MoveReply, Error> {
         self.post(&format!("/contacts/{id}/move"), request, options).await
     }
 
     /// `POST /contacts/{id}/path`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn path(&self, id: Uuid, request: &PathRequest, options: &Options) -> Result<PathReply, Error> {
         self.post(&format!("/contacts/{id}/path"), request, options).await
     }
 
     /// `POST /protocols`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn protocol(&self, request: &ProtocolRequest) -> Result<ProtocolReply, Error> {
         json(self.call(Method::POST, "/protocols").json(request)).await
     }
 
     /// `POST /contacts/{id}/relax`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn relax(&self, id: Uuid, request: &RelaxRequest, options: &Options) -> Result<RelaxReply, Error> {
         self.post(&format!("/contacts/{id}/relax"), request, options).await
     }
 
     /// `GET /contacts/{id}/stress`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn stress(&self, id: Uuid, request: &StressRequest, residual: bool) -> Result<StressReply, Error> {
         let radii = request.radii.as_ref().map(|radii| listed(radii.iter().map(|radius| format!("{radius:e}"))));
         let fields = request.fields.as_ref().map(|fields| listed(fields.iter().map(|field| field.name().to_owned())));
@@ -188,18 +155,12 @@ impl Client {
     }
 
     /// `GET /contacts/{id}/history`: a page, beyond the `next` of the page before.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn history(&self, id: Uuid, after: Option<u64>, limit: Option<usize>) -> Result<HistoryPage, Error> {
         let call = self.call(Method::GET, &format!("/contacts/{id}/history"));
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
     /// `GET /contacts/{id}/loop`: a page of moves with so many points for each, by default the recorded states alone.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn hysteresis_loop(
         &self,
         id: Uuid,
@@ -214,9 +175,6 @@ impl Client {
 
     /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The stream
     /// ends when the service or the connection does; go on from the sequence of the last state then.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call; within the stream too.
     pub async fn events(
         &self,
         id: Uuid,
@@ -236,41 +194,26 @@ impl Client {
     }
 
     /// `POST /contacts/{id}/fork`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn fork(&self, id: Uuid, request: &ForkRequest, options: &Options) -> Result<NewSession, Error> {
         self.post(&format!("/contacts/{id}/fork"), request, options).await
     }
 
     /// `DELETE /contacts/{id}`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn delete(&self, id: Uuid, options: &Options) -> Result<(), Error> {
         sent(with(self.call(Method::DELETE, &format!("/contacts/{id}")), options)).await.map(drop)
     }
 
     /// `GET /openapi.json`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn openapi(&self) -> Result<serde_json::Value, Error> {
         json(self.call(Method::GET, "/openapi.json")).await
     }
 
     /// `GET /healthz`: whether the process is alive.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn healthz(&self) -> Result<(), Error> {
         sent(self.call(Method::GET, "/healthz")).await.map(drop)
     }
 
     /// `GET /readyz`: whether it can serve.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn readyz(&self) -> Result<(), Error> {
         sent(self.call(Method::GET, "/readyz")).await.map(drop)
     }

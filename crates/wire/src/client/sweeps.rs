@@ -6,20 +6,17 @@ use uuid::Uuid;
 use super::{Client, Error, Options, json, read, sent, with};
 use crate::{JobReply, SweepReply, SweepRequest};
 
-/// What comes of a sweep.
+/// The answer to a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Swept {
-    /// Its table, at once.
+    /// Its table.
     Table(SweepReply),
-    /// A job, to be asked for again.
+    /// A job that computes it.
     Job(JobReply),
 }
 
 impl Client {
     /// `POST /sweep`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn sweep(&self, request: &SweepRequest, options: &Options) -> Result<Swept, Error> {
         let (status, body) = sent(with(self.call(Method::POST, "/sweep").json(request), options)).await?;
         if status == StatusCode::ACCEPTED {
@@ -30,25 +27,16 @@ impl Client {
     }
 
     /// `GET /jobs/{id}`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn job(&self, id: Uuid) -> Result<JobReply, Error> {
         json(self.call(Method::GET, &format!("/jobs/{id}"))).await
     }
 
     /// `GET /jobs/{id}/result`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn job_result(&self, id: Uuid) -> Result<SweepReply, Error> {
         json(self.call(Method::GET, &format!("/jobs/{id}/result"))).await
     }
 
     /// `DELETE /jobs/{id}`.
-    ///
-    /// # Errors
-    /// [`Error`], as for every call.
     pub async fn delete_job(&self, id: Uuid) -> Result<(), Error> {
         sent(self.call(Method::DELETE, &format!("/jobs/{id}"))).await.map(drop)
     }

@@ -94,7 +94,7 @@ pub enum ProtocolKind {
     Linear,
     /// They leave equal peaks on the profile of the contact, by steps proportional to x/g'(x).
     EqualPeaks,
-    /// They leave the smallest largest stress that is found.
+    /// They minimise the largest stress that remains, as far as a search finds.
     #[default]
     Minimax,
 }

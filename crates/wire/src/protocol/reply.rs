@@ -75,9 +75,9 @@ pub struct StartReply {
 pub enum FirstStroke {
     /// A displacement of a contact that has never moved, as asked for.
     Given,
-    /// A stroke to gross slip, which wipes out the whole history.
+    /// A stroke to gross slip, which erases the whole slip history.
     GrossSlip,
-    /// A stroke that wipes out the outer part of the history, and leaves the inner one as it is.
+    /// A stroke that erases the outer part of the slip history and keeps the inner one.
     Partial,
     /// None: less stress is present already than any other path would leave.
     Stay,
