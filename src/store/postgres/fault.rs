@@ -10,7 +10,7 @@ use tokio_postgres::error::{DbError, SqlState};
 
 use crate::store::StoreError;
 
-use super::target::told;
+use super::connect::error_chain;
 
 /// How long a lost database is waited for before its clients are told. Once they have been told, nobody waits any more
 /// until it is back.
@@ -25,7 +25,7 @@ pub(super) enum Fault {
     /// The connection is lost; whether the change was made is unknown.
     Lost(String),
     /// Nothing has changed, and the same may go well at once: two transactions got in each other's way.
-    Again(String),
+    Conflict(String),
     /// Nothing has changed: a key or an identifier is there already.
     Duplicate(String),
     /// Nothing has changed, and it is no use trying again.
@@ -36,8 +36,8 @@ impl From<Error> for Fault {
     fn from(error: Error) -> Fault {
         match error.as_db_error() {
             Some(refusal) => refused(refusal),
-            None if distrusted(&error) => Fault::Refused(StoreError::Failed(told(&error))),
-            None => Fault::Lost(told(&error)),
+            None if distrusted(&error) => Fault::Refused(StoreError::Failed(error_chain(&error))),
+            None => Fault::Lost(error_chain(&error)),
         }
     }
 }
@@ -80,8 +80,8 @@ fn refused(refusal: &DbError) -> Fault {
         _ if *code == SqlState::TOO_MANY_CONNECTIONS || *code == SqlState::READ_ONLY_SQL_TRANSACTION => {
             Fault::Lost(text)
         }
-        "40" => Fault::Again(text),
-        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Again(text),
+        "40" => Fault::Conflict(text),
+        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Conflict(text),
         _ if *code == SqlState::UNIQUE_VIOLATION => Fault::Duplicate(text),
         _ if *code == SqlState::DISK_FULL => Fault::Refused(StoreError::Full(text)),
         "53" => Fault::Refused(StoreError::Unavailable(text)),
@@ -92,9 +92,9 @@ fn refused(refusal: &DbError) -> Fault {
 
 impl Fault {
     /// What is left to say when it is not tried again.
-    pub(super) fn finally(self) -> StoreError {
+    pub(super) fn into_store_error(self) -> StoreError {
         match self {
-            Fault::Lost(text) | Fault::Again(text) => StoreError::Unavailable(text),
+            Fault::Lost(text) | Fault::Conflict(text) => StoreError::Unavailable(text),
             Fault::Duplicate(text) => StoreError::Failed(text),
             Fault::Refused(error) => error,
         }
@@ -117,7 +117,7 @@ impl Outage {
     }
 
     /// Notes that it could not; tells whether it is worth while to try again.
-    pub(super) fn bearable(&self, fault: &str) -> bool {
+    pub(super) fn worth_waiting(&self, fault: &str) -> bool {
         let mut since = self.lock();
         if since.is_none() {
             tracing::warn!(error = fault, "the database is out of reach");
@@ -130,16 +130,16 @@ impl Outage {
     }
 }
 
-/// Pauses that grow.
-pub(super) struct Pauses(Duration);
+/// Backoff that grow.
+pub(super) struct Backoff(Duration);
 
-impl Default for Pauses {
-    fn default() -> Pauses {
-        Pauses(FIRST_PAUSE)
+impl Default for Backoff {
+    fn default() -> Backoff {
+        Backoff(FIRST_PAUSE)
     }
 }
 
-impl Pauses {
+impl Backoff {
     /// Waits, longer from time to time.
     pub(super) async fn pause(&mut self) {
         tokio::time::sleep(self.0).await;

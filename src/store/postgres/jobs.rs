@@ -16,11 +16,11 @@ use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_PATIENCE, Job, Jo
 use crate::store::{Answer, RECEIPT_LIFETIME, Receipt, StoreError, Tenant};
 
 use super::PostgresStore;
-use super::alone::{begin, execute};
+use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
 use super::fault::Fault;
-use super::link::{ANSWER, LONG_ANSWER, Link, Parameter, call, once};
-use super::rows::{count, counted, joined, odd, split};
+use super::rows::{from_bigint, join_time, split_time, to_bigint, unreadable};
 use super::sql;
+use super::transactions::{begin, execute};
 
 /// Jobs that one statement sweeps: their results are large.
 const SWEPT: i64 = 4;
@@ -34,7 +34,7 @@ struct NewJob {
 }
 
 impl NewJob {
-    async fn make(&self, link: &Link, connection: &mut Object, sent: &AtomicBool) -> Result<(), Fault> {
+    async fn make(&self, pool: &ClientPool, connection: &mut Object, commit_sent: &AtomicBool) -> Result<(), Fault> {
         let NewJob { job, request, limits, receipt } = self;
         let transaction = begin(connection).await?;
         let tenant = job.tenant.name();
@@ -42,23 +42,23 @@ impl NewJob {
         execute(&transaction, sql::LOCK_TENANT, &[&i64::from(crc32fast::hash(tenant.as_bytes()))]).await?;
         let statement = transaction.prepare_cached(sql::JOBS_OF_TENANT).await?;
         let found = transaction.query_one(&statement, &[&tenant]).await?;
-        limits.admit(count(found.get(0)), count(found.get(1)), count(found.get(2)), job)?;
-        let (at, ns) = split(job.created_at);
-        let (points, chunk) = (counted(job.points), counted(job.chunk));
-        let (bytes, cost) = (counted(job.bytes), counted(job.cost));
+        limits.admit(from_bigint(found.get(0)), from_bigint(found.get(1)), from_bigint(found.get(2)), job)?;
+        let (at, ns) = split_time(job.created_at);
+        let (points, chunk) = (to_bigint(job.points), to_bigint(job.chunk));
+        let (bytes, cost) = (to_bigint(job.bytes), to_bigint(job.cost));
         let row: [Parameter<'_>; 9] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, request];
         execute(&transaction, sql::CREATE_JOB, &row).await?;
-        execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &counted(job.chunks())]).await?;
+        execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &to_bigint(job.chunks())]).await?;
         if let Some(Receipt { request, reply }) = receipt {
             let keys = [request.key.as_str()];
-            execute(&transaction, sql::FREE_KEYS, &[&keys.as_slice(), &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+            execute(&transaction, sql::DELETE_OLD_KEYS, &[&keys.as_slice(), &RECEIPT_LIFETIME.as_secs_f64()]).await?;
             let fingerprint = request.fingerprint.as_slice();
-            let sequence = counted(reply.sequence);
+            let sequence = to_bigint(reply.sequence);
             let row: [Parameter<'_>; 5] = [&request.key, &fingerprint, &reply.created, &sequence, &reply.body];
-            execute(&transaction, sql::KEEP_RECEIPT, &row).await?;
+            execute(&transaction, sql::SAVE_RECEIPT, &row).await?;
         }
-        link.announce(&transaction, &[job.id]).await?;
-        sent.store(true, Ordering::Relaxed);
+        pool.announce(&transaction, &[job.id]).await?;
+        commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(())
     }
@@ -69,27 +69,27 @@ fn job(row: &Row) -> Result<Job, StoreError> {
     Ok(Job {
         id: row.get(0),
         tenant: Tenant::new(row.get(1)),
-        created_at: joined(row.get(2), row.get(3))?,
-        finished_at: finished.map(Timestamp::try_from).transpose().map_err(|error| odd(&error))?,
+        created_at: join_time(row.get(2), row.get(3))?,
+        finished_at: finished.map(Timestamp::try_from).transpose().map_err(|error| unreadable(&error))?,
         error: row.get(5),
-        points: count(row.get(6)),
-        chunk: count(row.get(7)),
-        done: count(row.get(8)),
-        failed: count(row.get(9)),
-        bytes: count(row.get(10)),
-        cost: count(row.get(11)),
+        points: from_bigint(row.get(6)),
+        chunk: from_bigint(row.get(7)),
+        done: from_bigint(row.get(8)),
+        failed: from_bigint(row.get(9)),
+        bytes: from_bigint(row.get(10)),
+        cost: from_bigint(row.get(11)),
     })
 }
 
-impl Link {
+impl ClientPool {
     async fn create_job(&self, new: NewJob) -> Result<(), StoreError> {
-        let sent = AtomicBool::new(false);
-        let error = match call!(self, LONG_ANSWER, connection => new.make(self, connection, &sent)) {
+        let commit_sent = AtomicBool::new(false);
+        let error = match with_retries!(self, LONG_ANSWER, connection => new.make(self, connection, &commit_sent)) {
             Ok(()) => return Ok(()),
             Err(error) => error,
         };
         // A lost connection may have hidden that an earlier attempt went well.
-        if sent.into_inner() && self.row(sql::JOB, &[&new.job.id]).await?.is_some() {
+        if commit_sent.into_inner() && self.row(sql::JOB, &[&new.job.id]).await?.is_some() {
             return Ok(());
         }
         match &new.receipt {
@@ -104,7 +104,7 @@ impl Link {
         froms.extend(after);
         while let Some(from) = froms.pop() {
             if let Some(row) = self.row(sql::CLAIM, &[&from, &owner, &lease]).await? {
-                return Ok(Some(Claim { job: row.get(0), chunk: count(row.get(1)), owner }));
+                return Ok(Some(Claim { job: row.get(0), chunk: from_bigint(row.get(1)), owner }));
             }
         }
         Ok(None)
@@ -118,8 +118,8 @@ impl Link {
         if transaction.query_opt(&statement, &[&job]).await?.is_none() {
             return Ok(false);
         }
-        if execute(&transaction, sql::KEEP_CHUNK, &[&job, &counted(chunk), &result.content]).await? > 0 {
-            let (points, failed) = (counted(result.points), counted(result.failed));
+        if execute(&transaction, sql::SAVE_CHUNK, &[&job, &to_bigint(chunk), &result.content]).await? > 0 {
+            let (points, failed) = (to_bigint(result.points), to_bigint(result.failed));
             execute(&transaction, sql::COUNT_CHUNK, &[&job, &points, &failed]).await?;
             self.announce(&transaction, &[job]).await?;
         }
@@ -139,20 +139,20 @@ impl Link {
         Ok(())
     }
 
-    async fn delete_job(&self, connection: &mut Object, id: Uuid, sent: &AtomicBool) -> Result<bool, Fault> {
+    async fn delete_job(&self, connection: &mut Object, id: Uuid, commit_sent: &AtomicBool) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         if execute(&transaction, sql::DELETE_JOB, &[&id]).await? == 0 {
-            return Ok(sent.load(Ordering::Relaxed));
+            return Ok(commit_sent.load(Ordering::Relaxed));
         }
         self.announce(&transaction, &[id]).await?;
-        sent.store(true, Ordering::Relaxed);
+        commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(true)
     }
 
     /// Deletes the jobs whose time is over.
     pub(super) async fn sweep_jobs(&self) -> Result<(), StoreError> {
-        while counted(call!(self, LONG_ANSWER, connection => sweep(connection))?) == SWEPT {}
+        while to_bigint(with_retries!(self, LONG_ANSWER, connection => sweep(connection))?) == SWEPT {}
         Ok(())
     }
 }
@@ -160,37 +160,37 @@ impl Link {
 async fn sweep(connection: &mut Object) -> Result<u64, Fault> {
     let transaction = begin(connection).await?;
     let times = [JOB_LIFETIME, JOB_PATIENCE].map(|time| time.as_secs_f64());
-    let gone = execute(&transaction, sql::SWEEP_JOBS, &[&times[0], &times[1], &SWEPT]).await?;
+    let gone = execute(&transaction, sql::PURGE_JOBS, &[&times[0], &times[1], &SWEPT]).await?;
     transaction.commit().await?;
     Ok(gone)
 }
 
 impl JobStore for PostgresStore {
     fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.link.create_job(NewJob { job, request, limits, receipt }).boxed()
+        self.pool.create_job(NewJob { job, request, limits, receipt }).boxed()
     }
 
     fn job(&self, id: Uuid) -> Answer<'_, Job> {
-        async move { self.link.row(sql::JOB, &[&id]).await?.as_ref().map_or(Err(StoreError::NotFound), job) }.boxed()
+        async move { self.pool.row(sql::JOB, &[&id]).await?.as_ref().map_or(Err(StoreError::NotFound), job) }.boxed()
     }
 
     fn job_request(&self, id: Uuid) -> Answer<'_, String> {
         async move {
-            let found = self.link.row(sql::JOB_REQUEST, &[&id]).await?;
+            let found = self.pool.row(sql::JOB_REQUEST, &[&id]).await?;
             found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
         }
         .boxed()
     }
 
     fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Answer<'_, Option<Claim>> {
-        self.link.claim(owner, after, lease).boxed()
+        self.pool.claim(owner, after, lease).boxed()
     }
 
     fn renew(&self, claim: Claim, lease: Duration) -> Answer<'_, bool> {
         async move {
             let Claim { job, chunk, owner } = claim;
-            let (chunk, lease) = (counted(chunk), lease.as_secs_f64());
-            Ok(self.link.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
+            let (chunk, lease) = (to_bigint(chunk), lease.as_secs_f64());
+            Ok(self.pool.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
         }
         .boxed()
     }
@@ -198,14 +198,15 @@ impl JobStore for PostgresStore {
     fn release(&self, claim: Claim) -> Answer<'_, ()> {
         async move {
             let Claim { job, chunk, owner } = claim;
-            self.link.rows(sql::RELEASE, &[&job, &counted(chunk), &owner]).await.map(drop)
+            self.pool.rows(sql::RELEASE, &[&job, &to_bigint(chunk), &owner]).await.map(drop)
         }
         .boxed()
     }
 
     fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()> {
         async move {
-            let kept = call!(self.link, ANSWER, connection => self.link.keep_chunk(connection, claim, &result))?;
+            let kept =
+                with_retries!(self.pool, ANSWER, connection => self.pool.keep_chunk(connection, claim, &result))?;
             self.changes.wake(claim.job);
             if kept { Ok(()) } else { Err(StoreError::NotFound) }
         }
@@ -214,7 +215,7 @@ impl JobStore for PostgresStore {
 
     fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()> {
         async move {
-            call!(self.link, ANSWER, connection => self.link.fail_job(connection, id, &error))?;
+            with_retries!(self.pool, ANSWER, connection => self.pool.fail_job(connection, id, &error))?;
             self.changes.wake(id);
             Ok(())
         }
@@ -223,7 +224,7 @@ impl JobStore for PostgresStore {
 
     fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>> {
         async move {
-            let found = self.link.rows(sql::CHUNKS, &[&id, &counted(first), &counted(limit as u64)]).await?;
+            let found = self.pool.rows(sql::CHUNKS, &[&id, &to_bigint(first), &to_bigint(limit as u64)]).await?;
             Ok(found.iter().map(|row| row.get(0)).collect())
         }
         .boxed()
@@ -231,8 +232,8 @@ impl JobStore for PostgresStore {
 
     fn delete_job(&self, id: Uuid) -> Answer<'_, ()> {
         async move {
-            let sent = AtomicBool::new(false);
-            let gone = call!(self.link, LONG_ANSWER, connection => self.link.delete_job(connection, id, &sent))?;
+            let commit_sent = AtomicBool::new(false);
+            let gone = with_retries!(self.pool, LONG_ANSWER, connection => self.pool.delete_job(connection, id, &commit_sent))?;
             self.changes.wake(id);
             if gone { Ok(()) } else { Err(StoreError::NotFound) }
         }

@@ -10,37 +10,37 @@ use uuid::Uuid;
 
 use crate::store::Changes;
 
-use super::fault::{Fault, Pauses};
-use super::link::Link;
+use super::client_pool::ClientPool;
+use super::fault::{Backoff, Fault};
 use super::sql;
 
 /// How often those who wait are sent to look where the engine knows no announcements.
 const LOOK: Duration = Duration::from_secs(1);
 
 /// Wakes those who wait for changes, for ever.
-pub(super) async fn listen(link: Arc<Link>, changes: Arc<Changes>) {
-    if !link.announces {
+pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
+    if !pool.announces {
         loop {
             tokio::time::sleep(LOOK).await;
             changes.wake_all();
         }
     }
-    let mut pauses = Pauses::default();
+    let mut backoff = Backoff::default();
     loop {
         let mut heard = false;
-        if let Err(fault) = hear(&link, &changes, &mut heard).await {
+        if let Err(fault) = hear(&pool, &changes, &mut heard).await {
             tracing::debug!(?fault, "no announcements are heard for now");
         }
         if heard {
-            pauses = Pauses::default();
+            backoff = Backoff::default();
         }
-        pauses.pause().await;
+        backoff.pause().await;
     }
 }
 
 /// Listens on one connection until it is lost; `heard` tells whether it came about.
-async fn hear(link: &Link, changes: &Changes, heard: &mut bool) -> Result<(), Fault> {
-    let (client, mut driver) = link.target.connect().await?;
+async fn hear(pool: &ClientPool, changes: &Changes, heard: &mut bool) -> Result<(), Fault> {
+    let (client, mut driver) = pool.target.connect().await?;
     let mut messages = stream::poll_fn(move |context| driver.poll_message(context));
     let mut listen = std::pin::pin!(client.batch_execute(sql::LISTEN));
     loop {

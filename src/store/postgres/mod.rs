@@ -7,18 +7,18 @@
 //!
 //! `docs/postgres.md` describes the tables and what the engine has to know.
 
-mod alone;
-mod explain;
+mod batch_tx;
+mod client_pool;
+mod connect;
 mod fault;
-mod flight;
-mod job;
 mod jobs;
-mod link;
 mod listen;
+mod outcome;
+mod request;
 mod rows;
 mod schema;
 mod sql;
-mod target;
+mod transactions;
 mod writer;
 
 use std::sync::Arc;
@@ -35,12 +35,12 @@ use super::{
     Answer, Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant,
 };
 
-use fault::{Fault, Pauses};
-use job::{Change, Job};
-use link::Link;
-use rows::{count, counted};
+use client_pool::ClientPool;
+use connect::ConnectTarget;
+use fault::{Backoff, Fault};
+use request::{Change, WriteRequest};
+use rows::{from_bigint, to_bigint};
 use schema::SchemaError;
-use target::Target;
 use writer::Writer;
 
 /// How long a start waits for the database.
@@ -50,7 +50,7 @@ const READY: Duration = Duration::from_secs(2);
 
 /// Sessions in a PostgreSQL database.
 pub struct PostgresStore {
-    link: Arc<Link>,
+    pool: Arc<ClientPool>,
     writer: Writer,
     changes: Arc<Changes>,
     listener: AbortHandle,
@@ -63,7 +63,7 @@ impl PostgresStore {
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if it or its tables cannot be used.
     pub async fn open(url: &str) -> Result<PostgresStore, StoreError> {
-        let target = Target::parse(url).map_err(StoreError::Failed)?;
+        let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let place = target.place();
         let announces = prepared(&target).await.map_err(|error| match error {
             StoreError::Unavailable(text) => StoreError::Unavailable(format!("{place}: {text}")),
@@ -73,11 +73,11 @@ impl PostgresStore {
         if !announces {
             tracing::warn!("the database knows no pg_notify: changes by other processes are looked for once a second");
         }
-        let link = Arc::new(Link::new(target, announces)?);
+        let pool = Arc::new(ClientPool::new(target, announces)?);
         let changes = Arc::new(Changes::default());
-        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
-        let listener = tokio::spawn(listen::listen(Arc::clone(&link), Arc::clone(&changes))).abort_handle();
-        Ok(PostgresStore { link, writer, changes, listener })
+        let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
+        let listener = tokio::spawn(listen::listen(Arc::clone(&pool), Arc::clone(&changes))).abort_handle();
+        Ok(PostgresStore { pool, writer, changes, listener })
     }
 
     /// Connects to a database to look at, beside the processes that work with it. Its tables must be there already.
@@ -85,23 +85,23 @@ impl PostgresStore {
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
     pub async fn open_to_read(url: &str) -> Result<PostgresStore, StoreError> {
-        let target = Target::parse(url).map_err(StoreError::Failed)?;
+        let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let place = target.place();
         let checked = async { schema::check(&target.open().await?).await };
-        checked
-            .await
-            .map_err(|error: SchemaError| StoreError::Failed(format!("{place}: {}", Fault::from(error).finally())))?;
-        let link = Arc::new(Link::new(target, false)?);
+        checked.await.map_err(|error: SchemaError| {
+            StoreError::Failed(format!("{place}: {}", Fault::from(error).into_store_error()))
+        })?;
+        let pool = Arc::new(ClientPool::new(target, false)?);
         let changes = Arc::new(Changes::default());
-        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
+        let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
         let listener = tokio::spawn(std::future::pending::<()>()).abort_handle();
-        Ok(PostgresStore { link, writer, changes, listener })
+        Ok(PostgresStore { pool, writer, changes, listener })
     }
 
     /// Which database it is, without the password.
     #[must_use]
     pub fn place(&self) -> String {
-        self.link.target.place()
+        self.pool.target.place()
     }
 }
 
@@ -112,8 +112,8 @@ impl Drop for PostgresStore {
 }
 
 /// Brings the tables up to date, and tells whether the engine knows announcements.
-async fn prepared(target: &Target) -> Result<bool, StoreError> {
-    let (begin, mut pauses) = (Instant::now(), Pauses::default());
+async fn prepared(target: &ConnectTarget) -> Result<bool, StoreError> {
+    let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
         let fault = match target.open().await.map_err(SchemaError::from) {
             Ok(mut client) => match schema::migrate(&mut client).await {
@@ -123,8 +123,8 @@ async fn prepared(target: &Target) -> Result<bool, StoreError> {
             Err(error) => Fault::from(error),
         };
         match fault {
-            Fault::Lost(_) | Fault::Again(_) if begin.elapsed() < START => pauses.pause().await,
-            fault => return Err(fault.finally()),
+            Fault::Lost(_) | Fault::Conflict(_) if begin.elapsed() < START => backoff.pause().await,
+            fault => return Err(fault.into_store_error()),
         }
     }
 }
@@ -147,12 +147,14 @@ fn definition(session: &Session) -> Result<String, StoreError> {
 impl Store for PostgresStore {
     fn ready(&self) -> Answer<'_, ()> {
         async {
-            let asked = async { link::once!(self.link, READY, connection => link::rows(connection, sql::READY, &[])) };
+            let asked = async {
+                client_pool::try_once!(self.pool, READY, connection => client_pool::rows(connection, sql::READY, &[]))
+            };
             let asked = tokio::time::timeout(READY, asked).await;
             match asked.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned()))) {
                 Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
                 Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
-                Err(fault) => Err(fault.finally()),
+                Err(fault) => Err(fault.into_store_error()),
             }
         }
         .boxed()
@@ -162,16 +164,16 @@ impl Store for PostgresStore {
         async {
             let definition = definition(&session)?;
             let change = Change::Create(session, definition);
-            self.writer.write(|answer| Job { change, receipt, stamp: job::stamp(), answer }).await
+            self.writer.write(|answer| WriteRequest { change, receipt, stamp: request::stamp(), answer }).await
         }
         .boxed()
     }
 
     fn find(&self, id: Uuid) -> Answer<'_, Session> {
         async move {
-            match self.link.row(sql::FIND, &[&id]).await? {
+            match self.pool.row(sql::FIND, &[&id]).await? {
                 Some(row) => rows::session(&row),
-                None => Err(self.link.missing(id).await),
+                None => Err(self.pool.missing(id).await),
             }
         }
         .boxed()
@@ -181,10 +183,10 @@ impl Store for PostgresStore {
         async move {
             // Nothing lies before the nil identifier, and no session has it.
             let after = after.unwrap_or(Uuid::nil());
-            let limit = counted(limit as u64);
+            let limit = to_bigint(limit as u64);
             let found = match of {
-                None => self.link.rows(sql::LIST, &[&after, &limit]).await?,
-                Some(tenant) => self.link.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
+                None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,
+                Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
             };
             found.iter().map(rows::summary).collect()
         }
@@ -193,14 +195,14 @@ impl Store for PostgresStore {
 
     fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
         let change = Change::Append { id, expected, records };
-        self.writer.write(move |answer| Job { change, receipt, stamp: job::stamp(), answer }).boxed()
+        self.writer.write(move |answer| WriteRequest { change, receipt, stamp: request::stamp(), answer }).boxed()
     }
 
     fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
         async move {
-            let found = self.link.rows(sql::HISTORY, &[&id, &counted(after), &counted(limit as u64)]).await?;
-            if found.is_empty() && self.link.row(sql::SEQUENCE, &[&id]).await?.is_none() {
-                return Err(self.link.missing(id).await);
+            let found = self.pool.rows(sql::HISTORY, &[&id, &to_bigint(after), &to_bigint(limit as u64)]).await?;
+            if found.is_empty() && self.pool.row(sql::SEQUENCE, &[&id]).await?.is_none() {
+                return Err(self.pool.missing(id).await);
             }
             found.iter().map(rows::record).collect()
         }
@@ -208,12 +210,12 @@ impl Store for PostgresStore {
     }
 
     fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.link.fork(id, copy, receipt).boxed()
+        self.pool.fork(id, copy, receipt).boxed()
     }
 
     fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
         async move {
-            self.link.delete(id, expected).await?;
+            self.pool.delete(id, expected).await?;
             self.changes.wake(id);
             Ok(())
         }
@@ -221,14 +223,14 @@ impl Store for PostgresStore {
     }
 
     fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
-        self.link.receipt(key).boxed()
+        self.pool.receipt(key).boxed()
     }
 
     fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
         async move {
-            let kept = self.link.row(sql::SNAPSHOT, &[&id]).await?;
-            if kept.is_none() && self.link.row(sql::SEQUENCE, &[&id]).await?.is_none() {
-                return Err(self.link.missing(id).await);
+            let kept = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
+            if kept.is_none() && self.pool.row(sql::SEQUENCE, &[&id]).await?.is_none() {
+                return Err(self.pool.missing(id).await);
             }
             Ok(kept.as_ref().map(rows::snapshot))
         }
@@ -236,13 +238,13 @@ impl Store for PostgresStore {
     }
 
     fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
-        self.link.keep_snapshot(id, snapshot).boxed()
+        self.pool.keep_snapshot(id, snapshot).boxed()
     }
 
     fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
         async move {
-            self.link.sweep_jobs().await?;
-            let gone = self.link.sweep(idle_since).await?;
+            self.pool.sweep_jobs().await?;
+            let gone = self.pool.sweep(idle_since).await?;
             gone.iter().for_each(|id| self.changes.wake(*id));
             Ok(gone.len() as u64)
         }
@@ -255,7 +257,7 @@ impl Store for PostgresStore {
 
     fn examine(&self) -> Answer<'_, Vec<String>> {
         async {
-            let strays = self.link.rows(sql::STRAYS, &[]).await?;
+            let strays = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
             let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
             Ok(strays.iter().map(|row| line(row.get(0))).collect())
         }
@@ -268,16 +270,16 @@ impl Store for PostgresStore {
 
     fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
         async move {
-            match self.link.row(sql::SEQUENCE, &[&id]).await? {
-                Some(row) => Ok(count(row.get(0))),
-                None => Err(self.link.missing(id).await),
+            match self.pool.row(sql::SEQUENCE, &[&id]).await? {
+                Some(row) => Ok(from_bigint(row.get(0))),
+                None => Err(self.pool.missing(id).await),
             }
         }
         .boxed()
     }
 }
 
-impl Link {
+impl ClientPool {
     /// [`Store::receipt`]
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
         let row = self.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;

@@ -108,7 +108,7 @@ CREATE TABLE IF NOT EXISTS stickslip_schema (
     applied_at timestamptz NOT NULL DEFAULT now()
 )";
 const CURRENT: &str = "SELECT coalesce(max(version), 0) FROM stickslip_schema";
-const APPLIED: &str = "INSERT INTO stickslip_schema (version) VALUES ($1)";
+const RECORD_VERSION: &str = "INSERT INTO stickslip_schema (version) VALUES ($1)";
 
 /// Why the tables cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -135,7 +135,7 @@ pub(super) async fn migrate(client: &mut Client) -> Result<(), SchemaError> {
         known += 1;
         if known > found {
             transaction.batch_execute(migration).await?;
-            transaction.execute(APPLIED, &[&known]).await?;
+            transaction.execute(RECORD_VERSION, &[&known]).await?;
             tracing::info!(version = known, "the database schema has been brought up to date");
         }
     }

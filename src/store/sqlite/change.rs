@@ -8,8 +8,8 @@ use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreEr
 
 use super::fork;
 use super::jobs::JobChange;
-use super::known::Known;
 use super::rows::{MOVE_COLUMNS, bound, insert_move, integer, nanoseconds, natural, tenant};
+use super::sequence_cache::SequenceCache;
 
 /// Receipts that one sweep of the writer passes.
 const RECEIPTS_AT_ONCE: i64 = 256;
@@ -44,16 +44,16 @@ pub(super) enum Done {
 }
 
 /// Why a change was not made.
-pub(super) enum Undone {
+pub(super) enum ChangeError {
     /// It was refused; nothing was written.
     Refused(StoreError),
     /// SQLite failed half-way: the transaction must be taken back.
     Failed(rusqlite::Error),
 }
 
-impl From<rusqlite::Error> for Undone {
+impl From<rusqlite::Error> for ChangeError {
     fn from(error: rusqlite::Error) -> Self {
-        Undone::Failed(error)
+        ChangeError::Failed(error)
     }
 }
 
@@ -78,7 +78,12 @@ impl Change {
     }
 
     /// Makes the change within the transaction under way. `number` is free for a new session.
-    pub(super) fn make(&self, database: &Connection, known: &mut Known, number: i64) -> Result<Done, Undone> {
+    pub(super) fn make(
+        &self,
+        database: &Connection,
+        cache: &mut SequenceCache,
+        number: i64,
+    ) -> Result<Done, ChangeError> {
         match self {
             Change::Create { session, receipt } => {
                 free(database, receipt.as_ref())?;
@@ -87,7 +92,7 @@ impl Change {
             }
             Change::Append { id, expected, records, receipt } => {
                 free(database, receipt.as_ref())?;
-                let number = match known.number(*id, *expected) {
+                let number = match cache.number(*id, *expected) {
                     Some(number) => number,
                     None => at(database, *id, *expected)?,
                 };
@@ -98,13 +103,13 @@ impl Change {
                 records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
                 keep(database, receipt.as_ref())?;
                 if let Some(last) = records.last() {
-                    known.moved(*id, number, last.sequence);
+                    cache.moved(*id, number, last.sequence);
                 }
             }
             Change::Fork(fork) => return fork.begin(database, number),
             Change::Delete { id, expected } => {
                 let number = at(database, *id, *expected)?;
-                known.forget(*id);
+                cache.forget(*id);
                 disown(database, number)?;
             }
             Change::KeepSnapshot { id, snapshot } => {
@@ -120,7 +125,7 @@ impl Change {
             Change::Expire { ids, since } => {
                 let mut gone = 0;
                 for id in ids {
-                    known.forget(*id);
+                    cache.forget(*id);
                     gone += u64::from(expire(database, *id, *since)?);
                 }
                 return Ok(Done::Made(gone));
@@ -131,11 +136,11 @@ impl Change {
 }
 
 /// Refuses a receipt whose key is in use.
-pub(super) fn free(database: &Connection, receipt: Option<&Receipt>) -> Result<(), Undone> {
+pub(super) fn free(database: &Connection, receipt: Option<&Receipt>) -> Result<(), ChangeError> {
     let Some(receipt) = receipt else { return Ok(()) };
     let mut statement = database.prepare_cached("SELECT number FROM receipts WHERE key = ?1 AND at > ?2")?;
     if statement.exists(params![receipt.request.key, bound(receipts_from())])? {
-        return Err(Undone::Refused(StoreError::KeyTaken));
+        return Err(ChangeError::Refused(StoreError::KeyTaken));
     }
     Ok(())
 }
@@ -207,15 +212,15 @@ pub(super) fn insert_session(
 }
 
 /// The number of a session that must be at a sequence.
-pub(super) fn at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, Undone> {
+pub(super) fn at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, ChangeError> {
     let sql = "SELECT number, (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number) FROM contacts
                WHERE id = ?1";
     let mut statement = database.prepare_cached(sql)?;
     let found = statement.query_row([id.to_string()], |row| Ok((row.get(0)?, natural(row, 1)?))).optional()?;
     match found {
         Some((number, found)) if found == expected => Ok(number),
-        Some((_, found)) => Err(Undone::Refused(StoreError::Stale { found })),
-        None => Err(Undone::Refused(missing(database, id)?)),
+        Some((_, found)) => Err(ChangeError::Refused(StoreError::Stale { found })),
+        None => Err(ChangeError::Refused(missing(database, id)?)),
     }
 }
 

@@ -11,7 +11,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
 use super::schema::{self, APPLICATION, NEWEST};
-use super::{BUSY, torn};
+use super::{BUSY, wal_check};
 
 /// What every SQLite file begins with.
 const MAGIC: &[u8] = b"SQLite format 3\0";
@@ -109,7 +109,7 @@ fn inspect(path: &Path, file: &File) -> Result<(), String> {
         return Err("it is an SQLite database of another application".to_owned());
     }
     supported(field(&header, 60).cast_signed())?;
-    torn::check(&header, length, &beside(path, "-wal"))
+    wal_check::check(&header, length, &beside(path, "-wal"))
 }
 
 /// Connects the writer, and brings the tables up to date.

@@ -7,7 +7,7 @@ use rusqlite::{Connection, OptionalExtension as _, params};
 
 use crate::store::StoreError;
 
-use super::change::{Done, Fork, Undone, at, free, insert_session, keep};
+use super::change::{ChangeError, Done, Fork, at, free, insert_session, keep};
 use super::rows::{MOVE_COLUMNS, integer};
 
 /// Moves that are copied or removed in one step.
@@ -30,7 +30,7 @@ pub(super) struct Copying {
 
 impl Fork {
     /// Checks, and makes a short fork at once; a long one begins.
-    pub(super) fn begin(&self, database: &Connection, to: i64) -> Result<Done, Undone> {
+    pub(super) fn begin(&self, database: &Connection, to: i64) -> Result<Done, ChangeError> {
         free(database, self.receipt.as_ref())?;
         let from = at(database, self.id, self.copy.sequence)?;
         let mut copying = Copying { from, to, copied: 0, last: integer(self.copy.sequence)? };
@@ -44,7 +44,7 @@ impl Fork {
     }
 
     /// Goes on with a fork; whether it is complete. The original may have moved on meanwhile, which the copy does not see.
-    pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, Undone> {
+    pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, ChangeError> {
         copying.step(database)?;
         if copying.copied < copying.last {
             return Ok(false);
@@ -52,14 +52,14 @@ impl Fork {
         free(database, self.receipt.as_ref())?;
         let mut original = database.prepare_cached("SELECT number FROM contacts WHERE number = ?1")?;
         if !original.exists([copying.from])? {
-            return Err(Undone::Refused(StoreError::NotFound));
+            return Err(ChangeError::Refused(StoreError::NotFound));
         }
         database.prepare_cached("DELETE FROM unowned WHERE contact = ?1")?.execute([copying.to])?;
         self.complete(database, *copying)?;
         Ok(true)
     }
 
-    fn complete(&self, database: &Connection, copying: Copying) -> Result<(), Undone> {
+    fn complete(&self, database: &Connection, copying: Copying) -> Result<(), ChangeError> {
         insert_session(database, copying.to, &self.copy, self.copy.sequence)?;
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT ?2, sequence, state FROM snapshots WHERE contact = ?1 AND sequence <= ?3";

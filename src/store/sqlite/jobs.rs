@@ -12,7 +12,7 @@ use crate::store::jobs::{Board, ChunkResult, Claim, JOB_LIFETIME, JOB_PATIENCE, 
 use crate::store::{Answer, Receipt, StoreError};
 
 use super::SqliteStore;
-use super::change::{Change, Done, Undone, free, keep};
+use super::change::{Change, ChangeError, Done, free, keep};
 use super::readers::ReadError;
 use super::rows::{bound, identifier, integer, nanoseconds, natural, tenant, timestamp};
 
@@ -44,7 +44,7 @@ impl JobChange {
     }
 
     /// Makes the change within the transaction under way.
-    pub(super) fn make(&self, database: &Connection) -> Result<Done, Undone> {
+    pub(super) fn make(&self, database: &Connection) -> Result<Done, ChangeError> {
         match self {
             JobChange::Create(new) => new.make(database)?,
             JobChange::Keep { claim, result } => keep_chunk(database, *claim, result)?,
@@ -55,7 +55,7 @@ impl JobChange {
             }
             JobChange::Delete { id } => {
                 if database.prepare_cached("DELETE FROM jobs WHERE id = ?1")?.execute([id.to_string()])? == 0 {
-                    return Err(Undone::Refused(StoreError::NotFound));
+                    return Err(ChangeError::Refused(StoreError::NotFound));
                 }
             }
             JobChange::Sweep => {
@@ -75,7 +75,7 @@ fn since(time: Duration) -> i64 {
 }
 
 impl NewJob {
-    fn make(&self, database: &Connection) -> Result<(), Undone> {
+    fn make(&self, database: &Connection) -> Result<(), ChangeError> {
         let NewJob { job, request, limits, receipt } = self;
         free(database, receipt.as_ref())?;
         let sql = "SELECT count(*), coalesce(sum(bytes), 0), coalesce(sum(iif(finished_at IS NULL, cost, 0)), 0)
@@ -83,7 +83,7 @@ impl NewJob {
         let (jobs, bytes, cost) = database
             .prepare_cached(sql)?
             .query_row([job.tenant.name()], |row| Ok((natural(row, 0)?, natural(row, 1)?, natural(row, 2)?)))?;
-        limits.admit(jobs, bytes, cost, job).map_err(Undone::Refused)?;
+        limits.admit(jobs, bytes, cost, job).map_err(ChangeError::Refused)?;
         let sql = "INSERT INTO jobs (id, tenant, created_at, points, chunk, done, failed, bytes, cost, request)
                    VALUES (?1, ?2, ?3, ?4, ?5, 0, 0, ?6, ?7, ?8)";
         database.prepare_cached(sql)?.execute(params![
@@ -101,11 +101,11 @@ impl NewJob {
     }
 }
 
-fn keep_chunk(database: &Connection, claim: Claim, result: &ChunkResult) -> Result<(), Undone> {
+fn keep_chunk(database: &Connection, claim: Claim, result: &ChunkResult) -> Result<(), ChangeError> {
     let sql = "SELECT number FROM jobs WHERE id = ?1 AND finished_at IS NULL";
     let number: Option<i64> =
         database.prepare_cached(sql)?.query_row([claim.job.to_string()], |row| row.get(0)).optional()?;
-    let number = number.ok_or(Undone::Refused(StoreError::NotFound))?;
+    let number = number.ok_or(ChangeError::Refused(StoreError::NotFound))?;
     let sql = "INSERT OR IGNORE INTO job_chunks (job, chunk, content) VALUES (?1, ?2, ?3)";
     let new = database.prepare_cached(sql)?.execute(params![number, integer(claim.chunk)?, result.content])?;
     if new > 0 {

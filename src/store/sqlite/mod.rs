@@ -11,12 +11,12 @@ mod fault;
 mod file;
 mod fork;
 mod jobs;
-mod known;
 mod read;
 mod readers;
 mod rows;
 mod schema;
-mod torn;
+mod sequence_cache;
+mod wal_check;
 mod writer;
 
 use std::path::Path;

@@ -14,10 +14,10 @@ use tokio::sync::{mpsc, oneshot};
 
 use crate::store::{Changes, Commits, StoreError};
 
-use super::change::{Change, Done, Fork, Undone};
+use super::change::{Change, ChangeError, Done, Fork};
 use super::fault::{Stage, store_error, worth_splitting};
 use super::fork::{self, Copying};
-use super::known::Known;
+use super::sequence_cache::SequenceCache;
 
 /// Requests that share a transaction.
 const BATCH: usize = 512;
@@ -37,7 +37,7 @@ type Reply = oneshot::Sender<Result<u64, StoreError>>;
 pub(super) struct Writer {
     database: Connection,
     changes: Arc<Changes>,
-    known: Known,
+    cache: SequenceCache,
     commits: Arc<Commits>,
     /// A number that no session has had.
     next_number: i64,
@@ -66,7 +66,7 @@ impl Writer {
         Ok(Writer {
             database,
             changes,
-            known: Known::nothing(),
+            cache: SequenceCache::empty(),
             commits,
             next_number: highest + 1,
             forks,
@@ -127,13 +127,13 @@ impl Writer {
 
     fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
         let (mut number, begin) = (self.next_number, Instant::now());
-        let outcomes = self.transaction(|database, known| {
+        let outcomes = self.transaction(|database, cache| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
-                outcomes.push(match request.change.make(database, known, number) {
+                outcomes.push(match request.change.make(database, cache, number) {
                     Ok(done) => Ok(done),
-                    Err(Undone::Refused(error)) => Err(error),
-                    Err(Undone::Failed(error)) => return Err(error),
+                    Err(ChangeError::Refused(error)) => Err(error),
+                    Err(ChangeError::Failed(error)) => return Err(error),
                 });
                 number += 1;
             }
@@ -169,8 +169,8 @@ impl Writer {
             // A refusal has written a part of the copy and nothing else, and that part is removed later.
             let step = self.transaction(|database, _| match fork.proceed(database, &mut proceeded) {
                 Ok(complete) => Ok(Ok(complete)),
-                Err(Undone::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
-                Err(Undone::Failed(error)) => Err(error),
+                Err(ChangeError::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
+                Err(ChangeError::Failed(error)) => Err(error),
             });
             match step {
                 Ok(Ok(false)) => self.forks.push_front((fork, proceeded, reply)),
@@ -195,16 +195,16 @@ impl Writer {
     /// Runs a transaction to its durable end, or takes it back.
     fn transaction<T>(
         &mut self,
-        work: impl FnOnce(&Connection, &mut Known) -> rusqlite::Result<T>,
+        work: impl FnOnce(&Connection, &mut SequenceCache) -> rusqlite::Result<T>,
     ) -> Result<T, Failure> {
-        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database, &mut self.known));
+        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database, &mut self.cache));
         let outcome = match done {
             Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
             Err(error) => Err((error, Stage::Before)),
         };
         self.note(outcome.as_ref().err().map(|(error, _)| error));
         outcome.map_err(|(error, stage)| {
-            self.known.clear();
+            self.cache.clear();
             // Some failures end the transaction by themselves.
             if !self.database.is_autocommit()
                 && let Err(error) = self.run_statement("ROLLBACK")

@@ -9,9 +9,9 @@ use tokio_postgres::types::ToSql;
 
 use crate::store::StoreError;
 
-use super::fault::{Fault, Outage, Pauses};
+use super::connect::ConnectTarget;
+use super::fault::{Backoff, Fault, Outage};
 use super::sql;
-use super::target::Target;
 
 /// Connections of the pool. Reads are short; more would only make the database switch between them.
 const CONNECTIONS: usize = 8;
@@ -28,18 +28,18 @@ const COLLISIONS: usize = 5;
 
 /// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use any
 /// more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
-macro_rules! call {
-    ($link:expr, $limit:expr, $connection:ident => $work:expr) => {{
-        let mut tries = $crate::store::postgres::link::Tries::default();
+macro_rules! with_retries {
+    ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {{
+        let mut tries = $crate::store::postgres::client_pool::Tries::default();
         loop {
-            let fault = match once!($link, $limit, $connection => $work) {
+            let fault = match try_once!($pool, $limit, $connection => $work) {
                 Ok(done) => {
-                    $link.outage.end();
+                    $pool.outage.end();
                     break Ok(done);
                 }
                 Err(fault) => fault,
             };
-            if let Err(error) = tries.bear(&$link.outage, fault).await {
+            if let Err(error) = tries.retry_or_fail(&$pool.outage, fault).await {
                 break Err(error);
             }
         }
@@ -47,9 +47,9 @@ macro_rules! call {
 }
 
 /// Does work on a connection of the pool. A connection that failed or did not answer in time is not given back.
-macro_rules! once {
-    ($link:expr, $limit:expr, $connection:ident => $work:expr) => {
-        match $link.connection().await {
+macro_rules! try_once {
+    ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {
+        match $pool.connection().await {
             Err(fault) => Err(fault),
             Ok(mut object) => {
                 let $connection = &mut object;
@@ -64,23 +64,23 @@ macro_rules! once {
     };
 }
 
-pub(super) use {call, once};
+pub(super) use {try_once, with_retries};
 
 /// A parameter of a statement.
 pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 
 /// The way to the database.
-pub(super) struct Link {
-    pub(super) target: Target,
+pub(super) struct ClientPool {
+    pub(super) target: ConnectTarget,
     pub(super) outage: Outage,
     /// Whether the engine knows announcements.
     pub(super) announces: bool,
     pool: Pool,
 }
 
-impl Link {
+impl ClientPool {
     /// A pool that connects when it is first used.
-    pub(super) fn new(target: Target, announces: bool) -> Result<Link, StoreError> {
+    pub(super) fn new(target: ConnectTarget, announces: bool) -> Result<ClientPool, StoreError> {
         let config = ManagerConfig { recycling_method: RecyclingMethod::Fast };
         let manager = Manager::from_config(target.config.clone(), target.tls.clone(), config);
         let prepare = Hook::async_fn(|client, _| {
@@ -95,7 +95,7 @@ impl Link {
             .post_create(prepare)
             .build();
         let pool = pool.map_err(|error| StoreError::Failed(format!("no pool of connections: {error}")))?;
-        Ok(Link { target, outage: Outage::default(), announces, pool })
+        Ok(ClientPool { target, outage: Outage::default(), announces, pool })
     }
 
     /// A connection of the pool.
@@ -105,7 +105,7 @@ impl Link {
 
     /// The rows of a statement that only reads, or that may be repeated.
     pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>, StoreError> {
-        call!(self, ANSWER, connection => rows(connection, statement, parameters))
+        with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
     }
 
     /// The first of these rows.
@@ -117,21 +117,21 @@ impl Link {
 /// How often work has been tried.
 #[derive(Default)]
 pub(super) struct Tries {
-    pauses: Pauses,
+    backoff: Backoff,
     collisions: usize,
     count: usize,
 }
 
 impl Tries {
     /// Waits before another try, or says that there is to be none.
-    pub(super) async fn bear(&mut self, outage: &Outage, fault: Fault) -> Result<(), StoreError> {
+    pub(super) async fn retry_or_fail(&mut self, outage: &Outage, fault: Fault) -> Result<(), StoreError> {
         self.count += 1;
         match &fault {
-            Fault::Lost(text) if outage.bearable(text) && self.count < TRIES => {}
-            Fault::Again(_) if self.collisions < COLLISIONS => self.collisions += 1,
-            _ => return Err(fault.finally()),
+            Fault::Lost(text) if outage.worth_waiting(text) && self.count < TRIES => {}
+            Fault::Conflict(_) if self.collisions < COLLISIONS => self.collisions += 1,
+            _ => return Err(fault.into_store_error()),
         }
-        self.pauses.pause().await;
+        self.backoff.pause().await;
         Ok(())
     }
 }

@@ -7,17 +7,17 @@ use tokio::time::timeout;
 use tokio_postgres::{Client, Statement};
 use uuid::Uuid;
 
+use super::client_pool::{ANSWER, ClientPool, Parameter};
 use super::fault::Fault;
-use super::job::{Change, Job};
-use super::link::{ANSWER, Link, Parameter};
-use super::rows::{Moves, Receipts, Requests, Sessions, count};
+use super::request::{Change, WriteRequest};
+use super::rows::{Moves, Receipts, Requests, Sessions, from_bigint};
 use super::sql;
 
 /// Identifiers in one announcement: its payload must stay below 8000 bytes.
 const ANNOUNCED: usize = 200;
 
 /// The writer's connection.
-pub(super) struct Line {
+pub(super) struct WriterConnection {
     client: Client,
     lock: Statement,
     append: Statement,
@@ -37,17 +37,17 @@ struct Columns {
     announcements: Vec<String>,
 }
 
-impl Line {
+impl WriterConnection {
     /// Connects, and prepares what is sent again and again.
-    pub(super) async fn open(link: &Link) -> Result<Line, Fault> {
+    pub(super) async fn open(pool: &ClientPool) -> Result<WriterConnection, Fault> {
         let open = async {
-            let client = link.target.open().await?;
+            let client = pool.target.open().await?;
             let statements = [sql::LOCK, sql::APPEND, sql::CREATE].map(|statement| client.prepare(statement));
             let statements = try_join_all(statements).await?;
-            let notify = if link.announces { Some(client.prepare(sql::NOTIFY).await?) } else { None };
+            let notify = if pool.announces { Some(client.prepare(sql::NOTIFY).await?) } else { None };
             let [lock, append, create] = <[Statement; 3]>::try_from(statements)
                 .map_err(|_| Fault::Lost("a statement was not prepared".to_owned()))?;
-            Ok(Line { client, lock, append, create, notify })
+            Ok(WriterConnection { client, lock, append, create, notify })
         };
         timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())))
     }
@@ -59,8 +59,8 @@ impl Line {
 
     /// Makes all changes whose sessions are where they were expected, in one transaction. Tells at which sequence the
     /// sessions to append to were found; those that were not are missing.
-    pub(super) async fn fly(&self, jobs: &[Job]) -> Result<HashMap<Uuid, u64>, Fault> {
-        let columns = Columns::of(jobs);
+    pub(super) async fn commit_batch(&self, requests: &[WriteRequest]) -> Result<HashMap<Uuid, u64>, Fault> {
+        let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
         let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
         // The first of the columns of a receipt names the session that has to win for it, and a new one always does.
@@ -107,15 +107,15 @@ impl Line {
         created?;
         notified?;
         committed?;
-        Ok(found.iter().map(|row| (row.get(0), count(row.get(1)))).collect())
+        Ok(found.iter().map(|row| (row.get(0), from_bigint(row.get(1)))).collect())
     }
 }
 
 impl Columns {
-    fn of(jobs: &[Job]) -> Columns {
+    fn of(requests: &[WriteRequest]) -> Columns {
         let mut columns = Columns::default();
-        for job in jobs {
-            let receipts = match &job.change {
+        for request in requests {
+            let receipts = match &request.change {
                 Change::Create(session, definition) => {
                     columns.sessions.push((session, definition.clone()));
                     &mut columns.first_receipts
@@ -125,13 +125,13 @@ impl Columns {
                     let sequence = last.map_or(*expected, |record| record.sequence);
                     columns.requests.push((*id, *expected, sequence, last.map(|record| record.at)));
                     for record in records {
-                        columns.moves.push((*id, job.stamp, record));
+                        columns.moves.push((*id, request.stamp, record));
                     }
                     &mut columns.receipts
                 }
             };
-            if let Some(receipt) = &job.receipt {
-                receipts.push((job.id(), receipt));
+            if let Some(receipt) = &request.receipt {
+                receipts.push((request.id(), receipt));
             }
         }
         columns.announcements = announcements(&columns.requests.id);

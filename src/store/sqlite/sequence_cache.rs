@@ -7,13 +7,13 @@ use uuid::Uuid;
 const SESSIONS: usize = 16_384;
 
 /// Numbers and sequences of sessions, as the transaction under way leaves them. Whoever takes a transaction back clears them.
-pub(super) struct Known {
+pub(super) struct SequenceCache {
     by_id: LruCache<Uuid, (i64, u64)>,
 }
 
-impl Known {
-    pub(super) fn nothing() -> Known {
-        Known { by_id: LruCache::new(SESSIONS) }
+impl SequenceCache {
+    pub(super) fn empty() -> SequenceCache {
+        SequenceCache { by_id: LruCache::new(SESSIONS) }
     }
 
     /// The number of a session that is known to be at a sequence. To be told nothing says nothing.

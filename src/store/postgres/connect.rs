@@ -1,6 +1,6 @@
 //! Where the database is, and how the way there is protected.
 //!
-//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`Target::place`] says host, database
+//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`ConnectTarget::place`] says host, database
 //! and user.
 
 use std::sync::Arc;
@@ -30,16 +30,16 @@ pub(super) type Driver = Connection<Socket, <MakeRustlsConnect as MakeTlsConnect
 
 /// A database to connect to.
 #[derive(Clone)]
-pub(super) struct Target {
+pub(super) struct ConnectTarget {
     pub(super) config: Config,
     pub(super) tls: MakeRustlsConnect,
 }
 
-impl Target {
+impl ConnectTarget {
     /// Reads a URL.
-    pub(super) fn parse(url: &str) -> Result<Target, String> {
-        let (url, verification) = split(url)?;
-        let mut config: Config = url.parse().map_err(|error| told(&error))?;
+    pub(super) fn parse(url: &str) -> Result<ConnectTarget, String> {
+        let (url, verification) = split_tls_options(url)?;
+        let mut config: Config = url.parse().map_err(|error| error_chain(&error))?;
         if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
             return Err("the URL names no host".to_owned());
         }
@@ -55,7 +55,7 @@ impl Target {
         if config.get_application_name().is_none() {
             config.application_name("stickslip");
         }
-        Ok(Target { config, tls: MakeRustlsConnect::new(verification.config()?) })
+        Ok(ConnectTarget { config, tls: MakeRustlsConnect::new(verification.config()?) })
     }
 
     /// The database in words, without the password.
@@ -85,7 +85,7 @@ impl Target {
 }
 
 /// An error of the driver with what lies under it: alone it says little.
-pub(super) fn told(error: &Error) -> String {
+pub(super) fn error_chain(error: &Error) -> String {
     let mut text = error.to_string();
     let mut source = std::error::Error::source(error);
     while let Some(inner) = source {
@@ -97,7 +97,7 @@ pub(super) fn told(error: &Error) -> String {
 
 /// Whom to believe that the server is the right one.
 enum Verification {
-    /// Anybody: the connection is encrypted, as libpq does for `prefer` and `require`.
+    /// NoCertVerification: the connection is encrypted, as libpq does for `prefer` and `require`.
     Nobody,
     /// The certificate authorities of the system.
     System,
@@ -106,7 +106,7 @@ enum Verification {
 }
 
 /// Takes those TLS options out of a URL that the driver does not know.
-fn split(url: &str) -> Result<(String, Verification), String> {
+fn split_tls_options(url: &str) -> Result<(String, Verification), String> {
     let Some((base, query)) = url.split_once('?') else {
         return Ok((url.to_owned(), Verification::Nobody));
     };
@@ -139,7 +139,7 @@ impl Verification {
         let builder = ClientConfig::builder_with_provider(Arc::clone(&provider));
         let builder = builder.with_safe_default_protocol_versions().map_err(|error| format!("TLS: {error}"))?;
         let Some(roots) = self.roots()? else {
-            let anybody = Arc::new(Anybody(provider));
+            let anybody = Arc::new(NoCertVerification(provider));
             return Ok(builder.dangerous().with_custom_certificate_verifier(anybody).with_no_client_auth());
         };
         Ok(builder.with_root_certificates(roots).with_no_client_auth())
@@ -165,9 +165,9 @@ impl Verification {
 
 /// Believes every certificate, but checks that the server holds its key.
 #[derive(Debug)]
-struct Anybody(Arc<CryptoProvider>);
+struct NoCertVerification(Arc<CryptoProvider>);
 
-impl ServerCertVerifier for Anybody {
+impl ServerCertVerifier for NoCertVerification {
     fn verify_server_cert(
         &self,
         _: &CertificateDer<'_>,
