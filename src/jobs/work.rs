@@ -159,7 +159,7 @@ impl Jobs {
     /// Keeps what came of a chunk, as soon as the store takes it.
     async fn keep(&self, claim: Claim, result: ChunkResult, lease: Duration) -> Result<(), JobError> {
         for _ in 0..OFFERS {
-            match self.common.store.keep_chunk(claim, result.clone()).await {
+            match self.common.store.save_chunk(claim, result.clone()).await {
                 Ok(()) => return Ok(()),
                 Err(StoreError::Full(_) | StoreError::Unavailable(_)) => {
                     tokio::time::sleep(PAUSE).await;

@@ -75,7 +75,7 @@ pub async fn check(
     report: &mut (dyn FnMut(&Finding) + Send),
 ) -> Result<Checked, StoreError> {
     let mut check = Check { store, tolerance, report, checked: Checked::default() };
-    match store.examine().await {
+    match store.check_integrity().await {
         Ok(found) => found.into_iter().for_each(|what| check.found(None, what)),
         Err(error) => check.unreadable(None, "the storage", error)?,
     }

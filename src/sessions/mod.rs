@@ -17,7 +17,7 @@ mod cache;
 mod check;
 mod error;
 mod events;
-mod house;
+mod expiry;
 mod idempotency;
 mod live;
 mod meters;

@@ -58,7 +58,7 @@ impl Sessions {
             let _permit = permit;
             let Ok(state) = tokio::task::spawn_blocking(move || sealed(&contact)).await else { return };
             // The session loses nothing by it but time.
-            if let Err(error) = store.keep_snapshot(id, Snapshot { sequence, state }).await {
+            if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }).await {
                 tracing::warn!(%id, sequence, %error, "a snapshot was not kept");
             }
         });

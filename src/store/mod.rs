@@ -11,11 +11,13 @@ pub mod jobs;
 pub mod memory;
 pub mod open;
 pub mod postgres;
+mod rows;
+pub mod schema;
 pub mod sqlite;
 
 use std::sync::Arc;
 
-use futures::future::BoxFuture;
+use async_trait::async_trait;
 use jiff::Timestamp;
 use uuid::Uuid;
 
@@ -167,55 +169,64 @@ pub enum StoreError {
     Failed(String),
 }
 
-/// What a call to a store comes to.
-pub type Answer<'a, T> = BoxFuture<'a, Result<T, StoreError>>;
-
-/// A place to keep sessions. It tells whose they are, and leaves it to its callers to keep tenants apart: an identifier is as
-/// good as any other here.
+/// Storage of contacts. It says whose a contact is and leaves it to its callers to keep tenants apart: any identifier is
+/// accepted here.
+#[async_trait]
 pub trait Store: JobStore {
     /// Whether it can serve.
-    fn ready(&self) -> Answer<'_, ()>;
+    async fn ready(&self) -> Result<(), StoreError>;
 
-    /// Stores a new session without a past, and the receipt with it.
-    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    /// Stores a new session that has not moved, and the receipt with it.
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<(), StoreError>;
 
     /// The session.
-    fn find(&self, id: Uuid) -> Answer<'_, Session>;
+    async fn find(&self, id: Uuid) -> Result<Session, StoreError>;
 
-    /// The sequence of a session: all that somebody who knows the rest has to ask.
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64>;
+    /// The sequence of a session: all that a caller who has the rest cached needs to ask.
+    async fn sequence(&self, id: Uuid) -> Result<u64, StoreError>;
 
-    /// At most `limit` sessions of a tenant, or of all of them, with identifiers beyond `after`, in order. Without their
-    /// definitions: a page of those could be larger than the memory.
-    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>>;
+    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order. Without
+    /// their definitions: a page of those could be larger than the memory.
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Vec<SessionSummary>, StoreError>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.
-    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    async fn append(
+        &self,
+        id: Uuid,
+        expected: u64,
+        records: Vec<Record>,
+        receipt: Option<Receipt>,
+    ) -> Result<(), StoreError>;
 
-    /// At most `limit` moves of a session with numbers beyond `after`, in order.
-    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>>;
+    /// At most `limit` moves of a session with sequences greater than `after`, in order.
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, StoreError>;
 
-    /// Stores `copy`, with the past of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
-    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    /// Stores `copy`, with the moves of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError>;
 
-    /// Deletes a session that is at sequence `expected`, and its past.
-    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()>;
+    /// Deletes a session that is at sequence `expected`, and its moves.
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError>;
 
     /// The receipt for an idempotency key, if the key has been used within [`RECEIPT_LIFETIME`].
-    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>>;
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError>;
 
     /// The newest snapshot of a session, if there is one.
-    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>>;
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>, StoreError>;
 
-    /// Keeps a snapshot in place of an older one. Nothing happens where the session is gone or a newer one is kept.
-    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()>;
+    /// Stores a snapshot in place of an older one. Does nothing where the session is gone or a newer snapshot is stored.
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError>;
 
-    /// Deletes receipts past [`RECEIPT_LIFETIME`], and, where `idle_since` is given, the sessions that have not moved since.
-    /// Those are [`StoreError::Expired`] from then on. Jobs go too whose time is over. Returns how many sessions went.
-    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64>;
+    /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the sessions
+    /// that have not moved since. Those are [`StoreError::Expired`] from then on. Returns how many sessions expired.
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError>;
 
-    /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
+    /// Wakes those who wait for changes, whichever process on the same storage makes them.
     fn changes(&self) -> &Changes;
 
     /// What it has committed; none if it has nothing to commit.
@@ -223,8 +234,8 @@ pub trait Store: JobStore {
         None
     }
 
-    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no session.
-    fn examine(&self) -> Answer<'_, Vec<String>> {
-        Box::pin(std::future::ready(Ok(Vec::new())))
+    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no contact.
+    async fn check_integrity(&self) -> Result<Vec<String>, StoreError> {
+        Ok(Vec::new())
     }
 }

@@ -1,6 +1,7 @@
 //! `stickslip backup`: a copy taken while the service writes holds every move that was acknowledged before, bit for bit.
 
 use crate::common;
+use crate::fixtures::url;
 
 use std::collections::HashMap;
 use std::fs;
@@ -21,10 +22,6 @@ const SESSIONS: usize = 6;
 const COPIES: usize = 4;
 /// Acknowledged moves of each session between two copies.
 const MOVES: u64 = 25;
-
-fn url(path: &Path) -> String {
-    format!("sqlite:{}", path.display())
-}
 
 /// Makes a copy by the command line; what it says on standard error if it refuses.
 fn backup(store: &str, copy: &Path) -> Result<(), String> {

@@ -1,6 +1,7 @@
 //! `stickslip check`: it finds every kind of damage, and none in a sound store.
 
 use crate::common;
+use crate::fixtures::{along, url};
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,17 +14,9 @@ use common::process::Process;
 use common::{create, run};
 use rusqlite::Connection;
 use stickslip_wire::client::{Client, Options};
-use stickslip_wire::{ForkRequest, Move, Path as Moves, PathRequest, Steps};
+use stickslip_wire::{ForkRequest, Move};
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
-
-fn url(path: &Path) -> String {
-    format!("sqlite:{}", path.display())
-}
-
-fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
-}
 
 async fn check(store: &str, more: &[&str]) -> Output {
     let arguments: Vec<String> =
@@ -68,7 +61,7 @@ async fn fill(client: &Client) -> [Uuid; 4] {
             Options { idempotency_key: Some(format!("move {number}").replace(' ', "-")), ..Options::default() };
         client.apply(keyed, &random.step().into(), &options).await.unwrap();
     }
-    // Of minus nought a database makes what it likes.
+    // Of -0.0 a database makes what it likes.
     client.apply(still, &Move::displacement(-0.0).into(), &options).await.unwrap();
     [long, fork, keyed, still]
 }
@@ -117,7 +110,7 @@ async fn every_kind_of_damage_is_found_in_a_file() {
             &["regime Separated instead of Stick"],
         ),
         (
-            "the sign of nought",
+            "the sign of zero",
             format!("UPDATE moves SET negative_zeros = 1 << 6 WHERE contact = {still_number}"),
             &["move 1 is recorded with force -0e0 instead of 0e0"],
         ),

@@ -1,6 +1,7 @@
 //! Several servers on one PostgreSQL: they serve as one, and go on when a part of them fails.
 
 use crate::common;
+use crate::fixtures::soon;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -274,10 +275,6 @@ async fn a_lost_database_is_admitted_and_found_again() {
         }
     );
     assert_eq!(history(&server.client, id.parse().unwrap()).await.len(), count);
-}
-
-async fn soon<T>(future: impl Future<Output = T>) -> T {
-    tokio::time::timeout(Duration::from_secs(60), future).await.expect("nothing happened")
 }
 
 #[tokio::test]

@@ -126,14 +126,14 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     damaged[taken.state.len() / 2] ^= 0x10;
     let cut = taken.state[..taken.state.len() - 8].to_vec();
     for (sequence, state) in [(401, damaged), (402, cut), (403, Vec::new()), (501, taken.state.clone())] {
-        store.keep_snapshot(other, Snapshot { sequence, state }).await.unwrap();
+        store.save_snapshot(other, Snapshot { sequence, state }).await.unwrap();
         assert_eq!(store.snapshot(other).await.unwrap().unwrap().sequence, sequence);
         assert_eq!(client.contact(other).await.unwrap(), truth);
     }
     // A sound one is not held against the moves: that would be the replay that it spares.
     let third = client.create(&create(), &options).await.unwrap().id;
     client.apply(third, &Move::displacement(1e-9).into(), &options).await.unwrap();
-    store.keep_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
+    store.save_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
     let (found, expected) = (client.contact(third).await.unwrap(), client.contact(one).await.unwrap());
     assert_eq!((found.sequence, bits(&found.state)), (1, bits(&expected.state)));
 }
@@ -231,9 +231,9 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_
     let mut events = Box::pin(client.events(idle, Some(0)).await.unwrap());
     tokio::time::sleep(Duration::from_millis(1_100)).await;
     let busy = client.create(&create(), &options).await.unwrap().id;
-    assert_eq!(sessions.sweep(None).await.unwrap(), 0);
+    assert_eq!(sessions.purge_expired(None).await.unwrap(), 0);
     client.contact(idle).await.unwrap();
-    assert_eq!(sessions.sweep(Some(Duration::from_secs(1))).await.unwrap(), 1);
+    assert_eq!(sessions.purge_expired(Some(Duration::from_secs(1))).await.unwrap(), 1);
 
     let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("the events did not end");
     assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));

@@ -8,9 +8,9 @@ use tokio_postgres::{Client, Statement};
 use uuid::Uuid;
 
 use super::client_pool::{ANSWER, ClientPool, Parameter};
+use super::columns::{Moves, Receipts, Requests, Sessions, from_bigint};
 use super::fault::Fault;
 use super::request::{Change, WriteRequest};
-use super::rows::{Moves, Receipts, Requests, Sessions, from_bigint};
 use super::sql;
 
 /// Identifiers in one announcement: its payload must stay below 8000 bytes.
@@ -49,7 +49,7 @@ impl WriterConnection {
                 .map_err(|_| Fault::Lost("a statement was not prepared".to_owned()))?;
             Ok(WriterConnection { client, lock, append, create, notify })
         };
-        timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())))
+        timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::no_answer()))
     }
 
     /// Whether it can still be used, as far as is known.
@@ -98,7 +98,7 @@ impl WriterConnection {
                 self.client.batch_execute(sql::COMMIT),
             )
         };
-        let landed = timeout(ANSWER, flight).await.map_err(|_| Fault::Lost("no answer in time".to_owned()))?;
+        let landed = timeout(ANSWER, flight).await.map_err(|_| Fault::no_answer())?;
         // The first failure is the cause of the others, and of a commit that was none.
         let (begun, found, appended, created, notified, committed) = landed;
         begun?;

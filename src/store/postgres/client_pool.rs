@@ -54,7 +54,7 @@ macro_rules! try_once {
             Ok(mut object) => {
                 let $connection = &mut object;
                 let done = tokio::time::timeout($limit, $work).await;
-                let done = done.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())));
+                let done = done.unwrap_or_else(|_| Err(Fault::no_answer()));
                 if matches!(done, Err(Fault::Lost(_))) {
                     drop(deadpool_postgres::Object::take(object));
                 }

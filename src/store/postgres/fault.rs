@@ -91,6 +91,11 @@ fn refused(refusal: &DbError) -> Fault {
 }
 
 impl Fault {
+    /// The database has not answered in time; whether the change was made is unknown.
+    pub(super) fn no_answer() -> Fault {
+        Fault::Lost("no answer in time".to_owned())
+    }
+
     /// What is left to say when it is not tried again.
     pub(super) fn into_store_error(self) -> StoreError {
         match self {

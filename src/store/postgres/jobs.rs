@@ -1,29 +1,28 @@
-//! Jobs in the database, whose chunks all replicas take.
+//! Jobs in the database, whose chunks all replicas compute.
 //!
-//! Whoever takes a chunk has a lease on it, and renews it while it works. The chunks of a replica that is gone are taken by
-//! others when its leases are over.
+//! A worker has a lease on the chunk that it computes, and renews it. The chunks of a replica that is gone are claimed by others
+//! when its leases are over.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use async_trait::async_trait;
 use deadpool_postgres::Object;
-use futures::FutureExt as _;
-use jiff::Timestamp;
-use tokio_postgres::Row;
 use uuid::Uuid;
 
-use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_PATIENCE, Job, JobLimits, JobStore};
-use crate::store::{Answer, RECEIPT_LIFETIME, Receipt, StoreError, Tenant};
+use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
+use crate::store::rows;
+use crate::store::{RECEIPT_LIFETIME, Receipt, StoreError};
 
 use super::PostgresStore;
 use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
+use super::columns::{from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
-use super::rows::{from_bigint, join_time, split_time, to_bigint, unreadable};
 use super::sql;
 use super::transactions::{begin, execute};
 
-/// Jobs that one statement sweeps: their results are large.
-const SWEPT: i64 = 4;
+/// Jobs that one statement deletes: their results are large.
+const PURGED_AT_ONCE: i64 = 4;
 
 /// A job to be stored.
 struct NewJob {
@@ -42,7 +41,7 @@ impl NewJob {
         execute(&transaction, sql::LOCK_TENANT, &[&i64::from(crc32fast::hash(tenant.as_bytes()))]).await?;
         let statement = transaction.prepare_cached(sql::JOBS_OF_TENANT).await?;
         let found = transaction.query_one(&statement, &[&tenant]).await?;
-        limits.admit(from_bigint(found.get(0)), from_bigint(found.get(1)), from_bigint(found.get(2)), job)?;
+        limits.check(from_bigint(found.get(0)), from_bigint(found.get(1)), from_bigint(found.get(2)), job)?;
         let (at, ns) = split_time(job.created_at);
         let (points, chunk) = (to_bigint(job.points), to_bigint(job.chunk));
         let (bytes, cost) = (to_bigint(job.bytes), to_bigint(job.cost));
@@ -64,23 +63,6 @@ impl NewJob {
     }
 }
 
-fn job(row: &Row) -> Result<Job, StoreError> {
-    let finished: Option<std::time::SystemTime> = row.get(4);
-    Ok(Job {
-        id: row.get(0),
-        tenant: Tenant::new(row.get(1)),
-        created_at: join_time(row.get(2), row.get(3))?,
-        finished_at: finished.map(Timestamp::try_from).transpose().map_err(|error| unreadable(&error))?,
-        error: row.get(5),
-        points: from_bigint(row.get(6)),
-        chunk: from_bigint(row.get(7)),
-        done: from_bigint(row.get(8)),
-        failed: from_bigint(row.get(9)),
-        bytes: from_bigint(row.get(10)),
-        cost: from_bigint(row.get(11)),
-    })
-}
-
 impl ClientPool {
     async fn create_job(&self, new: NewJob) -> Result<(), StoreError> {
         let commit_sent = AtomicBool::new(false);
@@ -98,20 +80,8 @@ impl ClientPool {
         }
     }
 
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>, StoreError> {
-        let lease = lease.as_secs_f64();
-        let mut froms = vec![Uuid::nil()];
-        froms.extend(after);
-        while let Some(from) = froms.pop() {
-            if let Some(row) = self.row(sql::CLAIM, &[&from, &owner, &lease]).await? {
-                return Ok(Some(Claim { job: row.get(0), chunk: from_bigint(row.get(1)), owner }));
-            }
-        }
-        Ok(None)
-    }
-
     /// Whether there was such a job.
-    async fn keep_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
+    async fn save_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         let Claim { job, chunk, .. } = claim;
         let statement = transaction.prepare_cached(sql::LOCK_JOB).await?;
@@ -150,93 +120,84 @@ impl ClientPool {
         Ok(true)
     }
 
-    /// Deletes the jobs whose time is over.
-    pub(super) async fn sweep_jobs(&self) -> Result<(), StoreError> {
-        while to_bigint(with_retries!(self, LONG_ANSWER, connection => sweep(connection))?) == SWEPT {}
+    /// Deletes the jobs past their time.
+    pub(super) async fn purge_jobs(&self) -> Result<(), StoreError> {
+        while to_bigint(with_retries!(self, LONG_ANSWER, connection => purge(connection))?) == PURGED_AT_ONCE {}
         Ok(())
     }
 }
 
-async fn sweep(connection: &mut Object) -> Result<u64, Fault> {
+async fn purge(connection: &mut Object) -> Result<u64, Fault> {
     let transaction = begin(connection).await?;
-    let times = [JOB_LIFETIME, JOB_PATIENCE].map(|time| time.as_secs_f64());
-    let gone = execute(&transaction, sql::PURGE_JOBS, &[&times[0], &times[1], &SWEPT]).await?;
+    let times = [JOB_LIFETIME, JOB_TIME_LIMIT].map(|time| time.as_secs_f64());
+    let gone = execute(&transaction, sql::PURGE_JOBS, &[&times[0], &times[1], &PURGED_AT_ONCE]).await?;
     transaction.commit().await?;
     Ok(gone)
 }
 
+#[async_trait]
 impl JobStore for PostgresStore {
-    fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.pool.create_job(NewJob { job, request, limits, receipt }).boxed()
+    async fn create_job(
+        &self,
+        job: Job,
+        request: String,
+        limits: JobLimits,
+        receipt: Option<Receipt>,
+    ) -> Result<(), StoreError> {
+        self.pool.create_job(NewJob { job, request, limits, receipt }).await
     }
 
-    fn job(&self, id: Uuid) -> Answer<'_, Job> {
-        async move { self.pool.row(sql::JOB, &[&id]).await?.as_ref().map_or(Err(StoreError::NotFound), job) }.boxed()
+    async fn job(&self, id: Uuid) -> Result<Job, StoreError> {
+        let row = self.pool.row(sql::JOB, &[&id]).await?.ok_or(StoreError::NotFound)?;
+        rows::job(&mut reader(&row))
     }
 
-    fn job_request(&self, id: Uuid) -> Answer<'_, String> {
-        async move {
-            let found = self.pool.row(sql::JOB_REQUEST, &[&id]).await?;
-            found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
+    async fn job_request(&self, id: Uuid) -> Result<String, StoreError> {
+        let found = self.pool.row(sql::JOB_REQUEST, &[&id]).await?;
+        found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
+    }
+
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>, StoreError> {
+        // First the jobs after the last one, then all of them.
+        for from in after.into_iter().chain([Uuid::nil()]) {
+            if let Some(row) = self.pool.row(sql::CLAIM, &[&from, &owner, &lease.as_secs_f64()]).await? {
+                return Ok(Some(Claim { job: row.get(0), chunk: from_bigint(row.get(1)), owner }));
+            }
         }
-        .boxed()
+        Ok(None)
     }
 
-    fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Answer<'_, Option<Claim>> {
-        self.pool.claim(owner, after, lease).boxed()
+    async fn renew(&self, Claim { job, chunk, owner }: Claim, lease: Duration) -> Result<bool, StoreError> {
+        let (chunk, lease) = (to_bigint(chunk), lease.as_secs_f64());
+        Ok(self.pool.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
     }
 
-    fn renew(&self, claim: Claim, lease: Duration) -> Answer<'_, bool> {
-        async move {
-            let Claim { job, chunk, owner } = claim;
-            let (chunk, lease) = (to_bigint(chunk), lease.as_secs_f64());
-            Ok(self.pool.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
-        }
-        .boxed()
+    async fn release(&self, Claim { job, chunk, owner }: Claim) -> Result<(), StoreError> {
+        self.pool.rows(sql::RELEASE, &[&job, &to_bigint(chunk), &owner]).await.map(drop)
     }
 
-    fn release(&self, claim: Claim) -> Answer<'_, ()> {
-        async move {
-            let Claim { job, chunk, owner } = claim;
-            self.pool.rows(sql::RELEASE, &[&job, &to_bigint(chunk), &owner]).await.map(drop)
-        }
-        .boxed()
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<(), StoreError> {
+        let found = with_retries!(self.pool, ANSWER, connection => self.pool.save_chunk(connection, claim, &result))?;
+        self.changes.wake(claim.job);
+        if found { Ok(()) } else { Err(StoreError::NotFound) }
     }
 
-    fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()> {
-        async move {
-            let kept =
-                with_retries!(self.pool, ANSWER, connection => self.pool.keep_chunk(connection, claim, &result))?;
-            self.changes.wake(claim.job);
-            if kept { Ok(()) } else { Err(StoreError::NotFound) }
-        }
-        .boxed()
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<(), StoreError> {
+        with_retries!(self.pool, ANSWER, connection => self.pool.fail_job(connection, id, &error))?;
+        self.changes.wake(id);
+        Ok(())
     }
 
-    fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()> {
-        async move {
-            with_retries!(self.pool, ANSWER, connection => self.pool.fail_job(connection, id, &error))?;
-            self.changes.wake(id);
-            Ok(())
-        }
-        .boxed()
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, StoreError> {
+        let found = self.pool.rows(sql::CHUNKS, &[&id, &to_bigint(first), &to_bigint(limit as u64)]).await?;
+        Ok(found.iter().map(|row| row.get(0)).collect())
     }
 
-    fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>> {
-        async move {
-            let found = self.pool.rows(sql::CHUNKS, &[&id, &to_bigint(first), &to_bigint(limit as u64)]).await?;
-            Ok(found.iter().map(|row| row.get(0)).collect())
-        }
-        .boxed()
-    }
-
-    fn delete_job(&self, id: Uuid) -> Answer<'_, ()> {
-        async move {
-            let commit_sent = AtomicBool::new(false);
-            let gone = with_retries!(self.pool, LONG_ANSWER, connection => self.pool.delete_job(connection, id, &commit_sent))?;
-            self.changes.wake(id);
-            if gone { Ok(()) } else { Err(StoreError::NotFound) }
-        }
-        .boxed()
+    async fn delete_job(&self, id: Uuid) -> Result<(), StoreError> {
+        let commit_sent = AtomicBool::new(false);
+        let deleted =
+            with_retries!(self.pool, LONG_ANSWER, connection => self.pool.delete_job(connection, id, &commit_sent))?;
+        self.changes.wake(id);
+        if deleted { Ok(()) } else { Err(StoreError::NotFound) }
     }
 }

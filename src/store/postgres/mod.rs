@@ -9,14 +9,14 @@
 
 mod batch_tx;
 mod client_pool;
+mod columns;
 mod connect;
 mod fault;
 mod jobs;
 mod listen;
 mod outcome;
 mod request;
-mod rows;
-mod schema;
+pub mod schema;
 mod sql;
 mod transactions;
 mod writer;
@@ -24,22 +24,22 @@ mod writer;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use futures::FutureExt as _;
+use async_trait::async_trait;
 use jiff::Timestamp;
 use tokio::task::AbortHandle;
+use tokio::time::timeout;
 use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
-use super::{
-    Answer, Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant,
-};
+use super::rows;
+use super::{Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
 
 use client_pool::ClientPool;
+use columns::{from_bigint, reader, to_bigint};
 use connect::ConnectTarget;
 use fault::{Backoff, Fault};
-use request::{Change, WriteRequest};
-use rows::{from_bigint, to_bigint};
+use request::Change;
 use schema::SchemaError;
 use writer::Writer;
 
@@ -116,7 +116,7 @@ async fn prepared(target: &ConnectTarget) -> Result<bool, StoreError> {
     let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
         let fault = match target.open().await.map_err(SchemaError::from) {
-            Ok(mut client) => match schema::migrate(&mut client).await {
+            Ok(mut client) => match schema::migrate(&mut client, schema::MIGRATIONS).await {
                 Ok(()) => return Ok(client.batch_execute(sql::PROBE_NOTIFY).await.is_ok()),
                 Err(error) => error.into(),
             },
@@ -133,7 +133,7 @@ impl From<SchemaError> for Fault {
     fn from(error: SchemaError) -> Fault {
         match error {
             SchemaError::Database(error) => error.into(),
-            newer => Fault::Refused(StoreError::Failed(newer.to_string())),
+            SchemaError::Version(error) => Fault::Refused(StoreError::Failed(error.to_string())),
         }
     }
 }
@@ -144,138 +144,116 @@ fn definition(session: &Session) -> Result<String, StoreError> {
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
 }
 
+#[async_trait]
 impl Store for PostgresStore {
-    fn ready(&self) -> Answer<'_, ()> {
-        async {
-            let asked = async {
-                client_pool::try_once!(self.pool, READY, connection => client_pool::rows(connection, sql::READY, &[]))
-            };
-            let asked = tokio::time::timeout(READY, asked).await;
-            match asked.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned()))) {
-                Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
-                Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
-                Err(fault) => Err(fault.into_store_error()),
-            }
+    async fn ready(&self) -> Result<(), StoreError> {
+        let asked = async {
+            client_pool::try_once!(self.pool, READY, connection => client_pool::rows(connection, sql::READY, &[]))
+        };
+        match timeout(READY, asked).await.unwrap_or_else(|_| Err(Fault::no_answer())) {
+            Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
+            Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
+            Err(fault) => Err(fault.into_store_error()),
         }
-        .boxed()
     }
 
-    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        async {
-            let definition = definition(&session)?;
-            let change = Change::Create(session, definition);
-            self.writer.write(|answer| WriteRequest { change, receipt, stamp: request::stamp(), answer }).await
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+        let definition = definition(&session)?;
+        self.writer.write(Change::Create(session, definition), receipt).await
+    }
+
+    async fn find(&self, id: Uuid) -> Result<Session, StoreError> {
+        match self.pool.row(sql::FIND, &[&id]).await? {
+            Some(row) => rows::session(&mut reader(&row)),
+            None => Err(self.pool.missing(id).await),
         }
-        .boxed()
     }
 
-    fn find(&self, id: Uuid) -> Answer<'_, Session> {
-        async move {
-            match self.pool.row(sql::FIND, &[&id]).await? {
-                Some(row) => rows::session(&row),
-                None => Err(self.pool.missing(id).await),
-            }
+    async fn sequence(&self, id: Uuid) -> Result<u64, StoreError> {
+        match self.pool.row(sql::SEQUENCE, &[&id]).await? {
+            Some(row) => Ok(from_bigint(row.get(0))),
+            None => Err(self.pool.missing(id).await),
         }
-        .boxed()
     }
 
-    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
-        async move {
-            // Nothing lies before the nil identifier, and no session has it.
-            let after = after.unwrap_or(Uuid::nil());
-            let limit = to_bigint(limit as u64);
-            let found = match of {
-                None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,
-                Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
-            };
-            found.iter().map(rows::summary).collect()
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Vec<SessionSummary>, StoreError> {
+        // Nothing lies before the nil identifier, and no session has it.
+        let (after, limit) = (after.unwrap_or(Uuid::nil()), to_bigint(limit as u64));
+        let found = match tenant {
+            None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,
+            Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
+        };
+        found.iter().map(|row| rows::summary(&mut reader(row))).collect()
+    }
+
+    async fn append(
+        &self,
+        id: Uuid,
+        expected: u64,
+        records: Vec<Record>,
+        receipt: Option<Receipt>,
+    ) -> Result<(), StoreError> {
+        self.writer.write(Change::Append { id, expected, records }, receipt).await
+    }
+
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, StoreError> {
+        let found = self.pool.rows(sql::HISTORY, &[&id, &to_bigint(after), &to_bigint(limit as u64)]).await?;
+        if found.is_empty() {
+            self.sequence(id).await?;
         }
-        .boxed()
+        found.iter().map(|row| rows::record(&mut reader(row))).collect()
     }
 
-    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        let change = Change::Append { id, expected, records };
-        self.writer.write(move |answer| WriteRequest { change, receipt, stamp: request::stamp(), answer }).boxed()
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+        self.pool.fork(id, copy, receipt).await
     }
 
-    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
-        async move {
-            let found = self.pool.rows(sql::HISTORY, &[&id, &to_bigint(after), &to_bigint(limit as u64)]).await?;
-            if found.is_empty() && self.pool.row(sql::SEQUENCE, &[&id]).await?.is_none() {
-                return Err(self.pool.missing(id).await);
-            }
-            found.iter().map(rows::record).collect()
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError> {
+        self.pool.delete(id, expected).await?;
+        self.changes.wake(id);
+        Ok(())
+    }
+
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+        self.pool.receipt(key).await
+    }
+
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>, StoreError> {
+        let found = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
+        if found.is_none() {
+            self.sequence(id).await?;
         }
-        .boxed()
+        found.map(|row| rows::snapshot(&mut reader(&row))).transpose()
     }
 
-    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.pool.fork(id, copy, receipt).boxed()
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+        self.pool.save_snapshot(id, snapshot).await
     }
 
-    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
-        async move {
-            self.pool.delete(id, expected).await?;
-            self.changes.wake(id);
-            Ok(())
-        }
-        .boxed()
-    }
-
-    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
-        self.pool.receipt(key).boxed()
-    }
-
-    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
-        async move {
-            let kept = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
-            if kept.is_none() && self.pool.row(sql::SEQUENCE, &[&id]).await?.is_none() {
-                return Err(self.pool.missing(id).await);
-            }
-            Ok(kept.as_ref().map(rows::snapshot))
-        }
-        .boxed()
-    }
-
-    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
-        self.pool.keep_snapshot(id, snapshot).boxed()
-    }
-
-    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
-        async move {
-            self.pool.sweep_jobs().await?;
-            let gone = self.pool.sweep(idle_since).await?;
-            gone.iter().for_each(|id| self.changes.wake(*id));
-            Ok(gone.len() as u64)
-        }
-        .boxed()
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError> {
+        self.pool.purge_jobs().await?;
+        let expired = self.pool.purge_expired(idle_since).await?;
+        expired.iter().for_each(|id| self.changes.wake(*id));
+        Ok(expired.len() as u64)
     }
 
     fn changes(&self) -> &Changes {
         &self.changes
     }
 
-    fn examine(&self) -> Answer<'_, Vec<String>> {
-        async {
-            let strays = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
-            let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
-            Ok(strays.iter().map(|row| line(row.get(0))).collect())
-        }
-        .boxed()
-    }
-
     fn commits(&self) -> Option<&Commits> {
         Some(&self.writer.commits)
     }
 
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
-        async move {
-            match self.pool.row(sql::SEQUENCE, &[&id]).await? {
-                Some(row) => Ok(from_bigint(row.get(0))),
-                None => Err(self.pool.missing(id).await),
-            }
-        }
-        .boxed()
+    async fn check_integrity(&self) -> Result<Vec<String>, StoreError> {
+        let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
+        let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
+        Ok(orphans.iter().map(|row| line(row.get(0))).collect())
     }
 }
 
@@ -283,6 +261,6 @@ impl ClientPool {
     /// [`Store::receipt`]
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
         let row = self.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
-        row.map(|row| rows::receipt(key, &row)).transpose()
+        row.map(|row| rows::receipt(key, &mut reader(&row))).transpose()
     }
 }

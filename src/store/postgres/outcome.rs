@@ -3,8 +3,8 @@
 use crate::store::{RECEIPT_LIFETIME, StoreError, Tenant};
 
 use super::client_pool::ClientPool;
+use super::columns::{from_bigint, to_bigint};
 use super::request::{Change, WriteRequest};
-use super::rows::{from_bigint, to_bigint};
 use super::sql;
 
 /// What became of a request.

@@ -62,7 +62,7 @@ pub(super) fn stamp() -> i64 {
 
 /// Takes from the backlog what one transaction can hold: of each session and each key one request at most, as the order
 /// of those decides who wins.
-pub(super) fn gather(backlog: &mut VecDeque<WriteRequest>) -> Vec<WriteRequest> {
+pub(super) fn collect_batch(backlog: &mut VecDeque<WriteRequest>) -> Vec<WriteRequest> {
     let (mut ids, mut keys, mut moves) = (HashSet::new(), HashSet::new(), 0);
     let (mut batch, mut rest) = (Vec::new(), VecDeque::new());
     while let Some(request) = backlog.pop_front() {
@@ -82,7 +82,7 @@ pub(super) fn gather(backlog: &mut VecDeque<WriteRequest>) -> Vec<WriteRequest> 
 
 #[cfg(test)]
 mod tests {
-    use super::{Change, WriteRequest, gather, stamp};
+    use super::{Change, WriteRequest, collect_batch, stamp};
     use crate::store::{Receipt, Reply, RequestKey};
     use std::collections::VecDeque;
     use tokio::sync::oneshot;
@@ -110,7 +110,7 @@ mod tests {
         let mut backlog = VecDeque::from(requests);
         let mut batches = Vec::new();
         while !backlog.is_empty() {
-            let batch = gather(&mut backlog);
+            let batch = collect_batch(&mut backlog);
             batches.push(batch.iter().map(WriteRequest::id).collect::<Vec<_>>());
         }
         assert_eq!(batches, [vec![a, b], vec![a, c], vec![c]]);

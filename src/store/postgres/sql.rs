@@ -83,7 +83,7 @@ WHERE key = ANY($1) AND created_at <= now() - $2::double precision * INTERVAL '1
 pub(super) const READY: &str = "SELECT current_setting('transaction_read_only')";
 
 pub(super) const FIND: &str = "
-SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant
+SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns, definition, tenant
 FROM contacts WHERE id = $1";
 
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
@@ -99,9 +99,9 @@ SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
 FROM contacts WHERE tenant = $3 AND id > $1 ORDER BY id LIMIT $2";
 
 pub(super) const HISTORY: &str = "
-SELECT sequence, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
+SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
     displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
-    elastic_energy, memory_depth, at, at_ns
+    elastic_energy, memory_depth
 FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3";
 
 pub(super) const RECEIPT: &str = "

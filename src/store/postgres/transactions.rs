@@ -15,8 +15,8 @@ use crate::store::{RECEIPT_LIFETIME, Receipt, Session, Snapshot, StoreError, Ten
 
 use super::batch_tx::announcements;
 use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
+use super::columns::{Receipts, Sessions, split_time, to_bigint};
 use super::fault::Fault;
-use super::rows::{Receipts, Sessions, split_time, to_bigint};
 use super::sql;
 
 /// Receipts that one statement sweeps.
@@ -39,7 +39,7 @@ impl ClientPool {
     /// Why a session is not at a sequence where it was a moment ago.
     async fn not_at(&self, id: Uuid) -> StoreError {
         match self.row(sql::SEQUENCE, &[&id]).await {
-            Ok(Some(row)) => StoreError::Stale { found: super::rows::from_bigint(row.get(0)) },
+            Ok(Some(row)) => StoreError::Stale { found: super::columns::from_bigint(row.get(0)) },
             Ok(None) => self.missing(id).await,
             Err(error) => error,
         }
@@ -99,8 +99,8 @@ impl ClientPool {
         }
     }
 
-    /// [`crate::store::Store::keep_snapshot`]
-    pub(super) async fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+    /// [`crate::store::Store::save_snapshot`]
+    pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
         let keep = async |connection: &Object| {
             let statement = connection.prepare_cached(sql::SAVE_SNAPSHOT).await?;
             match connection.execute(&statement, &[&id, &to_bigint(snapshot.sequence), &snapshot.state]).await {
@@ -112,9 +112,9 @@ impl ClientPool {
         with_retries!(self, ANSWER, connection => keep(connection))
     }
 
-    /// [`crate::store::Store::sweep`]
-    pub(super) async fn sweep(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>, StoreError> {
-        while to_bigint(with_retries!(self, ANSWER, connection => sweep_receipts(connection))?) == RECEIPTS {}
+    /// [`crate::store::Store::purge_expired`]
+    pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>, StoreError> {
+        while to_bigint(with_retries!(self, ANSWER, connection => purge_receipts(connection))?) == RECEIPTS {}
         let Some((since, since_ns)) = idle_since.map(split_time) else {
             return Ok(Vec::new());
         };
@@ -125,7 +125,7 @@ impl ClientPool {
             let before = gone.len();
             for some in ids.chunks(IDLE) {
                 gone.extend(with_retries!(self, LONG_ANSWER, connection =>
-                    self.sweep_idle(connection, &[&some, &since, &since_ns]))?);
+                    self.purge_idle(connection, &[&some, &since, &since_ns]))?);
             }
             // A page of which nothing went is in the hands of another replica.
             if to_bigint(ids.len() as u64) < IDLE_PAGE || gone.len() == before {
@@ -134,7 +134,7 @@ impl ClientPool {
         }
     }
 
-    async fn sweep_idle(&self, connection: &mut Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
+    async fn purge_idle(&self, connection: &mut Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
         let transaction = begin(connection).await?;
         let statement = transaction.prepare_cached(sql::PURGE_IDLE).await?;
         let gone = transaction.query(&statement, which).await?;
@@ -188,7 +188,7 @@ impl Fork {
     }
 }
 
-async fn sweep_receipts(connection: &Object) -> Result<u64, Fault> {
+async fn purge_receipts(connection: &Object) -> Result<u64, Fault> {
     let statement = connection.prepare_cached(sql::PURGE_RECEIPTS).await?;
     Ok(connection.execute(&statement, &[&RECEIPT_LIFETIME.as_secs_f64(), &RECEIPTS]).await?)
 }

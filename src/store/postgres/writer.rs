@@ -8,13 +8,13 @@ use futures::future::join_all;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
-use crate::store::{Changes, Commits, RECEIPT_LIFETIME, StoreError};
+use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Receipt, StoreError};
 
 use super::batch_tx::WriterConnection;
 use super::client_pool::ClientPool;
 use super::fault::{Backoff, Fault};
 use super::outcome::{Outcome, outcome_of};
-use super::request::{Change, WriteRequest, gather};
+use super::request::{Change, WriteRequest, collect_batch, stamp};
 use super::sql;
 
 /// Changes that may wait.
@@ -42,13 +42,11 @@ impl Writer {
     }
 
     /// Makes a change, and returns when it is committed.
-    pub(super) async fn write(
-        &self,
-        request: impl FnOnce(oneshot::Sender<Result<(), StoreError>>) -> WriteRequest,
-    ) -> Result<(), StoreError> {
+    pub(super) async fn write(&self, change: Change, receipt: Option<Receipt>) -> Result<(), StoreError> {
         let _pending = self.commits.pending.enter();
         let (answer, answered) = oneshot::channel();
-        match timeout(PATIENCE, self.queue.send(request(answer))).await {
+        let request = WriteRequest { change, receipt, stamp: stamp(), answer };
+        match timeout(PATIENCE, self.queue.send(request)).await {
             Ok(Ok(())) => {}
             Ok(Err(_)) => return Err(StoreError::Failed("the writer has ended".to_owned())),
             Err(_) => return Err(StoreError::Unavailable("too many changes wait".to_owned())),
@@ -80,7 +78,7 @@ impl WriterTask {
             {
                 backlog.push_back(request);
             }
-            self.commit_or_answer(gather(&mut backlog), false).await;
+            self.commit_or_answer(collect_batch(&mut backlog), false).await;
         }
     }
 

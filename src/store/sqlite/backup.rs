@@ -7,26 +7,21 @@ use std::path::Path;
 use rusqlite::Connection;
 
 use super::file::{beside, lock, sync_folder};
-use super::readers::reading;
-use super::schema::{self, APPLICATION, NEWEST};
+use super::readers::open_reader;
+use super::schema::{self, APPLICATION};
 
 /// A connection that only reads, to a store that this program knows.
-pub(super) fn look(path: &Path) -> Result<Connection, String> {
+pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     // SQLite would say no more than that it cannot open it.
     fs::metadata(path).map_err(|error| error.to_string())?;
     let said = |error: rusqlite::Error| error.to_string();
-    let database = reading(path).map_err(said)?;
+    let database = open_reader(path).map_err(said)?;
     let application: i32 = database.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(said)?;
     if application != APPLICATION {
         return Err("it is an SQLite database of another application".to_owned());
     }
-    match schema::version(&database).map_err(said)? {
-        NEWEST => Ok(database),
-        found if found < NEWEST => {
-            Err(format!("its tables are of version {found}: `stickslip serve` brings them to version {NEWEST}"))
-        }
-        found => Err(format!("its tables are of version {found}, and this program knows them up to version {NEWEST}")),
-    }
+    schema::check(&database).map_err(|error| error.to_string())?;
+    Ok(database)
 }
 
 /// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy gets
@@ -36,7 +31,7 @@ pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
     if fs::symlink_metadata(copy).is_ok() {
         return Err(format!("{} is there already, and is left as it is", copy.display()));
     }
-    let database = look(path)?;
+    let database = open_read_only(path)?;
     let young = beside(copy, ".new");
     // What a copy that was cut off has left is written over; the lock tells it from one under way.
     let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&young).map_err(said)?;

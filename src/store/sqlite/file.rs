@@ -10,7 +10,7 @@ use std::sync::Arc;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
-use super::schema::{self, APPLICATION, NEWEST};
+use super::schema::{self, APPLICATION, MIGRATIONS};
 use super::{BUSY, wal_check};
 
 /// What every SQLite file begins with.
@@ -26,7 +26,7 @@ const CACHE: i32 = -65_536;
 /// Statements that the writer keeps prepared.
 const STATEMENTS: usize = 64;
 
-/// A database at the newest version, and the lock that keeps other processes of ours away. The lock is to outlive the
+/// A database at the newest version of the tables, and the lock that keeps other processes of ours away. The lock is to outlive the
 /// connection: closing any handle of the file ends the locks that SQLite holds on it.
 pub(super) struct Opened {
     pub(super) database: Connection,
@@ -91,7 +91,7 @@ fn make(path: &Path, young: &Path) -> Result<File, String> {
     }
     file.set_len(0).map_err(|error| said(&error))?;
     let mut database = Connection::open_with_flags(young, writing()).map_err(|error| said(&error))?;
-    schema::migrate(&mut database).map_err(|error| said(&error))?;
+    schema::migrate(&mut database, MIGRATIONS).map_err(|error| said(&error))?;
     database.close().map_err(|(_, error)| said(&error))?;
     std::fs::rename(young, path).and_then(|()| sync_folder(path)).map_err(|error| said(&error))?;
     Ok(file)
@@ -108,7 +108,7 @@ fn inspect(path: &Path, file: &File) -> Result<(), String> {
     if field(&header, 68) != APPLICATION.cast_unsigned() {
         return Err("it is an SQLite database of another application".to_owned());
     }
-    supported(field(&header, 60).cast_signed())?;
+    schema::known(field(&header, 60).cast_signed())?;
     wal_check::check(&header, length, &beside(path, "-wal"))
 }
 
@@ -124,7 +124,7 @@ fn connect(path: &Path) -> Result<Connection, String> {
     // Until it is accepted, nothing moves from the log to the file, not even when the connection is closed.
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).map_err(said)?;
     database.busy_timeout(BUSY).map_err(said)?;
-    supported(schema::version(&database).map_err(said)?)?;
+    schema::known(schema::version(&database).map_err(said)?)?;
     if length_at(path) + length_at(&beside(path, "-wal")) <= SMALL {
         let verdict: String = database.query_row("PRAGMA quick_check(1)", [], |row| row.get(0)).map_err(said)?;
         if verdict != "ok" {
@@ -141,21 +141,11 @@ fn connect(path: &Path) -> Result<Connection, String> {
     database.query_row(&format!("PRAGMA wal_autocheckpoint = {CHECKPOINT_PAGES}"), [], |_| Ok(())).map_err(said)?;
     database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(said)?;
     database.set_prepared_statement_cache_capacity(STATEMENTS);
-    schema::migrate(&mut database).map_err(said)?;
+    schema::migrate(&mut database, MIGRATIONS).map_err(|error| error.to_string())?;
     // The version is to stand in the file itself, where the next start looks for it first.
     database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(said)?;
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(said)?;
     Ok(database)
-}
-
-fn supported(version: i32) -> Result<(), String> {
-    match version {
-        found if found > NEWEST => {
-            Err(format!("its tables are of version {found}, and this program knows them up to version {NEWEST}"))
-        }
-        found if found < 1 => Err("it is not whole: its tables have no version".to_owned()),
-        _ => Ok(()),
-    }
 }
 
 pub(super) fn lock(file: &File) -> Result<(), String> {

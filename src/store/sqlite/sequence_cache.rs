@@ -1,31 +1,31 @@
-//! Where the sessions stand that have moved of late: what the writer need not ask the database, being the only one to change it.
+//! The sequences of contacts that have moved lately: what the writer, which alone changes them, need not ask the database.
 
 use hashlink::LruCache;
 use uuid::Uuid;
 
-/// Sessions that are known, of some 64 bytes each.
-const SESSIONS: usize = 16_384;
+/// Contacts in the cache, of some 64 bytes each.
+const CAPACITY: usize = 16_384;
 
-/// Numbers and sequences of sessions, as the transaction under way leaves them. Whoever takes a transaction back clears them.
+/// Numbers and sequences of contacts, as the transaction under way leaves them. A rollback clears the cache.
 pub(super) struct SequenceCache {
     by_id: LruCache<Uuid, (i64, u64)>,
 }
 
 impl SequenceCache {
-    pub(super) fn empty() -> SequenceCache {
-        SequenceCache { by_id: LruCache::new(SESSIONS) }
+    pub(super) fn new() -> SequenceCache {
+        SequenceCache { by_id: LruCache::new(CAPACITY) }
     }
 
-    /// The number of a session that is known to be at a sequence. To be told nothing says nothing.
+    /// The number of a contact that is known to be at a sequence. None says nothing about it.
     pub(super) fn number(&mut self, id: Uuid, expected: u64) -> Option<i64> {
         self.by_id.get(&id).filter(|(_, sequence)| *sequence == expected).map(|(number, _)| *number)
     }
 
-    pub(super) fn moved(&mut self, id: Uuid, number: i64, sequence: u64) {
+    pub(super) fn insert(&mut self, id: Uuid, number: i64, sequence: u64) {
         self.by_id.insert(id, (number, sequence));
     }
 
-    pub(super) fn forget(&mut self, id: Uuid) {
+    pub(super) fn remove(&mut self, id: Uuid) {
         self.by_id.remove(&id);
     }
 

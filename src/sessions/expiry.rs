@@ -17,18 +17,18 @@ impl Sessions {
     ///
     /// # Errors
     /// A failure of the store.
-    pub async fn sweep(&self, expire_after: Option<Duration>) -> Result<u64, SessionError> {
+    pub async fn purge_expired(&self, expire_after: Option<Duration>) -> Result<u64, SessionError> {
         let now = Timestamp::now();
         let idle_since = expire_after.map(|idle| now.checked_sub(idle).unwrap_or(Timestamp::MIN));
-        self.common.store.sweep(idle_since).await.map_err(SessionError::Store)
+        self.common.store.purge_expired(idle_since).await.map_err(SessionError::Store)
     }
 
     /// Sweeps again and again, and never ends.
-    pub async fn keep_house(self, expire_after: Option<Duration>) {
+    pub async fn run_expiry_loop(self, expire_after: Option<Duration>) {
         let (least, most) = PERIODS;
         let period = expire_after.map_or(most, |idle| (idle / SHARE).clamp(least, most));
         loop {
-            match self.sweep(expire_after).await {
+            match self.purge_expired(expire_after).await {
                 Ok(0) => {}
                 Ok(expired) => tracing::info!(expired, "idle contacts have expired"),
                 Err(error) => tracing::warn!(%error, "nothing was swept; another attempt follows"),
