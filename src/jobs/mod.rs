@@ -12,19 +12,18 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use jiff::Timestamp;
-use tokio::sync::{Notify, Semaphore, watch};
+use tokio::sync::Notify;
 use uuid::Uuid;
 
 use crate::admission::{INLINE, Nanoseconds};
 use crate::admission::{Pool, Stop};
 use crate::metrics::{Counter, Gauge};
 use crate::simulation::{Rows, Sweep, Workers};
-use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
+use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_wire::sweep::Draft;
 use stickslip_wire::{self as wire, JobProgress, JobReply, JobState, SweepRequest};
 
 pub use error::JobError;
-pub use events::Happening;
 
 /// Clients that may follow jobs at a time.
 pub const STREAMS: usize = 250;
@@ -61,8 +60,8 @@ struct Common {
     new: Notify,
     // What this process calls itself where it takes chunks.
     owner: Uuid,
-    streams: Arc<Semaphore>,
-    ending: watch::Sender<bool>,
+    // Those who follow jobs; their end is also that of the work on jobs.
+    listeners: Listeners,
     meters: JobMeters,
 }
 
@@ -91,8 +90,7 @@ impl Jobs {
             workers: OnceLock::new(),
             new: Notify::new(),
             owner: Uuid::now_v7(),
-            streams: Arc::new(Semaphore::new(STREAMS)),
-            ending: watch::Sender::new(false),
+            listeners: Listeners::new(STREAMS),
             meters: JobMeters::default(),
         };
         Jobs { tenant: Tenant::default(), common: Arc::new(common) }
@@ -130,8 +128,8 @@ impl Jobs {
     /// # Errors
     /// [`JobError`]; no job has been made then.
     pub async fn start(&self, sweep: &Sweep, key: Option<RequestKey>) -> Result<Reply, JobError> {
-        let key = key.map(|key| key.of(&self.tenant));
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        let idempotent = IdempotentRequest::new(&*self.common.store, &self.tenant, key);
+        if let Some(reply) = idempotent.earlier_reply().await? {
             return Ok(reply);
         }
         if sweep.cost() > LARGEST_JOB {
@@ -156,26 +154,11 @@ impl Jobs {
         };
         let body = serde_json::to_vec(&told(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
         let reply = Reply { created: Some(job.id), sequence: 0, body };
-        let receipt = key.clone().map(|request| Receipt { request, reply: reply.clone() });
-        match self.common.store.create_job(job, request, LIMITS, receipt).await {
-            Ok(()) => {
-                self.common.new.notify_waiters();
-                Ok(reply)
-            }
-            // A twin of the request was faster.
-            Err(StoreError::KeyTaken) => self.earlier(key.as_ref()).await?.ok_or(JobError::Store(StoreError::KeyTaken)),
-            Err(error) => Err(JobError::Store(error)),
+        if let Err(error) = self.common.store.create_job(job, request, LIMITS, idempotent.receipt(&reply)).await {
+            return Ok(idempotent.after_refusal(error).await?);
         }
-    }
-
-    /// The reply that an earlier request with the same key got.
-    async fn earlier(&self, request: Option<&RequestKey>) -> Result<Option<Reply>, JobError> {
-        let Some(request) = request else { return Ok(None) };
-        match self.common.store.receipt(&request.key).await.map_err(JobError::Store)? {
-            None => Ok(None),
-            Some(receipt) if receipt.request.fingerprint == request.fingerprint => Ok(Some(receipt.reply)),
-            Some(_) => Err(JobError::KeyReused),
-        }
+        self.common.new.notify_waiters();
+        Ok(reply)
     }
 
     async fn own(&self, id: Uuid) -> Result<Job, JobError> {

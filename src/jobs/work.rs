@@ -35,7 +35,7 @@ impl Jobs {
 
     async fn work_alone(self, lease: Duration) {
         let (mut last, mut known) = (None, None);
-        let mut ending = self.common.ending.subscribe();
+        let mut ending = self.common.listeners.ending();
         while !*ending.borrow() {
             let new = self.common.new.notified();
             match self.common.store.claim(self.common.owner, last, lease).await {
@@ -141,7 +141,7 @@ impl Jobs {
         let allowed = Some(pool.capacity().deadline);
         let mut rows = std::pin::pin!(sweep.compute(points, pool, workers, &stop, allowed));
         let mut changed = self.common.store.changes().subscribe(claim.job);
-        let mut ending = self.common.ending.subscribe();
+        let mut ending = self.common.listeners.ending();
         loop {
             tokio::select! {
                 rows = &mut rows => return Ok(Some(rows?)),

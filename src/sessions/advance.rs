@@ -16,7 +16,7 @@ use stickslip_wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
 use super::cache::Guard;
 use super::live::Live;
 use super::relax::{found, of_the_whole};
-use super::{ATTEMPTS, SessionError, Sessions, idempotency, written};
+use super::{ATTEMPTS, SessionError, Sessions, written};
 
 /// Why the exact solver answers for a session.
 const REASON: &str = "a session keeps its exact memory";
@@ -42,9 +42,9 @@ impl Sessions {
         expected: Option<u64>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let key = key.map(|key| key.of(&self.tenant));
+        let request = self.request(key);
         // Before anything else: a retry is owed its reply even when the session is gone or has moved on.
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
         // Whoever hangs up in the queue has left it.
@@ -56,7 +56,7 @@ impl Sessions {
         let mut found = 0;
         for _ in 0..ATTEMPTS {
             // Again, now that a twin of this request that stood before it in the queue, here or elsewhere, is done.
-            if let Some(reply) = self.earlier(key.as_ref()).await? {
+            if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
             let live = if certain { self.present(&mut guard).await? } else { self.at_hand(&mut guard).await? };
@@ -78,9 +78,8 @@ impl Sessions {
             };
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
             // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
-            let receipt = idempotency::receipt(key.clone(), &reply);
             let moves = records.len() as u64;
-            match self.common.store.append(guard.id(), sequence, records, receipt).await {
+            match self.common.store.append(guard.id(), sequence, records, request.receipt(&reply)).await {
                 Ok(()) => {
                     self.common.meters.moves.add(moves);
                     self.offer_snapshot(&mut live);
@@ -94,7 +93,7 @@ impl Sessions {
                     (certain, found) = (true, moved);
                     self.present(&mut guard).await?.shared = true;
                 }
-                Err(other) => return self.lost(other, key).await,
+                Err(other) => return Ok(request.after_refusal(other).await?),
             }
         }
         Err(SessionError::Overtaken { found })

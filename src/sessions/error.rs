@@ -4,7 +4,7 @@ use uuid::Uuid;
 
 use crate::admission::PoolError;
 use crate::simulation;
-use crate::store::StoreError;
+use crate::store::{RetryError, StoreError};
 
 /// Why a session did not do what it was asked for. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
@@ -58,4 +58,13 @@ pub enum SessionError {
     /// What is stored cannot be replayed, or a reply not be written: a fault of this program.
     #[error("{0}")]
     Broken(String),
+}
+
+impl From<RetryError> for SessionError {
+    fn from(error: RetryError) -> SessionError {
+        match error {
+            RetryError::KeyReused => SessionError::KeyReused,
+            RetryError::Store(error) => SessionError::Store(error),
+        }
+    }
 }

@@ -51,7 +51,7 @@ impl Sessions {
             at_hand,
             bytes,
             capacity: self.common.cache.capacity(),
-            streams: self.common.streams.open(),
+            streams: self.common.listeners.count(),
             commits: self.common.store.commits(),
         }
     }

@@ -18,7 +18,6 @@ mod check;
 mod error;
 mod events;
 mod expiry;
-mod idempotency;
 mod live;
 mod meters;
 mod read;
@@ -34,14 +33,14 @@ use tokio::sync::Semaphore;
 use uuid::Uuid;
 
 use crate::admission::Pool;
-use crate::store::{Reply, RequestKey, Session, Store, StoreError, Tenant};
+use crate::store::{IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip_wire::session::Creation;
 
 pub use cache::CAPACITY;
 use cache::{Cache, Guard};
 pub use check::{Checked, Finding, check};
 pub use error::SessionError;
-pub use events::{Happening, STREAMS};
+pub use events::STREAMS;
 use live::Live;
 pub use meters::Readings;
 
@@ -62,7 +61,7 @@ struct Common {
     cache: Arc<Cache>,
     // A permit for each snapshot that is being kept.
     snapshots: Arc<Semaphore>,
-    streams: events::Streams,
+    listeners: Listeners,
     meters: meters::Meters,
 }
 
@@ -76,7 +75,7 @@ impl Sessions {
             pool,
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
-            streams: events::Streams::new(),
+            listeners: Listeners::new(STREAMS),
             meters: meters::Meters::default(),
         };
         Sessions { tenant: Tenant::default(), common: Arc::new(common) }
@@ -102,6 +101,11 @@ impl Sessions {
         self.common.cache.held()
     }
 
+    /// A request that may have been answered before.
+    fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
+        IdempotentRequest::new(&*self.common.store, &self.tenant, key)
+    }
+
     /// A session to work on: waits for those who came before, as long as the pool lets it.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
@@ -112,8 +116,8 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let key = key.map(|key| key.of(&self.tenant));
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        let request = self.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
         let now = Timestamp::now();
@@ -130,11 +134,10 @@ impl Sessions {
         let reply = live.introduce()?;
         // Whoever finds the new session in the store waits until it is at hand.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
-        let stored = self.common.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply)).await;
-        match stored {
-            Ok(()) => guard.live = Some(Box::new(live)),
-            Err(error) => return self.lost(error, key).await,
+        if let Err(error) = self.common.store.create(live.session.clone(), request.receipt(&reply)).await {
+            return Ok(request.after_refusal(error).await?);
         }
+        guard.live = Some(Box::new(live));
         Ok(reply)
     }
 
@@ -143,8 +146,8 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn fork(&self, id: Uuid, label: Option<String>, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let key = key.map(|key| key.of(&self.tenant));
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        let request = self.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
         let mut guard = self.lock(id).await?;
@@ -161,8 +164,7 @@ impl Sessions {
             };
             let reply = copy.introduce()?;
             let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
-            let receipt = idempotency::receipt(key.clone(), &reply);
-            match self.common.store.fork(id, copy.session.clone(), receipt).await {
+            match self.common.store.fork(id, copy.session.clone(), request.receipt(&reply)).await {
                 Ok(()) => {
                     new.live = Some(Box::new(copy));
                     return Ok(reply);
@@ -171,7 +173,7 @@ impl Sessions {
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
                     return Err(self.failed(&mut guard, error));
                 }
-                Err(error) => return self.lost(error, key).await,
+                Err(error) => return Ok(request.after_refusal(error).await?),
             }
         }
         Err(SessionError::Overtaken { found })

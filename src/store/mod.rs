@@ -7,7 +7,9 @@
 
 pub mod changes;
 pub mod commits;
+pub mod idempotency;
 pub mod jobs;
+pub mod listeners;
 pub mod memory;
 pub mod open;
 pub mod postgres;
@@ -25,7 +27,9 @@ use stickslip_wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;
+pub use idempotency::{IdempotentRequest, RetryError};
 pub use jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
+pub use listeners::{Listener, Listeners, StreamEvent};
 pub use memory::MemoryStore;
 pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
@@ -97,9 +101,9 @@ pub struct RequestKey {
 }
 
 impl RequestKey {
-    /// The same key as that of a tenant. No key holds a space, so that those of two tenants never meet.
+    /// The same key as that of a tenant. No key holds a space, so that the keys of two tenants always differ.
     #[must_use]
-    pub fn of(self, tenant: &Tenant) -> RequestKey {
+    pub fn for_tenant(self, tenant: &Tenant) -> RequestKey {
         match tenant.name() {
             "" => self,
             name => RequestKey { key: format!("{name} {}", self.key), ..self },
