@@ -11,8 +11,8 @@ use crate::store::{Record, Session, Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{At, Faults, State};
 
-use super::live::Live;
-use super::snapshot::{Worth, worth};
+use super::loaded::LoadedSession;
+use super::snapshot::{SnapshotState, compare};
 
 /// Sessions and moves that are fetched at a time.
 const SESSIONS: usize = 1_000;
@@ -200,14 +200,18 @@ impl Check<'_> {
     fn compare_snapshot(&mut self, id: Uuid, at: u64, state: &Contact, snapshot: Option<&Snapshot>) {
         let Some(snapshot) = snapshot.filter(|snapshot| snapshot.sequence == at) else { return };
         self.checked.snapshots += 1;
-        match worth(state, &snapshot.state) {
-            Worth::Same => {}
-            Worth::Foreign => {
+        match compare(state, &snapshot.state) {
+            SnapshotState::Sound => {}
+            SnapshotState::Foreign => {
                 self.checked.snapshots -= 1;
                 self.checked.foreign_snapshots += 1;
             }
-            Worth::Damaged => self.found(Some(id), format!("its snapshot of move {at} is damaged; it is not used")),
-            Worth::Wrong => self.found(Some(id), format!("its snapshot of move {at} is not the state after that move")),
+            SnapshotState::Damaged => {
+                self.found(Some(id), format!("its snapshot of move {at} is damaged; it is not used"))
+            }
+            SnapshotState::Wrong => {
+                self.found(Some(id), format!("its snapshot of move {at} is not the state after that move"))
+            }
         }
     }
 }
@@ -217,7 +221,7 @@ fn start(session: Session) -> Result<Contact, String> {
     let mut faults = Faults::default();
     let setup = session.definition.check(At::Root, &mut faults);
     let setup = faults.done(setup).map_err(|error| error.to_string())?;
-    Live::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
+    LoadedSession::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
 }
 
 /// How many numbers a state has.

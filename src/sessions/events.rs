@@ -84,7 +84,7 @@ impl Follower {
             if let Some(event) = self.ready.pop_front() {
                 break StreamEvent::State(event);
             }
-            match self.sessions.past(self.id, self.seen, PAGE).await {
+            match self.sessions.history_page(self.id, self.seen, PAGE).await {
                 Ok(page) if page.items.is_empty() => self.listener.wait().await,
                 Ok(page) => {
                     self.seen = page.items.last().map_or(self.seen, |item| item.sequence);

@@ -12,14 +12,14 @@
 //! A handle works for one tenant ([`Sessions::of`]). What belongs to others is not there for it: their states and locks have
 //! other names, and what comes from the store is looked at before it is used.
 
-mod advance;
+mod apply;
 mod cache;
 mod check;
 mod error;
 mod events;
 mod expiry;
-mod live;
-mod meters;
+mod loaded;
+mod metrics;
 mod read;
 mod relax;
 mod replay;
@@ -41,8 +41,8 @@ use cache::{Cache, Guard};
 pub use check::{Checked, Finding, check};
 pub use error::SessionError;
 pub use events::STREAMS;
-use live::Live;
-pub use meters::Readings;
+use loaded::LoadedSession;
+pub use metrics::Readings;
 
 /// How often a change that another process has forestalled is tried. Each time, that process has got on.
 const ATTEMPTS: usize = 100;
@@ -62,7 +62,7 @@ struct Common {
     // A permit for each snapshot that is being kept.
     snapshots: Arc<Semaphore>,
     listeners: Listeners,
-    meters: meters::Meters,
+    metrics: metrics::SessionMetrics,
 }
 
 impl Sessions {
@@ -76,7 +76,7 @@ impl Sessions {
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             listeners: Listeners::new(STREAMS),
-            meters: meters::Meters::default(),
+            metrics: metrics::SessionMetrics::default(),
         };
         Sessions { tenant: Tenant::default(), common: Arc::new(common) }
     }
@@ -130,8 +130,8 @@ impl Sessions {
             created_at: now,
             updated_at: now,
         };
-        let live = Live::start(session, creation.setup)?;
-        let reply = live.introduce()?;
+        let live = LoadedSession::start(session, creation.setup)?;
+        let reply = live.created_reply()?;
         // Whoever finds the new session in the store waits until it is at hand.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
         if let Err(error) = self.common.store.create(live.session.clone(), request.receipt(&reply)).await {
@@ -153,7 +153,7 @@ impl Sessions {
         let mut guard = self.lock(id).await?;
         let mut found = 0;
         for _ in 0..ATTEMPTS {
-            let mut copy = self.present(&mut guard).await?.clone();
+            let mut copy = self.current(&mut guard).await?.clone();
             let now = Timestamp::now();
             copy.session = Session {
                 id: Uuid::now_v7(),
@@ -162,7 +162,7 @@ impl Sessions {
                 updated_at: now,
                 ..copy.session
             };
-            let reply = copy.introduce()?;
+            let reply = copy.created_reply()?;
             let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
             match self.common.store.fork(id, copy.session.clone(), request.receipt(&reply)).await {
                 Ok(()) => {
@@ -171,7 +171,7 @@ impl Sessions {
                 }
                 Err(StoreError::Stale { found: moved }) => found = moved,
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.failed(&mut guard, error));
+                    return Err(self.store_failure(&mut guard, error));
                 }
                 Err(error) => return Ok(request.after_refusal(error).await?),
             }
@@ -187,7 +187,7 @@ impl Sessions {
         let mut guard = self.lock(id).await?;
         let found = match &guard.live {
             Some(live) => live.session.sequence,
-            None => self.own(id).await?.sequence,
+            None => self.find_own(id).await?.sequence,
         };
         let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {
@@ -200,7 +200,7 @@ impl Sessions {
                     return Err(SessionError::Stale { expected, found });
                 }
                 (Err(StoreError::Stale { found }), None) => at = found,
-                (Err(error), _) => return Err(self.failed(&mut guard, error)),
+                (Err(error), _) => return Err(self.store_failure(&mut guard, error)),
             }
         }
         Err(SessionError::Overtaken { found: at })

@@ -11,7 +11,7 @@ use crate::simulation::{self, stresses};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
-use super::live::table_points;
+use super::loaded::table_points;
 use super::{SessionError, Sessions, written};
 
 impl Sessions {
@@ -21,12 +21,12 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
         let mut guard = self.lock(id).await?;
-        let live = self.present(&mut guard).await?;
+        let live = self.current(&mut guard).await?;
         Ok(SessionReply {
             id,
             label: live.session.label.clone(),
             sequence: live.session.sequence,
-            contact: live.about.figures.clone(),
+            contact: live.derived.figures.clone(),
             state: live.contact.state().into(),
             created_at: live.session.created_at,
             updated_at: live.session.updated_at,
@@ -40,7 +40,7 @@ impl Sessions {
     pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
         let definition = {
             let mut guard = self.lock(id).await?;
-            Arc::clone(&self.present(&mut guard).await?.session.definition)
+            Arc::clone(&self.current(&mut guard).await?.session.definition)
         };
         let points = table_points(&definition.profile);
         let held = self.common.pool.reserve(points * cost::WRITTEN_POINT_BYTES).await?;
@@ -65,7 +65,7 @@ impl Sessions {
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence, held) = {
             let mut guard = self.lock(id).await?;
-            let live = self.present(&mut guard).await?;
+            let live = self.current(&mut guard).await?;
             let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
             let held = self.common.pool.reserve(bytes + more).await?;
             (live.contact.clone(), live.session.sequence, held)
@@ -107,15 +107,15 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         if !self.common.cache.holds(&self.tenant, id) {
-            self.own(id).await?;
+            self.find_own(id).await?;
         }
-        self.past(id, after, limit).await
+        self.history_page(id, after, limit).await
     }
 
     /// The same of a session that is known to be one's own.
-    pub(super) async fn past(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+    pub(super) async fn history_page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         let mut found =
-            self.common.store.history(id, after, limit + 1).await.map_err(|error| self.refused(id, error))?;
+            self.common.store.history(id, after, limit + 1).await.map_err(|error| self.store_error(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

@@ -9,7 +9,7 @@ use std::time::Duration;
 use crate::store::{Snapshot, StoreError};
 use stickslip_mechanics::Contact;
 
-use super::live::Live;
+use super::loaded::LoadedSession;
 use super::{SessionError, Sessions};
 
 /// Snapshots that are being kept at a time. A session for which there is no room tries again with its next move.
@@ -25,12 +25,12 @@ const CHECKSUM: usize = 4;
 
 /// The way that a replay would have to go beyond the last snapshot.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Beyond {
+pub(super) struct ReplayCost {
     moves: u32,
     work: Duration,
 }
 
-impl Beyond {
+impl ReplayCost {
     /// Adds moves that took so long to compute.
     pub(super) fn add(&mut self, moves: usize, work: Duration) {
         self.moves = self.moves.saturating_add(u32::try_from(moves).unwrap_or(u32::MAX));
@@ -38,7 +38,7 @@ impl Beyond {
     }
 
     /// Whether a snapshot of so many bytes is worth its while.
-    fn is_long(self, bytes: usize) -> bool {
+    fn is_worth_snapshot(self, bytes: usize) -> bool {
         let spared = self.work.saturating_add(FETCH.saturating_mul(self.moves));
         spared >= LEAST.max(BYTE.saturating_mul(u32::try_from(bytes).unwrap_or(u32::MAX)))
     }
@@ -46,17 +46,17 @@ impl Beyond {
 
 impl Sessions {
     /// Has a snapshot of a stored state kept in the background, if one is due.
-    pub(super) fn offer_snapshot(&self, live: &mut Live) {
-        if !live.beyond.is_long(live.contact.packed_length()) {
+    pub(super) fn offer_snapshot(&self, live: &mut LoadedSession) {
+        if !live.replay_cost.is_worth_snapshot(live.contact.packed_length()) {
             return;
         }
         let Ok(permit) = self.common.snapshots.clone().try_acquire_owned() else { return };
-        live.beyond = Beyond::default();
+        live.replay_cost = ReplayCost::default();
         let (store, contact) = (self.common.store.clone(), live.contact.clone());
         let (id, sequence) = (live.session.id, live.session.sequence);
         tokio::spawn(async move {
             let _permit = permit;
-            let Ok(state) = tokio::task::spawn_blocking(move || sealed(&contact)).await else { return };
+            let Ok(state) = tokio::task::spawn_blocking(move || with_checksum(&contact)).await else { return };
             // The session loses nothing by it but time.
             if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }).await {
                 tracing::warn!(%id, sequence, %error, "a snapshot was not kept");
@@ -64,46 +64,46 @@ impl Sessions {
         });
     }
 
-    /// The contact after some stored move and the number of that move; `virgin` and nought if there is no snapshot to read.
-    pub(super) async fn newest(
+    /// The contact after some stored move and the number of that move; `initial` and nought if there is no snapshot to read.
+    pub(super) async fn load_snapshot(
         &self,
         snapshot: Result<Option<Snapshot>, StoreError>,
-        virgin: Contact,
+        initial: Contact,
         last: u64,
     ) -> Result<(Contact, u64), SessionError> {
         let snapshot = match snapshot {
             Ok(Some(snapshot)) if snapshot.sequence <= last => snapshot,
-            Ok(_) => return Ok((virgin, 0)),
+            Ok(_) => return Ok((initial, 0)),
             Err(error) => {
                 tracing::warn!(%error, "a snapshot was not read");
-                return Ok((virgin, 0));
+                return Ok((initial, 0));
             }
         };
         // Reading a byte is below a nanosecond.
         let cost = snapshot.state.len() as u64;
-        let read = self.common.pool.run(cost, move || match unsealed(&virgin, &snapshot.state) {
+        let read = self.common.pool.run(cost, move || match from_checked(&initial, &snapshot.state) {
             Some(contact) => (contact, snapshot.sequence),
-            None => (virgin, 0),
+            None => (initial, 0),
         });
         Ok(read.await?)
     }
 }
 
-fn sealed(contact: &Contact) -> Vec<u8> {
+fn with_checksum(contact: &Contact) -> Vec<u8> {
     let mut bytes = contact.pack();
     bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
     bytes
 }
 
-fn unsealed(virgin: &Contact, bytes: &[u8]) -> Option<Contact> {
+fn from_checked(initial: &Contact, bytes: &[u8]) -> Option<Contact> {
     let (state, checksum) = bytes.split_last_chunk::<CHECKSUM>()?;
-    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| virgin.unpack(state))?
+    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| initial.unpack(state))?
 }
 
 /// What a snapshot is worth.
-pub(super) enum Worth {
+pub(super) enum SnapshotState {
     /// It is the state, to the last bit.
-    Same,
+    Sound,
     /// Another engine made it; it is never read.
     Foreign,
     /// It is not what was written; it is never read.
@@ -113,31 +113,31 @@ pub(super) enum Worth {
 }
 
 /// Compares a snapshot with the state that it should be.
-pub(super) fn worth(state: &Contact, snapshot: &[u8]) -> Worth {
+pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> SnapshotState {
     let sound = snapshot.split_last_chunk::<CHECKSUM>();
     match sound.filter(|(state, checksum)| crc32fast::hash(state) == u32::from_le_bytes(**checksum)) {
-        None => Worth::Damaged,
-        Some((state, _)) if !Contact::packs_like(state) => Worth::Foreign,
-        Some(_) if snapshot == sealed(state) => Worth::Same,
-        Some(_) => Worth::Wrong,
+        None => SnapshotState::Damaged,
+        Some((state, _)) if !Contact::packs_like(state) => SnapshotState::Foreign,
+        Some(_) if snapshot == with_checksum(state) => SnapshotState::Sound,
+        Some(_) => SnapshotState::Wrong,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Beyond;
+    use super::ReplayCost;
     use std::time::Duration;
 
     #[test]
     fn snapshots_are_rare_where_they_are_large_and_frequent_where_moves_are_dear() {
         let after = |moves, micros| {
-            let mut beyond = Beyond::default();
+            let mut beyond = ReplayCost::default();
             beyond.add(moves, Duration::from_micros(micros));
             beyond
         };
-        assert!(!after(5_000, 2_000).is_long(1_000));
-        assert!(after(10_000, 0).is_long(1_000));
-        assert!(after(10, 30_000).is_long(1_000) && !after(10, 30_000).is_long(20_000_000));
-        assert!(after(usize::MAX, u64::MAX).is_long(usize::MAX));
+        assert!(!after(5_000, 2_000).is_worth_snapshot(1_000));
+        assert!(after(10_000, 0).is_worth_snapshot(1_000));
+        assert!(after(10, 30_000).is_worth_snapshot(1_000) && !after(10, 30_000).is_worth_snapshot(20_000_000));
+        assert!(after(usize::MAX, u64::MAX).is_worth_snapshot(usize::MAX));
     }
 }

@@ -43,14 +43,14 @@ impl Sessions {
         let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
         let _held = self.common.pool.reserve(2 * PIECE * pieces).await?;
         let snapshot = self.common.store.snapshot(id).await;
-        let virgin = {
+        let initial = {
             let mut guard = self.lock(id).await?;
-            self.present(&mut guard).await?.contact.anew()
+            self.current(&mut guard).await?.contact.anew()
         };
-        let (mut contact, mut at) = self.newest(snapshot, virgin, after).await?;
+        let (mut contact, mut at) = self.load_snapshot(snapshot, initial, after).await?;
         while at < last {
             let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
-            let records = self.common.store.history(id, at, most).await.map_err(|error| self.refused(id, error))?;
+            let records = self.common.store.history(id, at, most).await.map_err(|error| self.store_error(id, error))?;
             let Some(end) = records.last().filter(|_| records[0].sequence == at + 1).map(|record| record.sequence)
             else {
                 return Err(SessionError::Broken(format!("move {} of contact {id} is missing", at + 1)));
@@ -65,7 +65,7 @@ impl Sessions {
             let work = move || {
                 for record in &records {
                     let wanted = if record.sequence > after { points } else { 1 };
-                    along(&mut contact, record, wanted, &stop, &mut page)?;
+                    trace_move(&mut contact, record, wanted, &stop, &mut page)?;
                     if record.sequence > after {
                         page.push_end(record.sequence, &record.state);
                     }
@@ -86,7 +86,7 @@ impl Sessions {
 }
 
 /// Makes a move of the past, and before it notes the points on its way.
-fn along(
+fn trace_move(
     contact: &mut Contact,
     record: &Record,
     points: usize,

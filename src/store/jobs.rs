@@ -13,7 +13,7 @@ use async_trait::async_trait;
 use jiff::{SignedDuration, Timestamp};
 use uuid::Uuid;
 
-use super::{Receipt, StoreError, Tenant};
+use super::{Receipt, Result, StoreError, Tenant};
 
 /// How long a job that has ended is kept, with its result.
 pub const JOB_LIFETIME: Duration = Duration::from_secs(24 * 60 * 60);
@@ -79,7 +79,7 @@ pub struct JobLimits {
 
 impl JobLimits {
     /// Whether a tenant with so many jobs, bytes and work to do may have another job.
-    pub(super) fn check(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<(), StoreError> {
+    pub(super) fn check(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<()> {
         if jobs >= self.jobs {
             return Err(StoreError::TooManyJobs(format!("{jobs} jobs are kept, and no more may be")));
         }
@@ -122,42 +122,36 @@ pub struct ChunkResult {
 #[async_trait]
 pub trait JobStore: Send + Sync + 'static {
     /// Stores a new job with its request, and the receipt with it, if the limits of its tenant allow another job.
-    async fn create_job(
-        &self,
-        job: Job,
-        request: String,
-        limits: JobLimits,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError>;
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()>;
 
     /// The job.
-    async fn job(&self, id: Uuid) -> Result<Job, StoreError>;
+    async fn job(&self, id: Uuid) -> Result<Job>;
 
     /// The request that the job was made of.
-    async fn job_request(&self, id: Uuid) -> Result<String, StoreError>;
+    async fn job_request(&self, id: Uuid) -> Result<String>;
 
     /// Claims a chunk that nobody works on, of the first job with an identifier greater than `after` that has one, or else of
     /// the first of all. Where many processes share the storage the claim ends after `lease`, unless it is renewed.
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>, StoreError>;
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>>;
 
     /// Extends a claim by another `lease`; returns whether it still held.
-    async fn renew(&self, claim: Claim, lease: Duration) -> Result<bool, StoreError>;
+    async fn renew(&self, claim: Claim, lease: Duration) -> Result<bool>;
 
     /// Gives a chunk back.
-    async fn release(&self, claim: Claim) -> Result<(), StoreError>;
+    async fn release(&self, claim: Claim) -> Result<()>;
 
     /// Stores the result of a chunk. If two workers compute the same chunk the first result counts. With its last chunk the
     /// job ends.
-    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<(), StoreError>;
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()>;
 
     /// Ends a job that cannot be done.
-    async fn fail_job(&self, id: Uuid, error: String) -> Result<(), StoreError>;
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()>;
 
     /// The results of at most `limit` chunks from the number `first` on, in order.
-    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, StoreError>;
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>>;
 
     /// Deletes a job, whether it has ended or not.
-    async fn delete_job(&self, id: Uuid) -> Result<(), StoreError>;
+    async fn delete_job(&self, id: Uuid) -> Result<()>;
 }
 
 /// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives it.

@@ -173,62 +173,54 @@ pub enum StoreError {
     Failed(String),
 }
 
+/// What a call to a store comes to.
+pub type Result<T, E = StoreError> = std::result::Result<T, E>;
+
 /// Storage of contacts. It says whose a contact is and leaves it to its callers to keep tenants apart: any identifier is
 /// accepted here.
 #[async_trait]
 pub trait Store: JobStore {
     /// Whether it can serve.
-    async fn ready(&self) -> Result<(), StoreError>;
+    async fn ready(&self) -> Result<()>;
 
     /// Stores a new session that has not moved, and the receipt with it.
-    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<(), StoreError>;
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()>;
 
     /// The session.
-    async fn find(&self, id: Uuid) -> Result<Session, StoreError>;
+    async fn find(&self, id: Uuid) -> Result<Session>;
 
     /// The sequence of a session: all that a caller who has the rest cached needs to ask.
-    async fn sequence(&self, id: Uuid) -> Result<u64, StoreError>;
+    async fn sequence(&self, id: Uuid) -> Result<u64>;
 
     /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order. Without
     /// their definitions: a page of those could be larger than the memory.
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>, StoreError>;
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.
-    async fn append(
-        &self,
-        id: Uuid,
-        expected: u64,
-        records: Vec<Record>,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError>;
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()>;
 
     /// At most `limit` moves of a session with sequences greater than `after`, in order.
-    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, StoreError>;
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>>;
 
     /// Stores `copy`, with the moves of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
-    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError>;
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()>;
 
     /// Deletes a session that is at sequence `expected`, and its moves.
-    async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError>;
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()>;
 
     /// The receipt for an idempotency key, if the key has been used within [`RECEIPT_LIFETIME`].
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError>;
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>>;
 
     /// The newest snapshot of a session, if there is one.
-    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>, StoreError>;
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>>;
 
     /// Stores a snapshot in place of an older one. Does nothing where the session is gone or a newer snapshot is stored.
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError>;
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()>;
 
     /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the sessions
     /// that have not moved since. Those are [`StoreError::Expired`] from then on. Returns how many sessions expired.
-    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError>;
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64>;
 
     /// Wakes those who wait for changes, whichever process on the same storage makes them.
     fn changes(&self) -> &Changes;
@@ -239,7 +231,7 @@ pub trait Store: JobStore {
     }
 
     /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no contact.
-    async fn check_integrity(&self) -> Result<Vec<String>, StoreError> {
+    async fn check_integrity(&self) -> Result<Vec<String>> {
         Ok(Vec::new())
     }
 }

@@ -10,7 +10,7 @@ use uuid::Uuid;
 
 use super::MemoryStore;
 use crate::store::jobs::{ChunkQueue, ChunkResult, Claim, Job, JobLimits, JobStore};
-use crate::store::{Receipt, StoreError};
+use crate::store::{Receipt, Result, StoreError};
 
 /// Jobs in a map.
 #[derive(Default)]
@@ -43,20 +43,14 @@ impl Jobs {
         });
     }
 
-    fn with<T>(&self, id: Uuid, look: impl FnOnce(&mut StoredJob) -> T) -> Result<T, StoreError> {
+    fn with<T>(&self, id: Uuid, look: impl FnOnce(&mut StoredJob) -> T) -> Result<T> {
         self.lock().get_mut(&id).map(look).ok_or(StoreError::NotFound)
     }
 }
 
 #[async_trait]
 impl JobStore for MemoryStore {
-    async fn create_job(
-        &self,
-        job: Job,
-        request: String,
-        limits: JobLimits,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError> {
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         let mut stored = self.jobs.lock();
@@ -74,28 +68,28 @@ impl JobStore for MemoryStore {
         Ok(())
     }
 
-    async fn job(&self, id: Uuid) -> Result<Job, StoreError> {
+    async fn job(&self, id: Uuid) -> Result<Job> {
         self.jobs.with(id, |stored| stored.job.clone())
     }
 
-    async fn job_request(&self, id: Uuid) -> Result<String, StoreError> {
+    async fn job_request(&self, id: Uuid) -> Result<String> {
         self.jobs.with(id, |stored| stored.request.clone())
     }
 
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>, StoreError> {
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>> {
         Ok(self.jobs.queue.claim(owner, after))
     }
 
-    async fn renew(&self, claim: Claim, _: Duration) -> Result<bool, StoreError> {
+    async fn renew(&self, claim: Claim, _: Duration) -> Result<bool> {
         Ok(self.jobs.queue.is_claimed(claim))
     }
 
-    async fn release(&self, claim: Claim) -> Result<(), StoreError> {
+    async fn release(&self, claim: Claim) -> Result<()> {
         self.jobs.queue.release(claim);
         Ok(())
     }
 
-    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<(), StoreError> {
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
         let saved = self.jobs.with(claim.job, |StoredJob { job, chunks, .. }| {
             if job.finished_at.is_none() && !chunks.contains_key(&claim.chunk) {
                 job.done += result.points;
@@ -111,7 +105,7 @@ impl JobStore for MemoryStore {
         saved
     }
 
-    async fn fail_job(&self, id: Uuid, error: String) -> Result<(), StoreError> {
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
         let failed = self.jobs.with(id, |StoredJob { job, .. }| {
             if job.finished_at.is_none() {
                 job.finished_at = Some(Timestamp::now());
@@ -123,11 +117,11 @@ impl JobStore for MemoryStore {
         failed
     }
 
-    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, StoreError> {
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
         self.jobs.with(id, |stored| stored.chunks.range(first..).take(limit).map(|(_, chunk)| chunk.clone()).collect())
     }
 
-    async fn delete_job(&self, id: Uuid) -> Result<(), StoreError> {
+    async fn delete_job(&self, id: Uuid) -> Result<()> {
         let deleted = self.jobs.lock().remove(&id).map(drop).ok_or(StoreError::NotFound);
         self.jobs.queue.remove_job(id);
         self.changes.wake(id);

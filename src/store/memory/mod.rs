@@ -13,7 +13,7 @@ use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
-use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 
 /// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
@@ -72,12 +72,12 @@ impl Inner {
         self.expired.get(&id).cloned().map_or(StoreError::NotFound, StoreError::Expired)
     }
 
-    fn get(&self, id: Uuid) -> Result<&Stored, StoreError> {
+    fn get(&self, id: Uuid) -> Result<&Stored> {
         self.sessions.get(&id).ok_or_else(|| self.missing(id))
     }
 
     /// The session, which must be at a sequence.
-    fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored, StoreError> {
+    fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored> {
         let found = self.get(id)?.session.sequence;
         let stored = self.sessions.get_mut(&id).ok_or(StoreError::NotFound)?;
         if found == expected { Ok(stored) } else { Err(StoreError::Stale { found }) }
@@ -85,7 +85,7 @@ impl Inner {
 }
 
 impl Receipts {
-    fn check_free(&mut self, receipt: Option<&Receipt>) -> Result<(), StoreError> {
+    fn check_free(&mut self, receipt: Option<&Receipt>) -> Result<()> {
         self.purge();
         match receipt {
             Some(receipt) if self.by_key.contains_key(&receipt.request.key) => Err(StoreError::KeyTaken),
@@ -126,11 +126,11 @@ fn summary(session: &Session) -> SessionSummary {
 
 #[async_trait]
 impl Store for MemoryStore {
-    async fn ready(&self) -> Result<(), StoreError> {
+    async fn ready(&self) -> Result<()> {
         Ok(())
     }
 
-    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         inner.sessions.insert(session.id, Stored { session, moves: Arc::default(), snapshot: None });
@@ -138,20 +138,15 @@ impl Store for MemoryStore {
         Ok(())
     }
 
-    async fn find(&self, id: Uuid) -> Result<Session, StoreError> {
+    async fn find(&self, id: Uuid) -> Result<Session> {
         self.lock().get(id).map(|stored| stored.session.clone())
     }
 
-    async fn sequence(&self, id: Uuid) -> Result<u64, StoreError> {
+    async fn sequence(&self, id: Uuid) -> Result<u64> {
         self.lock().get(id).map(|stored| stored.session.sequence)
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>, StoreError> {
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
         let inner = self.lock();
         let sessions = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
         let sessions = sessions.map(|(_, stored)| &stored.session);
@@ -159,13 +154,7 @@ impl Store for MemoryStore {
         Ok(own.take(limit).map(summary).collect())
     }
 
-    async fn append(
-        &self,
-        id: Uuid,
-        expected: u64,
-        records: Vec<Record>,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError> {
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
         {
             let mut inner = self.lock();
             inner.receipts.check_free(receipt.as_ref())?;
@@ -181,7 +170,7 @@ impl Store for MemoryStore {
         Ok(())
     }
 
-    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, StoreError> {
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
         // Copied under the lock: moves that are shared would have to be copied whole by the next append.
         self.lock().get(id).map(|stored| {
             // Sequences count from 1, so that the sequence of the last move seen is the index of the next one.
@@ -190,7 +179,7 @@ impl Store for MemoryStore {
         })
     }
 
-    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
         let Stored { moves, snapshot, .. } = inner.at(id, copy.sequence)?;
@@ -200,7 +189,7 @@ impl Store for MemoryStore {
         Ok(())
     }
 
-    async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError> {
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
         {
             let mut inner = self.lock();
             inner.at(id, expected)?;
@@ -210,17 +199,17 @@ impl Store for MemoryStore {
         Ok(())
     }
 
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let mut inner = self.lock();
         inner.receipts.purge();
         Ok(inner.receipts.by_key.get(key).cloned())
     }
 
-    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>, StoreError> {
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
         self.lock().get(id).map(|stored| stored.snapshot.clone())
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
         if let Some(stored) = self.lock().sessions.get_mut(&id)
             && stored.snapshot.as_ref().is_none_or(|older| older.sequence < snapshot.sequence)
         {
@@ -229,7 +218,7 @@ impl Store for MemoryStore {
         Ok(())
     }
 
-    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError> {
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
         self.jobs.purge();
         let mut inner = self.lock();
         inner.receipts.purge();

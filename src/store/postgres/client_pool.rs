@@ -7,7 +7,7 @@ use deadpool_postgres::{Hook, HookError, Manager, ManagerConfig, Object, Pool, R
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
 
-use crate::store::StoreError;
+use crate::store::{Result, StoreError};
 
 use super::connect::ConnectTarget;
 use super::fault::{Backoff, Fault, Outage};
@@ -80,7 +80,7 @@ pub(super) struct ClientPool {
 
 impl ClientPool {
     /// A pool that connects when it is first used.
-    pub(super) fn new(target: ConnectTarget, announces: bool) -> Result<ClientPool, StoreError> {
+    pub(super) fn new(target: ConnectTarget, announces: bool) -> Result<ClientPool> {
         let config = ManagerConfig { recycling_method: RecyclingMethod::Fast };
         let manager = Manager::from_config(target.config.clone(), target.tls.clone(), config);
         let prepare = Hook::async_fn(|client, _| {
@@ -104,12 +104,12 @@ impl ClientPool {
     }
 
     /// The rows of a statement that only reads, or that may be repeated.
-    pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>, StoreError> {
+    pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
         with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
     }
 
     /// The first of these rows.
-    pub(super) async fn row(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Option<Row>, StoreError> {
+    pub(super) async fn row(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Option<Row>> {
         Ok(self.rows(statement, parameters).await?.into_iter().next())
     }
 }
@@ -124,7 +124,7 @@ pub(super) struct Tries {
 
 impl Tries {
     /// Waits before another try, or says that there is to be none.
-    pub(super) async fn retry_or_fail(&mut self, outage: &Outage, fault: Fault) -> Result<(), StoreError> {
+    pub(super) async fn retry_or_fail(&mut self, outage: &Outage, fault: Fault) -> Result<()> {
         self.count += 1;
         match &fault {
             Fault::Lost(text) if outage.worth_waiting(text) && self.count < TRIES => {}

@@ -10,7 +10,7 @@ use tokio_postgres::Row;
 use uuid::Uuid;
 
 use crate::store::rows::{RowReader, Scalar};
-use crate::store::{Receipt, Record, Session, StoreError};
+use crate::store::{Receipt, Record, Result, Session, StoreError};
 
 /// The columns of a row, read one after the other; a time is two of them.
 pub(super) struct Reader<'a> {
@@ -24,7 +24,7 @@ pub(super) fn reader(row: &Row) -> Reader<'_> {
 }
 
 impl<'a> Reader<'a> {
-    fn get<T: tokio_postgres::types::FromSql<'a>>(&mut self) -> Result<T, StoreError> {
+    fn get<T: tokio_postgres::types::FromSql<'a>>(&mut self) -> Result<T> {
         self.next += 1;
         self.row.try_get(self.next - 1).map_err(|error| self.invalid(error))
     }
@@ -33,28 +33,25 @@ impl<'a> Reader<'a> {
 impl RowReader for Reader<'_> {
     type Error = StoreError;
 
-    fn next<T: Scalar>(&mut self) -> Result<T, StoreError> {
+    fn next<T: Scalar>(&mut self) -> Result<T> {
         self.get()
     }
 
-    fn text<T, E: Error + Send + Sync + 'static>(
-        &mut self,
-        parse: impl FnOnce(&str) -> Result<T, E>,
-    ) -> Result<T, StoreError> {
+    fn text<T, E: Error + Send + Sync + 'static>(&mut self, parse: impl FnOnce(&str) -> Result<T, E>) -> Result<T> {
         parse(self.get()?).map_err(|error| self.invalid(error))
     }
 
-    fn optional_uuid(&mut self) -> Result<Option<Uuid>, StoreError> {
+    fn optional_uuid(&mut self) -> Result<Option<Uuid>> {
         self.get()
     }
 
-    fn time(&mut self) -> Result<Timestamp, StoreError> {
+    fn time(&mut self) -> Result<Timestamp> {
         let whole = self.optional_time()?.ok_or_else(|| self.invalid("there is no time"))?;
         let beyond: i16 = self.get()?;
         Timestamp::from_nanosecond(whole.as_nanosecond() + i128::from(beyond)).map_err(|error| self.invalid(error))
     }
 
-    fn optional_time(&mut self) -> Result<Option<Timestamp>, StoreError> {
+    fn optional_time(&mut self) -> Result<Option<Timestamp>> {
         let time: Option<SystemTime> = self.get()?;
         time.map(Timestamp::try_from).transpose().map_err(|error| self.invalid(error))
     }

@@ -12,7 +12,7 @@ use uuid::Uuid;
 
 use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows;
-use crate::store::{RECEIPT_LIFETIME, Receipt, StoreError};
+use crate::store::{RECEIPT_LIFETIME, Receipt, Result, StoreError};
 
 use super::PostgresStore;
 use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
@@ -64,7 +64,7 @@ impl NewJob {
 }
 
 impl ClientPool {
-    async fn create_job(&self, new: NewJob) -> Result<(), StoreError> {
+    async fn create_job(&self, new: NewJob) -> Result<()> {
         let commit_sent = AtomicBool::new(false);
         let error = match with_retries!(self, LONG_ANSWER, connection => new.make(self, connection, &commit_sent)) {
             Ok(()) => return Ok(()),
@@ -121,7 +121,7 @@ impl ClientPool {
     }
 
     /// Deletes the jobs past their time.
-    pub(super) async fn purge_jobs(&self) -> Result<(), StoreError> {
+    pub(super) async fn purge_jobs(&self) -> Result<()> {
         while to_bigint(with_retries!(self, LONG_ANSWER, connection => purge(connection))?) == PURGED_AT_ONCE {}
         Ok(())
     }
@@ -137,27 +137,21 @@ async fn purge(connection: &mut Object) -> Result<u64, Fault> {
 
 #[async_trait]
 impl JobStore for PostgresStore {
-    async fn create_job(
-        &self,
-        job: Job,
-        request: String,
-        limits: JobLimits,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError> {
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
         self.pool.create_job(NewJob { job, request, limits, receipt }).await
     }
 
-    async fn job(&self, id: Uuid) -> Result<Job, StoreError> {
+    async fn job(&self, id: Uuid) -> Result<Job> {
         let row = self.pool.row(sql::JOB, &[&id]).await?.ok_or(StoreError::NotFound)?;
         rows::job(&mut reader(&row))
     }
 
-    async fn job_request(&self, id: Uuid) -> Result<String, StoreError> {
+    async fn job_request(&self, id: Uuid) -> Result<String> {
         let found = self.pool.row(sql::JOB_REQUEST, &[&id]).await?;
         found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
     }
 
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>, StoreError> {
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>> {
         // First the jobs after the last one, then all of them.
         for from in after.into_iter().chain([Uuid::nil()]) {
             if let Some(row) = self.pool.row(sql::CLAIM, &[&from, &owner, &lease.as_secs_f64()]).await? {
@@ -167,33 +161,33 @@ impl JobStore for PostgresStore {
         Ok(None)
     }
 
-    async fn renew(&self, Claim { job, chunk, owner }: Claim, lease: Duration) -> Result<bool, StoreError> {
+    async fn renew(&self, Claim { job, chunk, owner }: Claim, lease: Duration) -> Result<bool> {
         let (chunk, lease) = (to_bigint(chunk), lease.as_secs_f64());
         Ok(self.pool.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
     }
 
-    async fn release(&self, Claim { job, chunk, owner }: Claim) -> Result<(), StoreError> {
+    async fn release(&self, Claim { job, chunk, owner }: Claim) -> Result<()> {
         self.pool.rows(sql::RELEASE, &[&job, &to_bigint(chunk), &owner]).await.map(drop)
     }
 
-    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<(), StoreError> {
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
         let found = with_retries!(self.pool, ANSWER, connection => self.pool.save_chunk(connection, claim, &result))?;
         self.changes.wake(claim.job);
         if found { Ok(()) } else { Err(StoreError::NotFound) }
     }
 
-    async fn fail_job(&self, id: Uuid, error: String) -> Result<(), StoreError> {
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
         with_retries!(self.pool, ANSWER, connection => self.pool.fail_job(connection, id, &error))?;
         self.changes.wake(id);
         Ok(())
     }
 
-    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, StoreError> {
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
         let found = self.pool.rows(sql::CHUNKS, &[&id, &to_bigint(first), &to_bigint(limit as u64)]).await?;
         Ok(found.iter().map(|row| row.get(0)).collect())
     }
 
-    async fn delete_job(&self, id: Uuid) -> Result<(), StoreError> {
+    async fn delete_job(&self, id: Uuid) -> Result<()> {
         let commit_sent = AtomicBool::new(false);
         let deleted =
             with_retries!(self.pool, LONG_ANSWER, connection => self.pool.delete_job(connection, id, &commit_sent))?;

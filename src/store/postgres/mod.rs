@@ -33,7 +33,9 @@ use uuid::Uuid;
 use stickslip_wire::SessionSummary;
 
 use super::rows;
-use super::{Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::{
+    Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+};
 
 use client_pool::ClientPool;
 use columns::{from_bigint, reader, to_bigint};
@@ -62,7 +64,7 @@ impl PostgresStore {
     ///
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if it or its tables cannot be used.
-    pub async fn open(url: &str) -> Result<PostgresStore, StoreError> {
+    pub async fn open(url: &str) -> Result<PostgresStore> {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let place = target.place();
         let announces = prepared(&target).await.map_err(|error| match error {
@@ -84,7 +86,7 @@ impl PostgresStore {
     ///
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
-    pub async fn open_to_read(url: &str) -> Result<PostgresStore, StoreError> {
+    pub async fn open_to_read(url: &str) -> Result<PostgresStore> {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let place = target.place();
         let checked = async { schema::check(&target.open().await?).await };
@@ -112,7 +114,7 @@ impl Drop for PostgresStore {
 }
 
 /// Brings the tables up to date, and tells whether the engine knows announcements.
-async fn prepared(target: &ConnectTarget) -> Result<bool, StoreError> {
+async fn prepared(target: &ConnectTarget) -> Result<bool> {
     let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
         let fault = match target.open().await.map_err(SchemaError::from) {
@@ -139,14 +141,14 @@ impl From<SchemaError> for Fault {
 }
 
 /// The definition of a session as it is stored: exactly the JSON that it was.
-fn definition(session: &Session) -> Result<String, StoreError> {
+fn definition(session: &Session) -> Result<String> {
     let written = serde_json::to_string(&*session.definition);
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
 }
 
 #[async_trait]
 impl Store for PostgresStore {
-    async fn ready(&self) -> Result<(), StoreError> {
+    async fn ready(&self) -> Result<()> {
         let asked = async {
             client_pool::try_once!(self.pool, READY, connection => client_pool::rows(connection, sql::READY, &[]))
         };
@@ -157,31 +159,26 @@ impl Store for PostgresStore {
         }
     }
 
-    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = definition(&session)?;
         self.writer.write(Change::Create(session, definition), receipt).await
     }
 
-    async fn find(&self, id: Uuid) -> Result<Session, StoreError> {
+    async fn find(&self, id: Uuid) -> Result<Session> {
         match self.pool.row(sql::FIND, &[&id]).await? {
             Some(row) => rows::session(&mut reader(&row)),
             None => Err(self.pool.missing(id).await),
         }
     }
 
-    async fn sequence(&self, id: Uuid) -> Result<u64, StoreError> {
+    async fn sequence(&self, id: Uuid) -> Result<u64> {
         match self.pool.row(sql::SEQUENCE, &[&id]).await? {
             Some(row) => Ok(from_bigint(row.get(0))),
             None => Err(self.pool.missing(id).await),
         }
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>, StoreError> {
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
         // Nothing lies before the nil identifier, and no session has it.
         let (after, limit) = (after.unwrap_or(Uuid::nil()), to_bigint(limit as u64));
         let found = match tenant {
@@ -191,17 +188,11 @@ impl Store for PostgresStore {
         found.iter().map(|row| rows::summary(&mut reader(row))).collect()
     }
 
-    async fn append(
-        &self,
-        id: Uuid,
-        expected: u64,
-        records: Vec<Record>,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError> {
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
         self.writer.write(Change::Append { id, expected, records }, receipt).await
     }
 
-    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, StoreError> {
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
         let found = self.pool.rows(sql::HISTORY, &[&id, &to_bigint(after), &to_bigint(limit as u64)]).await?;
         if found.is_empty() {
             self.sequence(id).await?;
@@ -209,21 +200,21 @@ impl Store for PostgresStore {
         found.iter().map(|row| rows::record(&mut reader(row))).collect()
     }
 
-    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         self.pool.fork(id, copy, receipt).await
     }
 
-    async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError> {
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
         self.pool.delete(id, expected).await?;
         self.changes.wake(id);
         Ok(())
     }
 
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         self.pool.receipt(key).await
     }
 
-    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>, StoreError> {
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
         let found = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
         if found.is_none() {
             self.sequence(id).await?;
@@ -231,11 +222,11 @@ impl Store for PostgresStore {
         found.map(|row| rows::snapshot(&mut reader(&row))).transpose()
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
         self.pool.save_snapshot(id, snapshot).await
     }
 
-    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError> {
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
         self.pool.purge_jobs().await?;
         let expired = self.pool.purge_expired(idle_since).await?;
         expired.iter().for_each(|id| self.changes.wake(*id));
@@ -250,7 +241,7 @@ impl Store for PostgresStore {
         Some(&self.writer.commits)
     }
 
-    async fn check_integrity(&self) -> Result<Vec<String>, StoreError> {
+    async fn check_integrity(&self) -> Result<Vec<String>> {
         let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
         let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
         Ok(orphans.iter().map(|row| line(row.get(0))).collect())
@@ -259,7 +250,7 @@ impl Store for PostgresStore {
 
 impl ClientPool {
     /// [`Store::receipt`]
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let row = self.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
         row.map(|row| rows::receipt(key, &mut reader(&row))).transpose()
     }

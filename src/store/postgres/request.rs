@@ -5,7 +5,7 @@ use std::collections::{HashSet, VecDeque};
 use tokio::sync::oneshot;
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Session, StoreError};
+use crate::store::{Receipt, Record, Result, Session};
 
 /// Requests in one transaction.
 const REQUESTS: usize = 512;
@@ -26,7 +26,7 @@ pub(super) struct WriteRequest {
     pub(super) receipt: Option<Receipt>,
     /// A number that no other request has: tells, after a lost connection, whose moves were stored.
     pub(super) stamp: i64,
-    pub(super) answer: oneshot::Sender<Result<(), StoreError>>,
+    pub(super) answer: oneshot::Sender<Result<()>>,
 }
 
 impl WriteRequest {
@@ -48,7 +48,7 @@ impl WriteRequest {
         }
     }
 
-    pub(super) fn answer(self, answer: Result<(), StoreError>) {
+    pub(super) fn answer(self, answer: Result<()>) {
         // Whoever hung up has missed the answer, and the change stays made.
         let _ = self.answer.send(answer);
     }

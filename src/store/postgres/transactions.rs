@@ -11,7 +11,7 @@ use tokio_postgres::IsolationLevel;
 use tokio_postgres::error::SqlState;
 use uuid::Uuid;
 
-use crate::store::{RECEIPT_LIFETIME, Receipt, Session, Snapshot, StoreError, Tenant};
+use crate::store::{RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
 
 use super::batch_tx::announcements;
 use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
@@ -46,7 +46,7 @@ impl ClientPool {
     }
 
     /// [`crate::store::Store::delete`]
-    pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError> {
+    pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
         let commit_sent = AtomicBool::new(false);
         if with_retries!(self, LONG_ANSWER, connection => self.delete_on(connection, id, expected, &commit_sent))? {
             return Ok(());
@@ -76,7 +76,7 @@ impl ClientPool {
     }
 
     /// [`crate::store::Store::fork`]
-    pub(super) async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    pub(super) async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = super::definition(&copy)?;
         let (mut sessions, mut receipts) = (Sessions::default(), Receipts::default());
         sessions.push((&copy, definition));
@@ -100,7 +100,7 @@ impl ClientPool {
     }
 
     /// [`crate::store::Store::save_snapshot`]
-    pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+    pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
         let keep = async |connection: &Object| {
             let statement = connection.prepare_cached(sql::SAVE_SNAPSHOT).await?;
             match connection.execute(&statement, &[&id, &to_bigint(snapshot.sequence), &snapshot.state]).await {
@@ -113,7 +113,7 @@ impl ClientPool {
     }
 
     /// [`crate::store::Store::purge_expired`]
-    pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>, StoreError> {
+    pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>> {
         while to_bigint(with_retries!(self, ANSWER, connection => purge_receipts(connection))?) == RECEIPTS {}
         let Some((since, since_ns)) = idle_since.map(split_time) else {
             return Ok(Vec::new());

@@ -8,7 +8,7 @@ use futures::future::join_all;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
-use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Receipt, StoreError};
+use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Receipt, Result, StoreError};
 
 use super::batch_tx::WriterConnection;
 use super::client_pool::ClientPool;
@@ -42,7 +42,7 @@ impl Writer {
     }
 
     /// Makes a change, and returns when it is committed.
-    pub(super) async fn write(&self, change: Change, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    pub(super) async fn write(&self, change: Change, receipt: Option<Receipt>) -> Result<()> {
         let _pending = self.commits.pending.enter();
         let (answer, answered) = oneshot::channel();
         let request = WriteRequest { change, receipt, stamp: stamp(), answer };

@@ -10,7 +10,7 @@ use uuid::Uuid;
 
 use crate::store::jobs::{ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows::{self, RowReader as _};
-use crate::store::{Receipt, StoreError};
+use crate::store::{Receipt, Result, StoreError};
 
 use super::SqliteStore;
 use super::change::{ChangeError, Done, Transaction, check_key, insert_receipt};
@@ -135,7 +135,7 @@ fn chunks(database: &Connection, id: Uuid, first: u64, limit: usize) -> Result<V
 
 impl SqliteStore {
     /// Deletes the jobs past their time.
-    pub(super) async fn purge_jobs(&self) -> Result<(), StoreError> {
+    pub(super) async fn purge_jobs(&self) -> Result<()> {
         while self.change(1, [], |transaction| transaction.purge_job()).await? > 0 {}
         Ok(())
     }
@@ -143,41 +143,35 @@ impl SqliteStore {
 
 #[async_trait]
 impl JobStore for SqliteStore {
-    async fn create_job(
-        &self,
-        job: Job,
-        request: String,
-        limits: JobLimits,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError> {
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
         let (id, chunks) = (job.id, job.chunks());
         self.change(1, [], move |transaction| transaction.create_job(&job, &request, limits, receipt.as_ref())).await?;
         self.queue.add_job(id, 0..chunks);
         Ok(())
     }
 
-    async fn job(&self, id: Uuid) -> Result<Job, StoreError> {
+    async fn job(&self, id: Uuid) -> Result<Job> {
         self.readers.read(move |database| find(database, id)).await
     }
 
-    async fn job_request(&self, id: Uuid) -> Result<String, StoreError> {
+    async fn job_request(&self, id: Uuid) -> Result<String> {
         self.readers.read(move |database| request(database, id)).await
     }
 
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>, StoreError> {
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>> {
         Ok(self.queue.claim(owner, after))
     }
 
-    async fn renew(&self, claim: Claim, _: Duration) -> Result<bool, StoreError> {
+    async fn renew(&self, claim: Claim, _: Duration) -> Result<bool> {
         Ok(self.queue.is_claimed(claim))
     }
 
-    async fn release(&self, claim: Claim) -> Result<(), StoreError> {
+    async fn release(&self, claim: Claim) -> Result<()> {
         self.queue.release(claim);
         Ok(())
     }
 
-    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<(), StoreError> {
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
         let saved =
             self.change(1, [claim.job], move |transaction| transaction.save_chunk(claim, &result)).await.map(drop);
         if matches!(saved, Ok(()) | Err(StoreError::NotFound)) {
@@ -186,17 +180,17 @@ impl JobStore for SqliteStore {
         saved
     }
 
-    async fn fail_job(&self, id: Uuid, error: String) -> Result<(), StoreError> {
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
         self.change(1, [id], move |transaction| transaction.fail_job(id, &error)).await?;
         self.queue.remove_job(id);
         Ok(())
     }
 
-    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, StoreError> {
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
         self.readers.read(move |database| chunks(database, id, first, limit)).await
     }
 
-    async fn delete_job(&self, id: Uuid) -> Result<(), StoreError> {
+    async fn delete_job(&self, id: Uuid) -> Result<()> {
         self.change(1, [id], move |transaction| transaction.delete_job(id)).await?;
         self.queue.remove_job(id);
         // The writer has woken the listeners before the claims were gone.

@@ -30,7 +30,7 @@ use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
 use super::jobs::ChunkQueue;
-use super::{Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::{Changes, Commits, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 use change::{Change, ChangeError, Done, Transaction};
 use fork::Fork;
 use readers::Readers;
@@ -105,7 +105,7 @@ impl SqliteStore {
         weight: usize,
         touched: impl Into<Vec<Uuid>>,
         apply: impl Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send + 'static,
-    ) -> Result<u64, StoreError> {
+    ) -> Result<u64> {
         let ended = || StoreError::Failed("the writer of the database has ended".to_owned());
         let _pending = self.commits.pending.enter();
         let (reply, outcome) = oneshot::channel();
@@ -129,74 +129,63 @@ impl Drop for SqliteStore {
 
 #[async_trait]
 impl Store for SqliteStore {
-    async fn ready(&self) -> Result<(), StoreError> {
+    async fn ready(&self) -> Result<()> {
         if self.requests.as_ref().is_none_or(mpsc::Sender::is_closed) {
             return Err(StoreError::Failed("the writer of the database has ended".to_owned()));
         }
         self.readers.read(read::alive).await
     }
 
-    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         self.change(1, [], move |transaction| transaction.create(&session, receipt.as_ref())).await.map(drop)
     }
 
-    async fn find(&self, id: Uuid) -> Result<Session, StoreError> {
+    async fn find(&self, id: Uuid) -> Result<Session> {
         self.readers.read(move |database| read::find(database, id)).await
     }
 
-    async fn sequence(&self, id: Uuid) -> Result<u64, StoreError> {
+    async fn sequence(&self, id: Uuid) -> Result<u64> {
         self.readers.read(move |database| read::sequence(database, id)).await
     }
 
-    async fn list(
-        &self,
-        tenant: Option<Tenant>,
-        after: Option<Uuid>,
-        limit: usize,
-    ) -> Result<Vec<SessionSummary>, StoreError> {
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
         self.readers.read(move |database| read::list(database, tenant.as_ref(), after, limit)).await
     }
 
-    async fn append(
-        &self,
-        id: Uuid,
-        expected: u64,
-        records: Vec<Record>,
-        receipt: Option<Receipt>,
-    ) -> Result<(), StoreError> {
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
         let weight = records.len().max(1);
         let append =
             move |transaction: &mut Transaction<'_>| transaction.append(id, expected, &records, receipt.as_ref());
         self.change(weight, [id], append).await.map(drop)
     }
 
-    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, StoreError> {
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
         self.readers.read(move |database| read::history(database, id, after, limit)).await
     }
 
-    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let fork = Arc::new(Fork { id, copy, receipt });
         self.change(1, [], move |transaction| transaction.fork(&fork)).await.map(drop)
     }
 
-    async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError> {
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
         self.change(1, [id], move |transaction| transaction.delete(id, expected)).await.map(drop)
     }
 
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let key = key.to_owned();
         self.readers.read(move |database| read::receipt(database, &key, change::receipt_cutoff())).await
     }
 
-    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>, StoreError> {
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
         self.readers.read(move |database| read::snapshot(database, id)).await
     }
 
-    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
         self.change(1, [], move |transaction| transaction.save_snapshot(id, &snapshot)).await.map(drop)
     }
 
-    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError> {
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
         while self.change(1, [], |transaction| transaction.purge_receipts()).await? > 0 {}
         self.purge_jobs().await?;
         let Some(since) = idle_since else { return Ok(0) };
@@ -220,7 +209,7 @@ impl Store for SqliteStore {
         Some(&self.commits)
     }
 
-    async fn check_integrity(&self) -> Result<Vec<String>, StoreError> {
+    async fn check_integrity(&self) -> Result<Vec<String>> {
         self.readers.read(read::check_integrity).await
     }
 }

@@ -8,7 +8,7 @@ use rusqlite::{Connection, OpenFlags};
 use tokio::sync::Semaphore;
 use tokio::task::spawn_blocking;
 
-use crate::store::StoreError;
+use crate::store::{Result, StoreError};
 
 use super::fault::{Stage, store_error};
 
@@ -65,7 +65,7 @@ impl Readers {
     pub(super) async fn read<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,
-    ) -> Result<T, StoreError> {
+    ) -> Result<T> {
         let permit = Arc::clone(&self.permits).acquire_owned().await;
         let idle = Arc::clone(&self.idle);
         let task = spawn_blocking(move || {

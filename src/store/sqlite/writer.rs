@@ -12,7 +12,7 @@ use rusqlite::Connection;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::{Changes, Commits, StoreError};
+use crate::store::{Changes, Commits, Result, StoreError};
 
 use super::change::{Change, ChangeError, Done, Transaction};
 use super::fault::{Stage, store_error, worth_splitting};
@@ -31,7 +31,7 @@ pub(super) struct Request {
 }
 
 /// Where the outcome of a change goes.
-type Reply = oneshot::Sender<Result<u64, StoreError>>;
+type Reply = oneshot::Sender<Result<u64>>;
 
 /// The state of the writing thread.
 pub(super) struct Writer {
@@ -125,7 +125,7 @@ impl Writer {
         }
     }
 
-    fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
+    fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done>>, Failure> {
         let (mut number, begin) = (self.next_number, Instant::now());
         let outcomes = self.transaction(|database, cache| {
             let mut outcomes = Vec::with_capacity(batch.len());
@@ -144,7 +144,7 @@ impl Writer {
         Ok(outcomes)
     }
 
-    fn finish(&mut self, request: Request, outcome: Result<Done, StoreError>) {
+    fn finish(&mut self, request: Request, outcome: Result<Done>) {
         let Request { change, reply } = request;
         let count = match outcome {
             Err(error) => return answer(reply, Err(error)),
@@ -247,7 +247,7 @@ fn collect_batch(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<
     batch
 }
 
-fn answer(reply: Reply, outcome: Result<u64, StoreError>) {
+fn answer(reply: Reply, outcome: Result<u64>) {
     // Whoever has left does not want to know.
     let _ = reply.send(outcome);
 }

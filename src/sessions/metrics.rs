@@ -6,16 +6,16 @@ use crate::store::Commits;
 use super::Sessions;
 
 /// What happens as it happens.
-pub(super) struct Meters {
+pub(super) struct SessionMetrics {
     /// Moves that are stored.
     pub(super) moves: Counter,
     /// How long it took to bring a session that was not at hand from the store, s.
     pub(super) open: Histogram,
 }
 
-impl Default for Meters {
-    fn default() -> Meters {
-        Meters { moves: Counter::default(), open: Histogram::new(SECONDS) }
+impl Default for SessionMetrics {
+    fn default() -> SessionMetrics {
+        SessionMetrics { moves: Counter::default(), open: Histogram::new(SECONDS) }
     }
 }
 
@@ -45,9 +45,9 @@ impl Sessions {
     pub fn readings(&self) -> Readings<'_> {
         let (bytes, at_hand) = self.common.cache.held();
         Readings {
-            moves: self.common.meters.moves.get(),
+            moves: self.common.metrics.moves.get(),
             hits: self.common.cache.hits(),
-            open: &self.common.meters.open,
+            open: &self.common.metrics.open,
             at_hand,
             bytes,
             capacity: self.common.cache.capacity(),
