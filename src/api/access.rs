@@ -115,8 +115,8 @@ impl FromRequestParts<App> for Own {
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Self::Rejection> {
         let mut own = app.clone();
         if let Some(tenant) = parts.extensions.get::<Tenant>() {
-            own.sessions = app.sessions.of(tenant.clone());
-            own.jobs = app.jobs.of(tenant.clone());
+            own.sessions = app.sessions.for_tenant(tenant.clone());
+            own.jobs = app.jobs.for_tenant(tenant.clone());
         }
         Ok(Own(own))
     }

@@ -71,7 +71,7 @@ fn sessions(page: &mut Page, readings: &Readings<'_>) {
     page.single("stickslip_cache_hits_total", "counter", help, readings.hits);
     let help = "Times that it was not, and was brought from the store.";
     page.single("stickslip_cache_misses_total", "counter", help, readings.open.count());
-    page.single("stickslip_cache_contacts", "gauge", "Contacts in memory that nobody works on.", readings.at_hand);
+    page.single("stickslip_cache_contacts", "gauge", "Contacts in memory that nobody works on.", readings.cached);
     page.single("stickslip_cache_bytes", "gauge", "Bytes of their states.", readings.bytes);
     let help = "Bytes that the states may take, as set by --cache-bytes.";
     page.single("stickslip_cache_capacity_bytes", "gauge", help, readings.capacity);

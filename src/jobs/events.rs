@@ -34,7 +34,7 @@ impl Jobs {
         // Before the first read, so that no change falls between it and the first wait.
         let listener = self.common.listeners.listen(self.common.store.changes(), id);
         let listener = listener.ok_or(JobError::TooManyStreams)?;
-        self.own(id).await?;
+        self.find_own(id).await?;
         let follower = Follower { jobs: self.clone(), id, last: None, listener, ended: false };
         Ok(futures::stream::unfold(follower, Follower::next))
     }

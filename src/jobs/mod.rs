@@ -1,7 +1,7 @@
 //! Sweeps, at once or as jobs that go on after their request has been answered.
 //!
 //! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks under
-//! way and no others, and whoever works on the same store goes on with the rest. Jobs take turns, chunk by chunk. What a
+//! way and no others, and any process on the same store goes on with the rest. Jobs take turns, chunk by chunk. What a
 //! tenant may ask for is bounded in number, bytes and work.
 
 mod error;
@@ -33,11 +33,11 @@ pub const AT_ONCE: Nanoseconds = 1_000_000_000;
 pub const LIMITS: JobLimits = JobLimits { jobs: 50, bytes: 512 * 1024 * 1024, cost: 48 * HOUR };
 /// What one job may cost.
 pub const LARGEST_JOB: Nanoseconds = 12 * HOUR;
-/// How long a process may be silent before others take what it works on.
+/// How long a process may be silent before others claim its chunks.
 pub const LEASE: Duration = Duration::from_secs(30);
 
 const HOUR: Nanoseconds = 3_600_000_000_000;
-/// Bytes of a number in a result, stored or at hand.
+/// Bytes of a number in a result, stored or in memory.
 const NUMBER_BYTES: usize = 8;
 /// What a job takes beside its request and its result.
 const JOB_BYTES: usize = 4_096;
@@ -56,9 +56,9 @@ struct Common {
     pool: Pool,
     // Made with the first sweep.
     workers: OnceLock<Result<Workers, String>>,
-    // Tells those who work that there is something to do.
+    // Wakes the workers of this process: there is a new job.
     new: Notify,
-    // What this process calls itself where it takes chunks.
+    // The name of this process in its claims.
     owner: Uuid,
     // Those who follow jobs; their end is also that of the work on jobs.
     listeners: Listeners,
@@ -98,7 +98,7 @@ impl Jobs {
 
     /// The jobs of another tenant.
     #[must_use]
-    pub fn of(&self, tenant: Tenant) -> Jobs {
+    pub fn for_tenant(&self, tenant: Tenant) -> Jobs {
         Jobs { tenant, common: Arc::clone(&self.common) }
     }
 
@@ -123,7 +123,7 @@ impl Jobs {
         made.as_ref().map_err(|why| JobError::Broken(format!("no threads for sweeps: {why}")))
     }
 
-    /// Makes a job of a sweep. The reply is the job as it stands then.
+    /// Makes a job of a sweep. The reply is the job as it is then.
     ///
     /// # Errors
     /// [`JobError`]; no job has been made then.
@@ -152,7 +152,7 @@ impl Jobs {
             bytes: bytes as u64,
             cost: sweep.cost(),
         };
-        let body = serde_json::to_vec(&told(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
+        let body = serde_json::to_vec(&job_reply(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
         let reply = Reply { created: Some(job.id), sequence: 0, body };
         if let Err(error) = self.common.store.create_job(job, request, LIMITS, idempotent.receipt(&reply)).await {
             return Ok(idempotent.after_refusal(error).await?);
@@ -161,25 +161,25 @@ impl Jobs {
         Ok(reply)
     }
 
-    async fn own(&self, id: Uuid) -> Result<Job, JobError> {
-        let job = self.common.store.job(id).await.map_err(refused(id))?;
+    async fn find_own(&self, id: Uuid) -> Result<Job, JobError> {
+        let job = self.common.store.job(id).await.map_err(store_error(id))?;
         if job.tenant == self.tenant { Ok(job) } else { Err(JobError::NotFound(id)) }
     }
 
-    /// How a job stands.
+    /// The progress of a job.
     ///
     /// # Errors
     /// [`JobError::NotFound`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<JobReply, JobError> {
-        self.own(id).await.map(|job| told(&job))
+        self.find_own(id).await.map(|job| job_reply(&job))
     }
 
-    /// Bytes that the result of a job takes at hand.
+    /// Bytes that the result of a job takes in memory.
     ///
     /// # Errors
     /// [`JobError::NotFound`], [`JobError::Unfinished`], [`JobError::Failed`], or a failure of the store.
     pub async fn size(&self, id: Uuid) -> Result<usize, JobError> {
-        let job = self.own(id).await?;
+        let job = self.find_own(id).await?;
         match (job.finished_at, job.error) {
             (_, Some(error)) => Err(JobError::Failed(error)),
             (None, None) => Err(JobError::Unfinished { done: job.done, points: job.points }),
@@ -193,17 +193,17 @@ impl Jobs {
     /// As [`Jobs::size`].
     pub async fn result(&self, id: Uuid) -> Result<(Draft, Rows), JobError> {
         self.size(id).await?;
-        let job = self.own(id).await?;
-        let request = self.common.store.job_request(id).await.map_err(refused(id))?;
+        let job = self.find_own(id).await?;
+        let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
         let read = move || wire::read::<SweepRequest>(request.as_bytes());
         let draft = self.common.pool.run(INLINE, read).await?;
         let draft = draft.map_err(|error| JobError::Broken(format!("a job cannot be read: {error}")))?;
         let (mut rows, mut next) = (Rows::default(), 0);
         while next < job.chunks() {
-            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(refused(id))?;
+            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(store_error(id))?;
             if chunks.is_empty() {
-                // Deleted meanwhile, or else not whole.
-                self.own(id).await?;
+                // Deleted meanwhile, or else incomplete.
+                self.find_own(id).await?;
                 return Err(JobError::Broken(format!("chunk {next} of job {id} is missing")));
             }
             for content in chunks {
@@ -222,21 +222,21 @@ impl Jobs {
     /// # Errors
     /// [`JobError::NotFound`], or a failure of the store.
     pub async fn delete(&self, id: Uuid) -> Result<(), JobError> {
-        self.own(id).await?;
-        self.common.store.delete_job(id).await.map_err(refused(id))
+        self.find_own(id).await?;
+        self.common.store.delete_job(id).await.map_err(store_error(id))
     }
 }
 
-/// What a refusal of the store means for a job.
-fn refused(id: Uuid) -> impl Fn(StoreError) -> JobError {
+/// What an error of the store means for a job.
+fn store_error(id: Uuid) -> impl Fn(StoreError) -> JobError {
     move |error| match error {
         StoreError::NotFound => JobError::NotFound(id),
         other => JobError::Store(other),
     }
 }
 
-/// A job as its owner is told of it.
-fn told(job: &Job) -> JobReply {
+/// A job as its owner sees it.
+fn job_reply(job: &Job) -> JobReply {
     let state = match (job.finished_at, &job.error) {
         (_, Some(_)) => JobState::Failed,
         (Some(_), None) => JobState::Done,

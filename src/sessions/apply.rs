@@ -1,4 +1,4 @@
-//! Moving a session on: the one place where it changes.
+//! Applying moves to a session: the one place where it changes.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -35,7 +35,7 @@ impl Sessions {
     ///
     /// # Errors
     /// [`SessionError`]; nothing has changed then.
-    pub async fn advance(
+    pub async fn apply_moves(
         &self,
         id: Uuid,
         advance: Advance,
@@ -47,15 +47,15 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        // Whoever hangs up in the queue has left it.
+        // A client that hangs up in the queue leaves it.
         let mut guard = self.lock(id).await?;
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
-        // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
+        // A cached state may be behind the store. A refusal counts only once the state has caught up.
         let mut caught_up = guard.live.is_none();
         let mut found = 0;
         for _ in 0..ATTEMPTS {
-            // Again, now that a twin of this request that stood before it in the queue, here or elsewhere, is done.
+            // Again, because the same request, sent twice, may have been done here or elsewhere while this one waited.
             if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
@@ -77,7 +77,7 @@ impl Sessions {
                 Err(error) => return Err(error),
             };
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
-            // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
+            // nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
             match self.common.store.append(guard.id(), sequence, records, request.receipt(&reply)).await {
                 Ok(()) => {

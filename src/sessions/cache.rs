@@ -1,7 +1,7 @@
-//! The states at hand, least recently used out, and the lock of each session that somebody works on.
+//! The cached states, of which the least recently used go first, and the locks of the sessions in use.
 //!
-//! Whoever works on a session takes its state out of the cache, and puts it back at the end with the size that it has then.
-//! A session that nobody works on has no lock, and one that is not at hand takes no memory: asking for identifiers that do
+//! A request takes the state of its session out of the cache, and puts it back at the end with the size that it has then.
+//! A session that no request uses has no lock, and one that is not cached takes no memory: asking for identifiers that do
 //! not exist leaves nothing behind, and a million idle sessions are the store's alone.
 
 use std::collections::HashMap;
@@ -17,11 +17,10 @@ use crate::store::Tenant;
 
 use super::loaded::LoadedSession;
 
-/// How many bytes of states are kept at hand by default.
+/// How many bytes of states are cached by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;
 
-/// A session as one tenant names it. Under the key of a session of somebody else there is nothing at hand and nobody to
-/// wait for.
+/// A session of a tenant. Under the identifier of another tenant's session a tenant finds neither a state nor a lock.
 type Key = (Tenant, Uuid);
 
 /// States and locks.
@@ -30,11 +29,11 @@ pub(super) struct Cache {
     locks: Mutex<HashMap<Key, LockEntry>>,
     states: Mutex<States>,
     capacity: usize,
-    // How often a state that was asked for was at hand.
+    // How often a state that was asked for was cached.
     hits: Counter,
 }
 
-/// A session that somebody works on or waits for. It goes with the last of them, so that a session has one lock at a time.
+/// The lock of a session that requests use or wait for. It goes with the last of them, so that a session has one lock at a time.
 #[derive(Default)]
 struct LockEntry {
     // The lock is fair, so that moves apply in the order of their arrival.
@@ -42,24 +41,24 @@ struct LockEntry {
     users: usize,
 }
 
-/// States that nobody works on, with their bytes.
+/// States that no request uses, with their bytes.
 struct States {
     by_key: LruCache<Key, (Box<LoadedSession>, usize)>,
     bytes: usize,
 }
 
-/// A session that is one's own until the guard is dropped, when its state goes back to the cache.
+/// Exclusive use of a session until the guard is dropped, when its state goes back to the cache.
 pub(super) struct Guard {
-    /// The state, if it is at hand: that after some move that is stored, though perhaps not the last.
+    /// The state, if it is cached: that after a stored move, though perhaps not the last.
     pub(super) live: Option<Box<LoadedSession>>,
     /// The memory of a state that did not come out of the cache.
     pub(super) held: Reservation,
-    // Declared, and so released, before the entry is left: whoever comes in between finds the entry and waits at it.
+    // Declared, and so released, before the user: a request that comes in between finds the entry and waits for its lock.
     _lock: OwnedMutexGuard<()>,
     user: LockUser,
 }
 
-/// One of the users of a entry.
+/// One of the users of a lock.
 struct LockUser {
     cache: Arc<Cache>,
     key: Key,
@@ -72,14 +71,14 @@ impl Cache {
         Cache { locks: Mutex::default(), states: Mutex::new(states), capacity, hits: Counter::default() }
     }
 
-    /// Waits until the session is one's own. Whoever gives up waiting has left.
+    /// Waits for exclusive use of a session. A dropped future no longer waits.
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
         let (lock, user) = self.enter((tenant.clone(), id));
         let lock = lock.lock_owned().await;
         Guard { live: self.take(&user.key), held: Reservation::default(), _lock: lock, user }
     }
 
-    /// Whether the state of a session is at hand.
+    /// Whether the state of a session is cached.
     pub(super) fn holds(&self, tenant: &Tenant, id: Uuid) -> bool {
         self.states().by_key.contains_key(&(tenant.clone(), id))
     }
@@ -89,12 +88,12 @@ impl Cache {
         self.capacity
     }
 
-    /// How often a state was at hand.
+    /// How often a state was cached.
     pub(super) fn hits(&self) -> u64 {
         self.hits.get()
     }
 
-    /// Bytes of the states at hand, and how many they are.
+    /// Bytes of the cached states, and how many they are.
     pub(super) fn held(&self) -> (usize, usize) {
         let states = self.states();
         (states.bytes, states.by_key.len())
@@ -118,7 +117,7 @@ impl Cache {
     fn put(&self, live: Box<LoadedSession>) {
         let bytes = live.bytes();
         if bytes > self.capacity {
-            // It would drive out all others and go with them.
+            // It would evict all others and itself.
             return;
         }
         let mut gone = Vec::new();

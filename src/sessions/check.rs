@@ -65,7 +65,7 @@ impl fmt::Display for Checked {
 }
 
 /// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by `tolerance`,
-/// relative to the largest that the session has seen; nought means not in a single bit.
+/// relative to the largest that the session has had; 0 means not in a single bit.
 ///
 /// # Errors
 /// [`StoreError::Unavailable`] if the store cannot be asked to the end.

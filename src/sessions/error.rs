@@ -43,7 +43,7 @@ pub enum SessionError {
     /// As many clients listen to events as may.
     #[error("{} clients listen to events, and no more may", super::STREAMS)]
     TooManyStreams,
-    /// The mechanics has no answer, or nobody waits for it.
+    /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
     Failure(#[from] simulation::Failure),
     /// The idempotency key belongs to another request.

@@ -9,7 +9,7 @@ use super::Sessions;
 pub(super) struct SessionMetrics {
     /// Moves that are stored.
     pub(super) moves: Counter,
-    /// How long it took to bring a session that was not at hand from the store, s.
+    /// How long it took to load a session that was not cached, s.
     pub(super) open: Histogram,
 }
 
@@ -23,12 +23,12 @@ impl Default for SessionMetrics {
 pub struct Readings<'a> {
     /// Moves that have been made and stored.
     pub moves: u64,
-    /// How often a session that was asked for was at hand.
+    /// How often a session that was asked for was cached.
     pub hits: u64,
-    /// How long it took to bring those that were not, s.
+    /// How long it took to load those that were not, s.
     pub open: &'a Histogram,
-    /// Sessions at hand that nobody works on.
-    pub at_hand: usize,
+    /// Cached sessions that no request uses.
+    pub cached: usize,
     /// Bytes of their states.
     pub bytes: usize,
     /// How many bytes there may be.
@@ -43,12 +43,12 @@ impl Sessions {
     /// How the sessions are doing.
     #[must_use]
     pub fn readings(&self) -> Readings<'_> {
-        let (bytes, at_hand) = self.common.cache.held();
+        let (bytes, cached) = self.common.cache.held();
         Readings {
             moves: self.common.metrics.moves.get(),
             hits: self.common.cache.hits(),
             open: &self.common.metrics.open,
-            at_hand,
+            cached,
             bytes,
             capacity: self.common.cache.capacity(),
             streams: self.common.listeners.count(),

@@ -1,16 +1,16 @@
-//! A contact that lives: one writer a session, a cache of states, and the past replayed where the cache has none.
+//! Contacts that live: one writer for each, a cache of states, and a replay of the moves where a state is not cached.
 //!
 //! Moves of one session queue at its lock in the order of their arrival; sessions do not wait for each other. A move is
-//! computed, appended to the store, and only then visible: whoever reads a state reads one that is stored. A client that
+//! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that
 //! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client that
-//! loses its connection must expect, and whoever comes next asks the store.
+//! loses its connection must expect, and the next request asks the store.
 //!
-//! Other processes may work on the same store. A state at hand is always one that the session has been in, so that the
-//! moves stored beyond it lead to the present one: a read makes them first, and a move whose number the store has given
-//! away makes them and tries again. What has been deleted or has expired is told by the store too, whatever is at hand.
+//! Other processes may work on the same store. A cached state is always one that the session has been in, so that
+//! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another process has
+//! taken applies them and tries again. The store also says what has been deleted or has expired, whatever is cached.
 //!
-//! A handle works for one tenant ([`Sessions::of`]). What belongs to others is not there for it: their states and locks have
-//! other names, and what comes from the store is looked at before it is used.
+//! A handle works for one tenant ([`Sessions::for_tenant`]) and does not see what belongs to others: their states and locks
+//! have other keys, and the tenant of what comes from the store is checked before it is used.
 
 mod apply;
 mod cache;
@@ -44,7 +44,7 @@ pub use events::STREAMS;
 use loaded::LoadedSession;
 pub use metrics::Readings;
 
-/// How often a change that another process has forestalled is tried. Each time, that process has got on.
+/// How often a change is tried that other processes overtake. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
@@ -59,14 +59,14 @@ struct Common {
     store: Arc<dyn Store>,
     pool: Pool,
     cache: Arc<Cache>,
-    // A permit for each snapshot that is being kept.
+    // A permit for each snapshot that is being stored.
     snapshots: Arc<Semaphore>,
     listeners: Listeners,
     metrics: metrics::SessionMetrics,
 }
 
 impl Sessions {
-    /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are kept at hand; the rest is
+    /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are cached; the rest is
     /// replayed when needed.
     #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
@@ -83,7 +83,7 @@ impl Sessions {
 
     /// The sessions of another tenant.
     #[must_use]
-    pub fn of(&self, tenant: Tenant) -> Sessions {
+    pub fn for_tenant(&self, tenant: Tenant) -> Sessions {
         Sessions { tenant, common: Arc::clone(&self.common) }
     }
 
@@ -95,7 +95,7 @@ impl Sessions {
         self.common.store.ready().await.map_err(SessionError::Store)
     }
 
-    /// Bytes of the states that are kept at hand, and how many sessions they are.
+    /// Bytes of the cached states, and how many sessions they are.
     #[must_use]
     pub fn held(&self) -> (usize, usize) {
         self.common.cache.held()
@@ -106,7 +106,7 @@ impl Sessions {
         IdempotentRequest::new(&*self.common.store, &self.tenant, key)
     }
 
-    /// A session to work on: waits for those who came before, as long as the pool lets it.
+    /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
     }
@@ -132,7 +132,7 @@ impl Sessions {
         };
         let live = LoadedSession::start(session, creation.setup)?;
         let reply = live.created_reply()?;
-        // Whoever finds the new session in the store waits until it is at hand.
+        // A request that finds the new session in the store waits until it is cached.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
         if let Err(error) = self.common.store.create(live.session.clone(), request.receipt(&reply)).await {
             return Ok(request.after_refusal(error).await?);
@@ -141,7 +141,7 @@ impl Sessions {
         Ok(reply)
     }
 
-    /// Makes a session with the same past.
+    /// Makes a session with the same moves.
     ///
     /// # Errors
     /// [`SessionError`]; nothing has been made then.

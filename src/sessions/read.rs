@@ -101,7 +101,7 @@ impl Sessions {
         Ok(SessionPage { items: found, next })
     }
 
-    /// A page of a session's past, oldest first.
+    /// A page of a session's moves, oldest first.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
@@ -112,7 +112,7 @@ impl Sessions {
         self.history_page(id, after, limit).await
     }
 
-    /// The same of a session that is known to be one's own.
+    /// The same of a session that is known to belong to the tenant.
     pub(super) async fn history_page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         let mut found =
             self.common.store.history(id, after, limit + 1).await.map_err(|error| self.store_error(id, error))?;

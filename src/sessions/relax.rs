@@ -42,11 +42,11 @@ impl Sessions {
         self.with_copy(id, said, None, task, move |live, stop| written(&find_protocol(live, &task, stop)?)).await
     }
 
-    /// What [`Sessions::advance`] would do to relax a session at the sequence that the client expects; nothing is changed.
+    /// What [`Sessions::apply_moves`] would do to relax a session at the sequence that the client expects; nothing changes.
     ///
     /// # Errors
     /// [`SessionError`].
-    pub async fn rehearse(
+    pub async fn dry_run_relax(
         &self,
         id: Uuid,
         relaxation: Relaxation,

@@ -1,4 +1,4 @@
-//! From what is stored to a state: the newest snapshot, and the moves beyond it.
+//! From what is stored to a state: the newest snapshot, and the moves after it.
 
 use std::time::Instant;
 
@@ -20,8 +20,8 @@ const PIECES: usize = 4;
 const PIECE_BYTES: usize = 96;
 
 impl Sessions {
-    /// The session as it is at hand, or else as it is stored. Other processes may have moved it on, or deleted it: what comes
-    /// of it is to be held against the store.
+    /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the result is
+    /// to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.is_none() {
             self.load(guard).await?;
@@ -32,20 +32,20 @@ impl Sessions {
 
     /// The session as it is stored: with what other processes have done to it up to now.
     pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
-        if let Some(at_hand) = guard.live.as_ref().map(|live| live.session.sequence) {
+        if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
             let stored =
                 self.common.store.sequence(guard.id()).await.map_err(|error| self.store_failure(guard, error))?;
-            if stored > at_hand {
+            if stored > cached {
                 self.catch_up(guard).await?;
-            } else if stored < at_hand {
-                // The store has been put back to an earlier time.
+            } else if stored < cached {
+                // The store has been restored from a backup.
                 guard.live = None;
             }
         }
         self.cached(guard).await
     }
 
-    /// Makes the moves that are stored beyond the state at hand; says whether there were any.
+    /// Applies the moves that are stored after the cached state; returns whether there were any.
     pub(super) async fn catch_up(&self, guard: &mut Guard) -> Result<bool, SessionError> {
         let id = guard.id();
         let mut moved = false;
@@ -77,7 +77,7 @@ impl Sessions {
         Ok(moved)
     }
 
-    /// Brings a session that is not at hand from the store.
+    /// Loads a session that is not cached from the store.
     async fn load(&self, guard: &mut Guard) -> Result<(), SessionError> {
         let (id, begin) = (guard.id(), Instant::now());
         // The snapshot first: taken later, it might be of a move that the session found has not made yet.
@@ -108,7 +108,7 @@ impl Sessions {
         Ok(())
     }
 
-    /// Makes moves of the past.
+    /// Applies stored moves.
     async fn follow(
         &self,
         mut live: Box<LoadedSession>,
@@ -131,7 +131,7 @@ impl Sessions {
         })
     }
 
-    /// The session as it is stored, if it is one's own.
+    /// The session as it is stored, if it belongs to the tenant.
     pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
         match self.common.store.find(id).await {
             Ok(session) if session.tenant == self.tenant => Ok(session),

@@ -12,7 +12,7 @@ use stickslip_mechanics::Contact;
 use super::loaded::LoadedSession;
 use super::{SessionError, Sessions};
 
-/// Snapshots that are being kept at a time. A session for which there is no room tries again with its next move.
+/// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.
 pub(super) const AT_ONCE: usize = 2;
 /// No replay shorter than this is worth a snapshot.
 const LEAST: Duration = Duration::from_millis(20);
@@ -23,7 +23,7 @@ const BYTE: Duration = Duration::from_nanos(3);
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 
-/// The way that a replay would have to go beyond the last snapshot.
+/// What a replay from the last snapshot would cost.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ReplayCost {
     moves: u32,
@@ -37,7 +37,7 @@ impl ReplayCost {
         self.work = self.work.saturating_add(work);
     }
 
-    /// Whether a snapshot of so many bytes is worth its while.
+    /// Whether a snapshot of so many bytes costs less than the replay that it spares.
     fn is_worth_snapshot(self, bytes: usize) -> bool {
         let spared = self.work.saturating_add(FETCH.saturating_mul(self.moves));
         spared >= LEAST.max(BYTE.saturating_mul(u32::try_from(bytes).unwrap_or(u32::MAX)))
@@ -45,7 +45,7 @@ impl ReplayCost {
 }
 
 impl Sessions {
-    /// Has a snapshot of a stored state kept in the background, if one is due.
+    /// Stores a snapshot of a stored state in the background, if one is due.
     pub(super) fn offer_snapshot(&self, live: &mut LoadedSession) {
         if !live.replay_cost.is_worth_snapshot(live.contact.packed_length()) {
             return;
@@ -59,12 +59,12 @@ impl Sessions {
             let Ok(state) = tokio::task::spawn_blocking(move || with_checksum(&contact)).await else { return };
             // The session loses nothing by it but time.
             if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }).await {
-                tracing::warn!(%id, sequence, %error, "a snapshot was not kept");
+                tracing::warn!(%id, sequence, %error, "a snapshot was not stored");
             }
         });
     }
 
-    /// The contact after some stored move and the number of that move; `initial` and nought if there is no snapshot to read.
+    /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read.
     pub(super) async fn load_snapshot(
         &self,
         snapshot: Result<Option<Snapshot>, StoreError>,
@@ -131,9 +131,9 @@ mod tests {
     #[test]
     fn snapshots_are_rare_where_they_are_large_and_frequent_where_moves_are_dear() {
         let after = |moves, micros| {
-            let mut beyond = ReplayCost::default();
-            beyond.add(moves, Duration::from_micros(micros));
-            beyond
+            let mut cost = ReplayCost::default();
+            cost.add(moves, Duration::from_micros(micros));
+            cost
         };
         assert!(!after(5_000, 2_000).is_worth_snapshot(1_000));
         assert!(after(10_000, 0).is_worth_snapshot(1_000));

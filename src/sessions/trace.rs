@@ -1,4 +1,4 @@
-//! The way between recorded states, made again in small steps beside the session, which does not move.
+//! The path between recorded states, computed again in small steps on a copy: the session itself does not move.
 
 use uuid::Uuid;
 
@@ -21,7 +21,7 @@ const PIECE: usize = 96;
 const POINTS: &str = "/points_per_move";
 
 impl Sessions {
-    /// The loop through moves of the past, so many points a move; `past` are those moves, and the first comes after the move
+    /// The loop through earlier moves, with so many points a move; `past` are those moves, and the first follows the move
     /// `after`.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl Sessions {
     }
 }
 
-/// Makes a move of the past, and before it notes the points on its way.
+/// Applies an earlier move, after adding the points on its way to the page.
 fn trace_move(
     contact: &mut Contact,
     record: &Record,

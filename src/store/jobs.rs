@@ -1,8 +1,7 @@
 //! Jobs: work that goes on after its request has been answered, in chunks whose results are kept as they come.
 //!
 //! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are claimed
-//! by whoever has time for them, and a claim ends with its holder. What a chunk comes to are bytes that the store does not
-//! read.
+//! by any worker, and a claim ends with its worker. The store does not read the bytes of a result.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Unbounded};
@@ -88,9 +87,7 @@ impl JobLimits {
         }
         if cost.saturating_add(new.cost) > self.cost {
             let allowed = Duration::from_nanos(self.cost).as_secs();
-            return Err(StoreError::TooManyJobs(format!(
-                "the jobs under way may have {allowed} s of work before them"
-            )));
+            return Err(StoreError::TooManyJobs(format!("the jobs that are not done may need {allowed} s of work")));
         }
         Ok(())
     }

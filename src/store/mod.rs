@@ -1,9 +1,9 @@
-//! What must survive: definitions, the moves made since, and the replies that a retry is owed.
+//! What must survive: definitions, the moves made since, and the replies that retries get again.
 //!
 //! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
 //! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
-//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] tells them apart by
-//! their URLs.
+//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by
+//! the URL.
 
 pub mod changes;
 pub mod commits;
@@ -38,8 +38,8 @@ pub use sqlite::SqliteStore;
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
-/// Whose sessions are: who has a key of one tenant knows nothing of the others. Without keys there is one tenant, and it has
-/// no name.
+/// Who owns sessions: a key of one tenant gives no access to those of others. Without keys there is one tenant, without a
+/// name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Tenant(Arc<str>);
 
@@ -145,13 +145,13 @@ pub struct Snapshot {
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// There is no such session.
-    #[error("there is no such session")]
+    #[error("there is no such contact")]
     NotFound,
     /// There was such a session, of this tenant; it has expired.
-    #[error("the session has expired")]
+    #[error("the contact has expired")]
     Expired(Tenant),
     /// The session has another sequence than expected.
-    #[error("the session is at sequence {found}")]
+    #[error("the contact is at sequence {found}")]
     Stale {
         /// Its sequence.
         found: u64,
@@ -159,7 +159,7 @@ pub enum StoreError {
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
-    /// The tenant has as many jobs as it may, and says what there is too much of.
+    /// The tenant has as many jobs as it may; the text says which limit is reached.
     #[error("{0}")]
     TooManyJobs(String),
     /// There is no room left. Nothing has changed.

@@ -1,4 +1,4 @@
-//! One batch on its way: a whole transaction sent at once, so that it costs one round trip however many requests it has.
+//! One batch of requests: a whole transaction sent at once, which costs one round trip however many requests it has.
 
 use std::collections::HashMap;
 
@@ -22,7 +22,7 @@ pub(super) struct WriterConnection {
     lock: Statement,
     append: Statement,
     create: Statement,
-    /// None where the engine knows no announcements.
+    /// None where the database has no notifications.
     notify: Option<Statement>,
 }
 
@@ -71,7 +71,7 @@ impl WriterConnection {
         let announced: [Parameter<'_>; 2] = [&sql::CHANNEL, &columns.announcements];
 
         // Polled in this order, and sent as they are polled.
-        let flight = async {
+        let transaction = async {
             futures::join!(
                 self.client.batch_execute(sql::BEGIN),
                 self.client.query(&self.lock, &locked),
@@ -98,9 +98,9 @@ impl WriterConnection {
                 self.client.batch_execute(sql::COMMIT),
             )
         };
-        let landed = timeout(ANSWER, flight).await.map_err(|_| Fault::no_answer())?;
+        let answers = timeout(ANSWER, transaction).await.map_err(|_| Fault::no_answer())?;
         // The first failure is the cause of the others, and of a commit that was none.
-        let (begun, found, appended, created, notified, committed) = landed;
+        let (begun, found, appended, created, notified, committed) = answers;
         begun?;
         let found = found?;
         appended?;

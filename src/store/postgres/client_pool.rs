@@ -1,5 +1,4 @@
-//! The way to the database for all that does not go through the writer: a pool of connections, and another try where a
-//! connection is lost.
+//! A pool of connections for all that does not go through the writer, with retries where a connection is lost.
 
 use std::time::Duration;
 
@@ -17,12 +16,12 @@ use super::sql;
 const CONNECTIONS: usize = 8;
 /// How long a call waits for a free connection, or for a new one.
 const PATIENCE_FOR_CONNECTION: Duration = Duration::from_secs(5);
-/// How long an answer may take: longer than the engine itself allows a statement, so that it is the engine that gives up
+/// How long an answer may take: longer than the database itself allows a statement, so that the database gives up first
 /// unless it cannot be reached.
 pub(super) const ANSWER: Duration = Duration::from_secs(15);
 /// The same for statements that copy or delete whole pasts.
 pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
-/// How often work is begun anew on the whole, and because two transactions got in each other's way.
+/// How often work is tried in all, and how often because two transactions conflicted.
 const TRIES: usize = 12;
 const COLLISIONS: usize = 5;
 
@@ -69,11 +68,11 @@ pub(super) use {try_once, with_retries};
 /// A parameter of a statement.
 pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 
-/// The way to the database.
+/// A pool of connections to the database.
 pub(super) struct ClientPool {
     pub(super) target: ConnectTarget,
     pub(super) outage: Outage,
-    /// Whether the engine knows announcements.
+    /// Whether the database has notifications.
     pub(super) announces: bool,
     pool: Pool,
 }

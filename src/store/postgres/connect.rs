@@ -1,7 +1,7 @@
-//! Where the database is, and how the way there is protected.
+//! Where the database is, and how connections to it are protected.
 //!
-//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`ConnectTarget::place`] says host, database
-//! and user.
+//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`ConnectTarget::address`] has host and database
+//! alone.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -59,7 +59,7 @@ impl ConnectTarget {
     }
 
     /// The database in words, without the password.
-    pub(super) fn place(&self) -> String {
+    pub(super) fn address(&self) -> String {
         let hosts = self.config.get_hosts().iter().map(|host| match host {
             Host::Tcp(name) => name.clone(),
             Host::Unix(path) => path.display().to_string(),
@@ -84,7 +84,7 @@ impl ConnectTarget {
     }
 }
 
-/// An error of the driver with what lies under it: alone it says little.
+/// An error of the driver with its causes: alone it says little.
 pub(super) fn error_chain(error: &Error) -> String {
     let mut text = error.to_string();
     let mut source = std::error::Error::source(error);
@@ -95,10 +95,10 @@ pub(super) fn error_chain(error: &Error) -> String {
     text
 }
 
-/// Whom to believe that the server is the right one.
+/// Which certificate authorities vouch for the server.
 enum Verification {
-    /// NoCertVerification: the connection is encrypted, as libpq does for `prefer` and `require`.
-    Nobody,
+    /// None is asked: the connection is encrypted, as libpq does for `prefer` and `require`.
+    None,
     /// The certificate authorities of the system.
     System,
     /// The certificate authorities in a PEM file.
@@ -108,7 +108,7 @@ enum Verification {
 /// Takes those TLS options out of a URL that the driver does not know.
 fn split_tls_options(url: &str) -> Result<(String, Verification), String> {
     let Some((base, query)) = url.split_once('?') else {
-        return Ok((url.to_owned(), Verification::Nobody));
+        return Ok((url.to_owned(), Verification::None));
     };
     let (mut rest, mut root, mut full) = (Vec::new(), None, false);
     for option in query.split('&').filter(|option| !option.is_empty()) {
@@ -128,7 +128,7 @@ fn split_tls_options(url: &str) -> Result<(String, Verification), String> {
         Some(_) if !full => return Err("sslrootcert needs sslmode=verify-full".to_owned()),
         Some(path) if path != "system" => Verification::File(path),
         _ if full => Verification::System,
-        _ => Verification::Nobody,
+        _ => Verification::None,
     };
     Ok((format!("{base}?{}", rest.join("&")), verification))
 }
@@ -139,15 +139,15 @@ impl Verification {
         let builder = ClientConfig::builder_with_provider(Arc::clone(&provider));
         let builder = builder.with_safe_default_protocol_versions().map_err(|error| format!("TLS: {error}"))?;
         let Some(roots) = self.roots()? else {
-            let anybody = Arc::new(NoCertVerification(provider));
-            return Ok(builder.dangerous().with_custom_certificate_verifier(anybody).with_no_client_auth());
+            let verifier = Arc::new(NoCertVerification(provider));
+            return Ok(builder.dangerous().with_custom_certificate_verifier(verifier).with_no_client_auth());
         };
         Ok(builder.with_root_certificates(roots).with_no_client_auth())
     }
 
     fn roots(&self) -> Result<Option<RootCertStore>, String> {
         let certificates = match self {
-            Verification::Nobody => return Ok(None),
+            Verification::None => return Ok(None),
             Verification::System => rustls_native_certs::load_native_certs().certs,
             Verification::File(path) => {
                 let read = CertificateDer::pem_file_iter(path).and_then(Iterator::collect);
@@ -163,7 +163,7 @@ impl Verification {
     }
 }
 
-/// Believes every certificate, but checks that the server holds its key.
+/// Accepts every certificate, but checks that the server holds its key.
 #[derive(Debug)]
 struct NoCertVerification(Arc<CryptoProvider>);
 

@@ -12,8 +12,7 @@ use crate::store::StoreError;
 
 use super::connect::error_chain;
 
-/// How long a lost database is waited for before its clients are told. Once they have been told, nobody waits any more
-/// until it is back.
+/// How long to wait for a lost database before clients are told. After that no request waits until it is back.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// How soon to try again at first; the time doubles up to the longest.
 const FIRST_PAUSE: Duration = Duration::from_millis(25);
@@ -24,11 +23,11 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(400);
 pub(super) enum Fault {
     /// The connection is lost; whether the change was made is unknown.
     Lost(String),
-    /// Nothing has changed, and the same may go well at once: two transactions got in each other's way.
+    /// Nothing has changed, and the same may go well at once: two transactions conflicted.
     Conflict(String),
     /// Nothing has changed: a key or an identifier is there already.
     Duplicate(String),
-    /// Nothing has changed, and it is no use trying again.
+    /// Nothing has changed, and another attempt would fail too.
     Refused(StoreError),
 }
 
@@ -96,7 +95,7 @@ impl Fault {
         Fault::Lost("no answer in time".to_owned())
     }
 
-    /// What is left to say when it is not tried again.
+    /// The error for the caller when there is no further attempt.
     pub(super) fn into_store_error(self) -> StoreError {
         match self {
             Fault::Lost(text) | Fault::Conflict(text) => StoreError::Unavailable(text),
@@ -109,7 +108,7 @@ impl Fault {
 /// Since when the database has been out of reach, as far as anybody has noticed.
 #[derive(Default)]
 pub(super) struct Outage {
-    // A std mutex: held for a glance, never across an await.
+    // A std mutex: held for a read, never across an await.
     since: Mutex<Option<Instant>>,
 }
 
@@ -121,7 +120,7 @@ impl Outage {
         }
     }
 
-    /// Notes that it could not; tells whether it is worth while to try again.
+    /// Notes that it could not; returns whether another attempt is worth waiting for.
     pub(super) fn worth_waiting(&self, fault: &str) -> bool {
         let mut since = self.lock();
         if since.is_none() {
@@ -145,7 +144,7 @@ impl Default for Backoff {
 }
 
 impl Backoff {
-    /// Waits, longer from time to time.
+    /// Waits, each time longer.
     pub(super) async fn pause(&mut self) {
         tokio::time::sleep(self.0).await;
         self.0 = (2 * self.0).min(LONGEST_PAUSE);

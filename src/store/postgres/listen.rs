@@ -1,4 +1,4 @@
-//! Hearing of changes that other processes make.
+//! Listening to changes that other processes make.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,10 +14,10 @@ use super::client_pool::ClientPool;
 use super::fault::{Backoff, Fault};
 use super::sql;
 
-/// How often those who wait are sent to look where the engine knows no announcements.
+/// How often listeners are woken where the database has no notifications.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// Wakes those who wait for changes, for ever.
+/// Wakes listeners when the database notifies of changes; never ends.
 pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
     if !pool.announces {
         loop {
@@ -27,28 +27,28 @@ pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
     }
     let mut backoff = Backoff::default();
     loop {
-        let mut heard = false;
-        if let Err(fault) = hear(&pool, &changes, &mut heard).await {
-            tracing::debug!(?fault, "no announcements are heard for now");
+        let mut listening = false;
+        if let Err(fault) = receive(&pool, &changes, &mut listening).await {
+            tracing::debug!(?fault, "no notifications are received for now");
         }
-        if heard {
+        if listening {
             backoff = Backoff::default();
         }
         backoff.pause().await;
     }
 }
 
-/// Listens on one connection until it is lost; `heard` tells whether it came about.
-async fn hear(pool: &ClientPool, changes: &Changes, heard: &mut bool) -> Result<(), Fault> {
+/// Listens on one connection until it is lost; sets `listening` when it has begun.
+async fn receive(pool: &ClientPool, changes: &Changes, listening: &mut bool) -> Result<(), Fault> {
     let (client, mut driver) = pool.target.connect().await?;
     let mut messages = stream::poll_fn(move |context| driver.poll_message(context));
     let mut listen = std::pin::pin!(client.batch_execute(sql::LISTEN));
     loop {
         tokio::select! {
-            listening = &mut listen, if !*heard => {
-                listening?;
-                *heard = true;
-                // Whatever happened before is not announced to this connection.
+            done = &mut listen, if !*listening => {
+                done?;
+                *listening = true;
+                // Earlier changes are not notified to this connection.
                 changes.wake_all();
             }
             message = messages.next() => match message {

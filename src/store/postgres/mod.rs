@@ -1,11 +1,11 @@
 //! PostgreSQL, shared by many processes: what one has acknowledged all the others find.
 //!
 //! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
-//! sequence of a session decides who wins where several processes move it at once; the primary key of the moves would catch
-//! whatever got past it. Everything else goes through a pool of connections. A lost connection is replaced, and what is
+//! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is a
+//! second barrier. Everything else goes through a pool of connections. A lost connection is replaced, and what is
 //! safe to repeat is repeated for a while; then the callers are told that the storage is out of reach.
 //!
-//! `docs/postgres.md` describes the tables and what the engine has to know.
+//! `docs/postgres.md` describes the tables and what the database must support.
 
 mod batch_tx;
 mod client_pool;
@@ -66,14 +66,14 @@ impl PostgresStore {
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if it or its tables cannot be used.
     pub async fn open(url: &str) -> Result<PostgresStore> {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
-        let place = target.place();
-        let announces = prepared(&target).await.map_err(|error| match error {
-            StoreError::Unavailable(text) => StoreError::Unavailable(format!("{place}: {text}")),
-            StoreError::Failed(text) => StoreError::Failed(format!("{place}: {text}")),
+        let address = target.address();
+        let announces = prepare(&target).await.map_err(|error| match error {
+            StoreError::Unavailable(text) => StoreError::Unavailable(format!("{address}: {text}")),
+            StoreError::Failed(text) => StoreError::Failed(format!("{address}: {text}")),
             other => other,
         })?;
         if !announces {
-            tracing::warn!("the database knows no pg_notify: changes by other processes are looked for once a second");
+            tracing::warn!("the database has no pg_notify: listeners read changes by other processes once a second");
         }
         let pool = Arc::new(ClientPool::new(target, announces)?);
         let changes = Arc::new(Changes::default());
@@ -88,10 +88,10 @@ impl PostgresStore {
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
     pub async fn open_to_read(url: &str) -> Result<PostgresStore> {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
-        let place = target.place();
+        let address = target.address();
         let checked = async { schema::check(&target.open().await?).await };
         checked.await.map_err(|error: SchemaError| {
-            StoreError::Failed(format!("{place}: {}", Fault::from(error).into_store_error()))
+            StoreError::Failed(format!("{address}: {}", Fault::from(error).into_store_error()))
         })?;
         let pool = Arc::new(ClientPool::new(target, false)?);
         let changes = Arc::new(Changes::default());
@@ -102,8 +102,8 @@ impl PostgresStore {
 
     /// Which database it is, without the password.
     #[must_use]
-    pub fn place(&self) -> String {
-        self.pool.target.place()
+    pub fn address(&self) -> String {
+        self.pool.target.address()
     }
 }
 
@@ -113,8 +113,8 @@ impl Drop for PostgresStore {
     }
 }
 
-/// Brings the tables up to date, and tells whether the engine knows announcements.
-async fn prepared(target: &ConnectTarget) -> Result<bool> {
+/// Migrates the tables, and returns whether the database has notifications.
+async fn prepare(target: &ConnectTarget) -> Result<bool> {
     let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
         let fault = match target.open().await.map_err(SchemaError::from) {

@@ -40,7 +40,7 @@ pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest, in_dou
         _ if in_doubt && stored => Outcome::Stored,
         _ if taken => Outcome::Refused(StoreError::KeyTaken),
         (None, None) => Outcome::NotStored,
-        (None, Some(_)) => Outcome::Refused(StoreError::Failed(format!("there is a session {id} already"))),
+        (None, Some(_)) => Outcome::Refused(StoreError::Failed(format!("there is a contact {id} already"))),
         (Some(_), None) => Outcome::Refused(expired.map(Tenant::new).map_or(StoreError::NotFound, StoreError::Expired)),
         (Some(expected), Some(found)) if found == expected => Outcome::NotStored,
         (Some(_), Some(found)) => Outcome::Refused(StoreError::Stale { found }),

@@ -49,12 +49,12 @@ impl WriteRequest {
     }
 
     pub(super) fn answer(self, answer: Result<()>) {
-        // Whoever hung up has missed the answer, and the change stays made.
+        // The client may have hung up; the change stays made.
         let _ = self.answer.send(answer);
     }
 }
 
-/// A number that is used once.
+/// A random number that no other request has.
 pub(super) fn stamp() -> i64 {
     let (_, random) = Uuid::now_v7().as_u64_pair();
     i64::from_ne_bytes(random.to_ne_bytes())

@@ -1,6 +1,6 @@
-//! Every statement that is sent, by name. `docs/postgres.md` says which features of the engine they need.
+//! Every statement that is sent, by name. `docs/postgres.md` says which features of the database they need.
 
-/// Where changes are announced.
+/// The channel of notifications of changes.
 pub(super) const CHANNEL: &str = "stickslip_changes";
 
 /// Bounds for every statement of a connection; and no notices, which only say that a table exists already.
@@ -61,10 +61,10 @@ ORDER BY receipt.key";
 /// Announces changes; a payload names as many sessions as fit.
 pub(super) const NOTIFY: &str = "SELECT pg_notify($1, payload) FROM unnest($2::text[]) AS payload";
 
-/// Asks whether the engine knows announcements at all.
+/// Fails where the database has no notifications.
 pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')";
 
-/// Begins to hear announcements.
+/// Begins to receive notifications.
 pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
 
 /// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and the
@@ -115,7 +115,7 @@ INSERT INTO snapshots (contact, sequence, state) SELECT id, $2::bigint, $3::byte
 ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
 WHERE snapshots.sequence < excluded.sequence";
 
-/// Copies the past of `$2` up to `$3`. Nobody has to be locked out: a past only grows.
+/// Copies the moves of `$2` up to `$3`. No lock is needed: moves are only appended.
 pub(super) const COPY_PAST: &str = "
 INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
@@ -156,7 +156,7 @@ WITH gone AS (
 )
 SELECT id FROM gone";
 
-/// Moves whose session is not there: from owner to owner by the index, past their moves.
+/// Moves whose contact does not exist: a recursive query that reads one row of the index for each contact.
 pub(super) const ORPHANED_MOVES: &str = "
 WITH RECURSIVE owners (contact) AS (
     (SELECT contact FROM moves ORDER BY contact LIMIT 1)
@@ -191,7 +191,7 @@ FROM jobs WHERE id = $1";
 
 pub(super) const JOB_REQUEST: &str = "SELECT request FROM jobs WHERE id = $1";
 
-/// Takes a chunk of a job beyond `$1` that nobody works on, or whose holder has not been heard of for so long.
+/// Claims a chunk of a job after `$1` that is not claimed, or whose lease is over.
 pub(super) const CLAIM: &str = "
 WITH next AS (
     SELECT job, chunk FROM job_chunks

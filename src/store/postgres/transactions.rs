@@ -1,7 +1,7 @@
 //! Changes that take a transaction of their own: they are rare, or they are long.
 //!
-//! Each may be done twice where a connection is lost during its commit, and says so to nobody: what is gone already counts
-//! as deleted, and what is there already as made, once a first attempt has come that far.
+//! A change whose connection is lost during its commit is repeated. Once a commit has been sent, what is gone already counts
+//! as deleted and what is there already as made.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -19,9 +19,9 @@ use super::columns::{Receipts, Sessions, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
 
-/// Receipts that one statement sweeps.
+/// Receipts that one statement deletes.
 const RECEIPTS: i64 = 1_000;
-/// Sessions that one transaction sweeps; each may have a long past.
+/// Sessions that one transaction deletes; each may have many moves.
 const IDLE: usize = 50;
 /// Identifiers of idle sessions that are looked up at a time.
 const IDLE_PAGE: i64 = 10_000;

@@ -23,7 +23,7 @@ const QUEUE: usize = 4096;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// How often a batch may collide with what others do before its clients are told.
 const COLLISIONS: usize = 8;
-/// How often a connection may be lost under one batch: perhaps it is the batch that the engine does not retry_or_fail.
+/// How often a connection may be lost under one batch: perhaps the batch itself is the cause.
 const LOSSES: usize = 4;
 
 /// Where changes are handed in.

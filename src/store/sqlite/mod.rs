@@ -1,7 +1,7 @@
 //! Everything in one SQLite file: durable when it is acknowledged, for one process at a time.
 //!
 //! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have connections
-//! of their own (`readers.rs`) and wait for nobody. Long work, such as the copy of a million moves, is done in small steps
+//! of their own (`readers.rs`) and do not wait. Long work, such as the copy of a million moves, is done in small steps
 //! between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in `docs/storage.md`. What may
 //! fail, and what it means then, is in `fault.rs`.
 
@@ -46,7 +46,7 @@ const EXPIRE_AT_ONCE: usize = 200;
 
 /// Sessions in an SQLite file.
 pub struct SqliteStore {
-    // Gone once the store is being dropped, which is what ends the writer.
+    // None once the store is being dropped, which ends the writer.
     requests: Option<mpsc::Sender<Request>>,
     writer: Option<JoinHandle<()>>,
     readers: Readers,
@@ -90,7 +90,7 @@ impl SqliteStore {
         Ok(SqliteStore { requests: None, writer: None, readers, changes, commits, queue })
     }
 
-    /// Copies the store in a file to another that is not there yet, while it is in use or not; says how many bytes that has.
+    /// Copies the store in a file to another that is not there yet, while it is in use or not; returns its bytes.
     ///
     /// # Errors
     /// Why there is no copy, in one line.

@@ -107,7 +107,7 @@ pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, Read
     };
     let mut found = texts("PRAGMA integrity_check(100)")?;
     found.retain(|line| line != "ok");
-    // From owner to owner by the index, past their moves.
+    // A recursive query that reads one row of the index for each contact.
     found.extend(texts(
         "WITH RECURSIVE owners (contact) AS (
              SELECT min(contact) FROM moves

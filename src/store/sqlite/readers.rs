@@ -23,7 +23,7 @@ pub(super) struct Readers {
     idle: Arc<Idle>,
 }
 
-/// The connections that nobody uses, and what they need to be made.
+/// The idle connections, and what is needed to open more.
 struct Idle {
     // A std mutex: held for a push or a pop.
     connections: Mutex<Vec<Connection>>,
@@ -84,7 +84,7 @@ impl Readers {
         }
     }
 
-    /// Closes what nobody uses.
+    /// Closes the idle connections.
     pub(super) fn close(&self) {
         self.idle.lock().clear();
     }

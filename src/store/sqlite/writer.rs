@@ -1,5 +1,5 @@
-//! The one thread that writes. Requests that wait share a transaction, and so the wait for the disk; nobody is answered
-//! before it is durable.
+//! The one thread that writes. Requests that wait share a transaction, and so the wait for the disk; no request is
+//! answered before it is durable.
 //!
 //! Each request is checked before it writes, so that a refusal spoils nothing for its neighbours. When SQLite itself
 //! fails, the transaction is taken back and its requests are tried one by one.
@@ -45,7 +45,7 @@ pub(super) struct Writer {
     forks: VecDeque<(Arc<Fork>, Copying, Reply)>,
     /// Whether there may be moves without a contact.
     unowned: bool,
-    /// Whether the last transaction succeeded: work that nobody waits for rests where it cannot.
+    /// Whether the last transaction succeeded: if not, background work rests.
     healthy: bool,
 }
 
@@ -75,7 +75,7 @@ impl Writer {
         })
     }
 
-    /// Serves until nobody can ask any more, then leaves the database file whole.
+    /// Serves until the store is dropped, then merges the log into the file.
     pub(super) fn run(mut self, mut requests: mpsc::Receiver<Request>) {
         loop {
             let background = !self.forks.is_empty() || (self.healthy && self.unowned);
@@ -248,6 +248,6 @@ fn collect_batch(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<
 }
 
 fn answer(reply: Reply, outcome: Result<u64>) {
-    // Whoever has left does not want to know.
+    // The client may have hung up.
     let _ = reply.send(outcome);
 }
