@@ -173,7 +173,7 @@ impl ChunkQueue {
     /// A chunk to work on.
     pub(super) fn claim(&self, owner: Uuid, after: Option<Uuid>) -> Option<Claim> {
         let mut open = self.lock();
-        let from = after.unwrap_or(Uuid::nil());
+        let from = after.unwrap_or_default();
         let beyond = open.range((Excluded(from), Unbounded)).chain(open.range(..=from));
         let job = beyond.filter(|(_, job)| !job.waiting.is_empty()).map(|(id, _)| *id).next()?;
         let found = open.get_mut(&job)?;

@@ -121,12 +121,12 @@ async fn what_cannot_be_copied_is_refused_in_one_line_and_nothing_is_touched() {
     refused("mysql://me:secret@localhost/contacts", &fresh, "unknown kind of store");
     let mut left: Vec<String> =
         fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
-    // A look at a store that nobody serves leaves an empty log beside it.
+    // Reading a store that no process serves leaves an empty log beside it.
     left.retain(|name| !matches!(name.as_str(), "contacts.db-shm" | "contacts.db-wal"));
     left.sort();
     assert_eq!(left, ["contacts.db", "copy.db", "other.db"]);
 
-    // What an interrupted copy has left stands in nobody's way.
+    // What an interrupted copy has left does not prevent another.
     fs::write(folder.path().join("fresh.db.new"), "half of a copy").unwrap();
     backup(&url(&store), &fresh).unwrap();
     assert!(!folder.path().join("fresh.db.new").exists());

@@ -77,7 +77,7 @@ async fn has_snapshot(path: &Path) {
     tokio::time::timeout(PATIENCE, there).await.expect("no snapshot was kept");
 }
 
-/// A sound file that nobody uses.
+/// A sound file that no process uses.
 async fn sound(folder: &TempDir) -> (PathBuf, [Uuid; 4]) {
     let path = folder.path().join("sound.db");
     let server = Process::start(&url(&path)).await;

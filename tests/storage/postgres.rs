@@ -245,7 +245,7 @@ async fn tls_is_used_and_verified_as_the_url_says() {
     let open = async |options: &str| PostgresStore::open(&format!("{url}?{options}")).await.map(drop);
     let other = tempfile::NamedTempFile::new().unwrap();
     let full = format!("sslmode=verify-full&sslrootcert={}", certificate.display());
-    // The server lets nobody in without TLS.
+    // The server accepts no connection without TLS.
     for good in ["sslmode=require", "sslmode=prefer", "", &full] {
         open(good).await.unwrap_or_else(|error| panic!("{good}: {error}"));
     }

@@ -202,7 +202,7 @@ async fn what_a_crash_left_half_made_is_cleared_away() {
             tokio::time::sleep(std::time::Duration::from_millis(5)).await;
         }
     };
-    tokio::time::timeout(PATIENCE, gone).await.expect("what belongs to nobody stays for ever");
+    tokio::time::timeout(PATIENCE, gone).await.expect("moves without a contact are never removed");
     assert_eq!(store.history(id, 0, 1_000).await.unwrap().len(), 301);
     assert!(matches!(store.find(Uuid::now_v7()).await, Err(StoreError::NotFound)));
 }

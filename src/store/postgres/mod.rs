@@ -180,7 +180,7 @@ impl Store for PostgresStore {
 
     async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
         // Nothing lies before the nil identifier, and no session has it.
-        let (after, limit) = (after.unwrap_or(Uuid::nil()), to_bigint(limit as u64));
+        let (after, limit) = (after.unwrap_or_default(), to_bigint(limit as u64));
         let found = match tenant {
             None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,
             Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,

@@ -18,10 +18,13 @@ const RECEIPTS_AT_ONCE: i64 = 256;
 /// Bytes of their replies that it deletes, roughly.
 const RECEIPT_BYTES_AT_ONCE: i64 = 4 * 1024 * 1024;
 
+/// Makes a change within the transaction under way.
+type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send;
+
 /// A change to the database.
 pub(super) struct Change {
-    /// Makes it within a transaction, and once more if that transaction fails.
-    pub(super) apply: Box<dyn Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send>,
+    /// Makes it; called again if its transaction fails.
+    pub(super) apply: Box<Apply>,
     /// How many rows it writes, roughly.
     pub(super) weight: usize,
     /// The sessions and jobs whose listeners are to be woken when it is made.

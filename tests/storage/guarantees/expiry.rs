@@ -1,4 +1,4 @@
-//! Sweeping: what nobody has touched for long expires, and nothing else.
+//! Expiry: contacts that have not moved for long expire, and nothing else does.
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Record, Session, Store, StoreError};

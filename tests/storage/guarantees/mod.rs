@@ -1,5 +1,5 @@
-//! The guarantees of the `Store` trait, which every store gives: one function each. Every function gets a store that nobody
-//! else uses, which may hold sessions of others.
+//! The guarantees of the `Store` trait, which every store gives: one function each. Each function gets a store of its
+//! own, and assumes that it may hold contacts of others.
 
 mod contacts;
 mod exactness;

@@ -1,4 +1,4 @@
-//! Whose sessions are: told with each of them, and the lists kept apart.
+//! Tenants: a contact names its owner, and lists are separate.
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Session, Store, StoreError, Tenant};
