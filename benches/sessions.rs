@@ -68,7 +68,7 @@ async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
     for path in body.chunks(PATH).chain([tail]) {
         let plan = Plan::Displacement(path.to_vec());
         let advance = Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10, relax: None };
-        sessions.advance(id, advance, None, None).await.expect("a displacement has no limit");
+        sessions.apply_moves(id, advance, None, None).await.expect("a displacement has no limit");
         // The snapshot is kept behind the reply.
         tokio::time::sleep(Duration::from_millis(200)).await;
     }

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VersionError {
     /// A later version of this program has been here.
-    #[error("its schema has version {found}, and this program knows versions up to {known}: start the newer program")]
+    #[error("it has schema version {found}, and this program knows versions up to {known}: start the newer program")]
     Newer {
         /// The version of the tables.
         found: i32,
@@ -18,7 +18,7 @@ pub enum VersionError {
         known: i32,
     },
     /// An earlier version has been here, and this program may not change anything.
-    #[error("its schema has version {found}: `stickslip serve` migrates it to version {known}")]
+    #[error("it has schema version {found}: `stickslip serve` migrates it to version {known}")]
     Older {
         /// The version of the tables.
         found: i32,

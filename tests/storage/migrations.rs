@@ -117,7 +117,7 @@ async fn a_file_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
 
     // This program does not know the step: it refuses the file, and leaves it as it is.
     let file = fs::read(&path).unwrap();
-    let newer = format!("its schema has version {}", known + 1);
+    let newer = format!("it has schema version {}", known + 1);
     assert!(migrate(&[]).unwrap_err().starts_with(&newer));
     for refused in [SqliteStore::open(&path), SqliteStore::open_to_read(&path)] {
         let refused = refused.map(drop).unwrap_err().to_string();
@@ -173,7 +173,7 @@ async fn a_database_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
     assert_eq!(ask("SELECT count(*) FROM contacts WHERE colour = 'grey'").await, 2);
 
     // This program does not know the step: it refuses the database, and leaves it as it is.
-    let newer = format!("its schema has version {}", known + 1);
+    let newer = format!("it has schema version {}", known + 1);
     assert!(migrate(&[]).await.unwrap_err().contains(&newer));
     for refused in [PostgresStore::open(&url).await, PostgresStore::open_to_read(&url).await] {
         let refused = refused.map(drop).unwrap_err().to_string();
