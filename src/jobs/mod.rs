@@ -1,8 +1,8 @@
 //! Sweeps, at once or as jobs that go on after their request has been answered.
 //!
-//! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks under
-//! way and no others, and any process on the same store goes on with the rest. Jobs take turns, chunk by chunk. What a
-//! tenant may ask for is bounded in number, bytes and work.
+//! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks
+//! under way and no others, and any process on the same store goes on with the rest. Jobs take turns, chunk by chunk.
+//! What a tenant may ask for is bounded in number, bytes and work.
 
 mod error;
 mod events;

@@ -27,8 +27,8 @@ const SAVE_ATTEMPTS: usize = 30;
 type OpenJob = Option<(Job, Arc<Sweep>)>;
 
 impl Jobs {
-    /// Works on the jobs of all tenants until [`Jobs::end`], and gives back what is not done then. The chunks of a process that
-    /// has not been heard of for the time of a lease are taken by others.
+    /// Works on the jobs of all tenants until [`Jobs::end`], and gives back what is not done then. The chunks of a
+    /// process that has not been heard of for the time of a lease are taken by others.
     pub async fn work(self, lease: Duration) {
         futures::future::join_all((0..CHUNKS_AT_A_TIME).map(|_| self.clone().work_on_chunks(lease))).await;
     }

@@ -76,8 +76,8 @@ impl Sessions {
                 }
                 Err(error) => return Err(error),
             };
-            // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
-            // nothing: if the store fails or the client hangs up, the next request asks the store.
+            // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
+            // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
             match self.common.store.append(guard.id(), sequence, records, request.receipt(&reply)).await {
                 Ok(()) => {

@@ -1,8 +1,8 @@
 //! The cached states, of which the least recently used go first, and the locks of the sessions in use.
 //!
-//! A request takes the state of its session out of the cache, and puts it back at the end with the size that it has then.
-//! A session that no request uses has no lock, and one that is not cached takes no memory: asking for identifiers that do
-//! not exist leaves nothing behind, and a million idle sessions are the store's alone.
+//! A request takes the state of its session out of the cache, and puts it back at the end with the size that it has
+//! then. A session that no request uses has no lock, and one that is not cached takes no memory: asking for identifiers
+//! that do not exist leaves nothing behind, and a million idle sessions are the store's alone.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -33,7 +33,8 @@ pub(super) struct Cache {
     hits: Counter,
 }
 
-/// The lock of a session that requests use or wait for. It goes with the last of them, so that a session has one lock at a time.
+/// The lock of a session that requests use or wait for. It goes with the last of them, so that a session has one lock
+/// at a time.
 #[derive(Default)]
 struct LockEntry {
     // The lock is fair, so that moves apply in the order of their arrival.
@@ -53,7 +54,8 @@ pub(super) struct Guard {
     pub(super) live: Option<Box<LoadedSession>>,
     /// The memory of a state that did not come out of the cache.
     pub(super) held: Reservation,
-    // Declared, and so released, before the user: a request that comes in between finds the entry and waits for its lock.
+    // Declared, and so released, before the user: a request that comes in between finds the entry and waits for its
+    // lock.
     _lock: OwnedMutexGuard<()>,
     user: LockUser,
 }

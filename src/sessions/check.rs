@@ -1,7 +1,7 @@
 //! Is what is stored what happened? Every session is made again from its moves, and compared.
 //!
-//! Nothing is written, and one page of moves at a time is in memory. Others may work on the store meanwhile: of a session
-//! that moves on, the moves that it had when it was looked at are checked.
+//! Nothing is written, and one page of moves at a time is in memory. Others may work on the store meanwhile: of a
+//! session that moves on, the moves that it had when it was looked at are checked.
 
 use std::fmt;
 
@@ -64,8 +64,8 @@ impl fmt::Display for Checked {
     }
 }
 
-/// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by `tolerance`,
-/// relative to the largest that the session has had; 0 means not in a single bit.
+/// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by
+/// `tolerance`, relative to the largest that the session has had; 0 means not in a single bit.
 ///
 /// # Errors
 /// [`StoreError::Unavailable`] if the store cannot be asked to the end.

@@ -1,7 +1,8 @@
 //! Events: every state of a session, in order and without a gap, for each listener.
 //!
-//! A listener pulls: it reads the moves after those that it has seen, a page at a time, and waits where there are no more. So
-//! a slow listener costs no more memory than a fast one, and moves that other processes make reach it in the same way.
+//! A listener pulls: it reads the moves after those that it has seen, a page at a time, and waits where there are no
+//! more. So a slow listener costs no more memory than a fast one, and moves that other processes make reach it in the
+//! same way.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -33,12 +34,12 @@ struct Follower {
 }
 
 impl Sessions {
-    /// The states of a session: after each move with a sequence greater than `after`, or, without it, the present state and
-    /// then each new one. It ends when the session is gone or [`Sessions::end_events`] is called.
+    /// The states of a session: after each move with a sequence greater than `after`, or, without it, the present state
+    /// and then each new one. It ends when the session is gone or [`Sessions::end_events`] is called.
     ///
     /// # Errors
-    /// [`SessionError::NotFound`], [`SessionError::Expired`], [`SessionError::Ahead`], [`SessionError::TooManyStreams`], or a
-    /// failure of the store.
+    /// [`SessionError::NotFound`], [`SessionError::Expired`], [`SessionError::Ahead`],
+    /// [`SessionError::TooManyStreams`], or a failure of the store.
     pub async fn events(
         &self,
         id: Uuid,

@@ -13,8 +13,8 @@ use super::{SessionError, written};
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache.
 const FIXED: usize = 2 * 1024;
-/// Bytes of a point of a table: its two numbers, and the series that the mechanics makes between it and the next. The process
-/// grows by 800 to 950.
+/// Bytes of a point of a table: its two numbers, and the series that the mechanics makes between it and the next. The
+/// process grows by 800 to 950.
 const TABLE_POINT: usize = 1_280;
 
 /// A session with its state.
@@ -36,8 +36,8 @@ pub(super) struct Derived {
 }
 
 impl LoadedSession {
-    /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state is
-    /// that before the first move.
+    /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state
+    /// is that before the first move.
     pub(super) fn start(session: Session, setup: Setup) -> Result<LoadedSession, simulation::Failure> {
         let elasticity = setup.elasticity;
         let contact = simulation::contact(setup, "")?;

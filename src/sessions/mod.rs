@@ -2,15 +2,16 @@
 //!
 //! Moves of one session queue at its lock in the order of their arrival; sessions do not wait for each other. A move is
 //! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that
-//! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client that
-//! loses its connection must expect, and the next request asks the store.
+//! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client
+//! that loses its connection must expect, and the next request asks the store.
 //!
 //! Other processes may work on the same store. A cached state is always one that the session has been in, so that
-//! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another process has
-//! taken applies them and tries again. The store also says what has been deleted or has expired, whatever is cached.
+//! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another
+//! process has taken applies them and tries again. The store also says what has been deleted or has expired, whatever
+//! is cached.
 //!
-//! A handle works for one tenant ([`Sessions::for_tenant`]) and does not see what belongs to others: their states and locks
-//! have other keys, and the tenant of what comes from the store is checked before it is used.
+//! A handle works for one tenant ([`Sessions::for_tenant`]) and does not see what belongs to others: their states and
+//! locks have other keys, and the tenant of what comes from the store is checked before it is used.
 
 mod apply;
 mod cache;

@@ -48,8 +48,8 @@ impl Sessions {
         Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// What `write` makes of the stresses of a session, of its contact and its sequence, in `more` bytes beyond JSON's columns at
-    /// the most and in so much `longer` time; with the sequence, and the memory that it takes.
+    /// What `write` makes of the stresses of a session, of its contact and its sequence, in `more` bytes beyond JSON's
+    /// columns at the most and in so much `longer` time; with the sequence, and the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.

@@ -28,8 +28,8 @@ pub(super) fn without_step(failure: Failure) -> Failure {
 }
 
 impl Sessions {
-    /// The protocol that begins from the present state of a session, which `said` to have this definition, and the sequence
-    /// that it belongs to, with the memory that it takes.
+    /// The protocol that begins from the present state of a session, which `said` to have this definition, and the
+    /// sequence that it belongs to, with the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError`], among them [`SessionError::OtherDefinition`].
@@ -42,7 +42,8 @@ impl Sessions {
         self.with_copy(id, said, None, task, move |live, stop| written(&find_protocol(live, &task, stop)?)).await
     }
 
-    /// What [`Sessions::apply_moves`] would do to relax a session at the sequence that the client expects; nothing changes.
+    /// What [`Sessions::apply_moves`] would do to relax a session at the sequence that the client expects; nothing
+    /// changes.
     ///
     /// # Errors
     /// [`SessionError`].

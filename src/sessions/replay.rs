@@ -20,8 +20,8 @@ const PIECES: usize = 4;
 const PIECE_BYTES: usize = 96;
 
 impl Sessions {
-    /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the result is
-    /// to be checked against the store.
+    /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
+    /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.is_none() {
             self.load(guard).await?;

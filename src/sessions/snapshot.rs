@@ -1,8 +1,8 @@
 //! Snapshots: states kept in the store, so that opening a session need not replay all of its moves.
 //!
-//! A snapshot is a cache and never a truth: one that is damaged, or of another version of the engine, is ignored, and the
-//! session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and read,
-//! which bounds both the time to open a session and the bytes written for a move.
+//! A snapshot is a cache and never a truth: one that is damaged, or of another version of the engine, is ignored, and
+//! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
+//! read, which bounds both the time to open a session and the bytes written for a move.
 
 use std::time::Duration;
 

@@ -21,7 +21,8 @@ const PIECE: usize = 96;
 const POINTS: &str = "/points_per_move";
 
 impl Sessions {
-    /// The loop through earlier moves, with so many points a move; `past` are those moves, and the first follows the move
+    /// The loop through earlier moves, with so many points a move; `past` are those moves, and the first follows the
+    /// move
     /// `after`.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Waiting for a session to change.
 //!
-//! A wake-up says that something may have happened, not what: a listener that is woken reads the moves after the last that it
-//! has seen.
+//! A wake-up says that something may have happened, not what: a listener that is woken reads the moves after the last
+//! that it has seen.
 //! So wake-ups may be merged or come in vain, and none that matters is lost.
 
 use std::collections::HashMap;

@@ -45,7 +45,8 @@ impl<'a> IdempotentRequest<'a> {
         self.key.clone().map(|request| Receipt { request, reply: reply.clone() })
     }
 
-    /// The reply to a request whose change the store refused: if the same request, sent twice, was faster elsewhere, its reply.
+    /// The reply to a request whose change the store refused: if the same request, sent twice, was faster elsewhere,
+    /// its reply.
     ///
     /// # Errors
     /// [`RetryError`], with `error` itself if there is no such reply.

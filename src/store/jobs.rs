@@ -1,7 +1,7 @@
 //! Jobs: work that goes on after its request has been answered, in chunks whose results are kept as they come.
 //!
-//! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are claimed
-//! by any worker, and a claim ends with its worker. The store does not read the bytes of a result.
+//! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are
+//! claimed by any worker, and a claim ends with its worker. The store does not read the bytes of a result.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Unbounded};
@@ -127,8 +127,9 @@ pub trait JobStore: Send + Sync + 'static {
     /// The request that the job was made of.
     async fn job_request(&self, id: Uuid) -> Result<String>;
 
-    /// Claims a chunk that nobody works on, of the first job with an identifier greater than `after` that has one, or else of
-    /// the first of all. Where many processes share the storage the claim ends after `lease`, unless it is renewed.
+    /// Claims a chunk that nobody works on, of the first job with an identifier greater than `after` that has one, or
+    /// else of the first of all. Where many processes share the storage the claim ends after `lease`, unless it is
+    /// renewed.
     async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>>;
 
     /// Extends a claim by another `lease`; returns whether it still held.
@@ -137,8 +138,8 @@ pub trait JobStore: Send + Sync + 'static {
     /// Gives a chunk back.
     async fn release(&self, claim: Claim) -> Result<()>;
 
-    /// Stores the result of a chunk. If two workers compute the same chunk the first result counts. With its last chunk the
-    /// job ends.
+    /// Stores the result of a chunk. If two workers compute the same chunk the first result counts. With its last chunk
+    /// the job ends.
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()>;
 
     /// Ends a job that cannot be done.
@@ -151,7 +152,8 @@ pub trait JobStore: Send + Sync + 'static {
     async fn delete_job(&self, id: Uuid) -> Result<()>;
 }
 
-/// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives it.
+/// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives
+/// it.
 #[derive(Default)]
 pub(super) struct ChunkQueue {
     // A std mutex: held for a lookup.

@@ -38,8 +38,8 @@ pub use sqlite::SqliteStore;
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
-/// Who owns sessions: a key of one tenant gives no access to those of others. Without keys there is one tenant, without a
-/// name.
+/// Who owns sessions: a key of one tenant gives no access to those of others. Without keys there is one tenant, without
+/// a name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Tenant(Arc<str>);
 
@@ -140,8 +140,8 @@ pub struct Snapshot {
     pub state: Vec<u8>,
 }
 
-/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after [`StoreError::Unavailable`]
-/// and [`StoreError::Failed`].
+/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after
+/// [`StoreError::Unavailable`] and [`StoreError::Failed`].
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// There is no such session.
@@ -176,8 +176,8 @@ pub enum StoreError {
 /// What a call to a store comes to.
 pub type Result<T, E = StoreError> = std::result::Result<T, E>;
 
-/// Storage of contacts. It says whose a contact is and leaves it to its callers to keep tenants apart: any identifier is
-/// accepted here.
+/// Storage of contacts. It says whose a contact is and leaves it to its callers to keep tenants apart: any identifier
+/// is accepted here.
 #[async_trait]
 pub trait Store: JobStore {
     /// Whether it can serve.
@@ -192,8 +192,8 @@ pub trait Store: JobStore {
     /// The sequence of a session: all that a caller who has the rest cached needs to ask.
     async fn sequence(&self, id: Uuid) -> Result<u64>;
 
-    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order. Without
-    /// their definitions: a page of those could be larger than the memory.
+    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order.
+    /// Without their definitions: a page of those could be larger than the memory.
     async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
@@ -215,11 +215,13 @@ pub trait Store: JobStore {
     /// The newest snapshot of a session, if there is one.
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>>;
 
-    /// Stores a snapshot in place of an older one. Does nothing where the session is gone or a newer snapshot is stored.
+    /// Stores a snapshot in place of an older one. Does nothing where the session is gone or a newer snapshot is
+    /// stored.
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()>;
 
-    /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the sessions
-    /// that have not moved since. Those are [`StoreError::Expired`] from then on. Returns how many sessions expired.
+    /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the
+    /// sessions that have not moved since. Those are [`StoreError::Expired`] from then on. Returns how many sessions
+    /// expired.
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64>;
 
     /// Wakes those who wait for changes, whichever process on the same storage makes them.

@@ -52,8 +52,8 @@ fn kind(url: &str) -> Result<Kind<'_>, OpenError> {
     Err(OpenError::of(url, "unknown kind of store, expected sqlite:PATH, postgres://… or memory:"))
 }
 
-/// Opens a store: `memory:`, `sqlite:` and the path of a file, which is made if it is missing, or the URL of a PostgreSQL
-/// database, `postgres://…`.
+/// Opens a store: `memory:`, `sqlite:` and the path of a file, which is made if it is missing, or the URL of a
+/// PostgreSQL database, `postgres://…`.
 ///
 /// # Errors
 /// [`OpenError`] if the URL names no store, or one that cannot be used.

@@ -1,8 +1,8 @@
 //! Versions of the tables of a store.
 //!
-//! A store has an ordered list of migrations, each a script that leads from one version to the next; the first one makes the
-//! tables of version 1. The version of a store is the number of migrations it has seen. Those that it has not seen are
-//! applied at start, all of them in one transaction. A version that has been released is never edited.
+//! A store has an ordered list of migrations, each a script that leads from one version to the next; the first one
+//! makes the tables of version 1. The version of a store is the number of migrations it has seen. Those that it has not
+//! seen are applied at start, all of them in one transaction. A version that has been released is never edited.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! `stickslip backup`: a copy taken while the service writes holds every move that was acknowledged before, bit for bit.
+//! `stickslip backup`: a copy taken while the service writes holds every move that was acknowledged before, bit for
+//! bit.
 
 use crate::common;
 use crate::fixtures::url;

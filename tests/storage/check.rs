@@ -43,8 +43,8 @@ async fn is_found(store: &str, findings: &[&str]) {
     assert!(said.lines().last().unwrap().contains(&format!("{} findings", findings.len())), "{said}");
 }
 
-/// Sessions with all kinds of moves: one has a snapshot, one is a fork of it, one has a reply kept for retries, and one has
-/// never moved. Returns their identifiers.
+/// Sessions with all kinds of moves: one has a snapshot, one is a fork of it, one has a reply kept for retries, and one
+/// has never moved. Returns their identifiers.
 async fn fill(client: &Client) -> [Uuid; 4] {
     let options = Options::default();
     let mut random = Random(7);

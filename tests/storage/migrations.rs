@@ -1,4 +1,5 @@
-//! Migrations: a step is applied once and whole or not at all, what is stored survives it, and a newer schema is refused.
+//! Migrations: a step is applied once and whole or not at all, what is stored survives it, and a newer schema is
+//! refused.
 //!
 //! There is one version of the tables so far. The next one is made up here.
 
@@ -31,8 +32,8 @@ fn with<'a>(migrations: &[&'a str], steps: &[&'a str]) -> Vec<&'a str> {
     [migrations, steps].concat()
 }
 
-/// A contact with moves (one of them to -0.0), a snapshot and a fork, a reply kept for retries, a contact that has expired, and
-/// a job with a chunk.
+/// A contact with moves (one of them to -0.0), a snapshot and a fork, a reply kept for retries, a contact that has
+/// expired, and a job with a chunk.
 async fn fill(store: &dyn Store) -> [Uuid; 3] {
     let (made, _) = stored(store, 3).await;
     let mut awkward = record(4);

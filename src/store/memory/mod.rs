@@ -61,7 +61,8 @@ impl MemoryStore {
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        // Nothing that can panic stands between the first and the last change of a call, so that a poisoned map is whole.
+        // Nothing that can panic stands between the first and the last change of a call, so that a poisoned map is
+        // whole.
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -25,8 +25,8 @@ pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
 const TRIES: usize = 12;
 const COLLISIONS: usize = 5;
 
-/// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use any
-/// more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
+/// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use
+/// any more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
 macro_rules! with_retries {
     ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {{
         let mut tries = $crate::store::postgres::client_pool::Tries::default();

@@ -1,7 +1,7 @@
 //! Where the database is, and how connections to it are protected.
 //!
-//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`ConnectTarget::address`] has host and database
-//! alone.
+//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`ConnectTarget::address`] has host
+//! and database alone.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,8 +21,8 @@ use super::sql;
 
 /// How long a connection may take to come about, unless the URL says otherwise.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
-/// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before it
-/// is tested.
+/// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before
+/// it is tested.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// A connection whose messages have yet to be driven.

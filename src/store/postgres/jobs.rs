@@ -1,7 +1,7 @@
 //! Jobs in the database, whose chunks all replicas compute.
 //!
-//! A worker has a lease on the chunk that it computes, and renews it. The chunks of a replica that is gone are claimed by others
-//! when its leases are over.
+//! A worker has a lease on the chunk that it computes, and renews it. The chunks of a replica that is gone are claimed
+//! by others when its leases are over.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! PostgreSQL, shared by many processes: what one has acknowledged all the others find.
 //!
 //! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
-//! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is a
-//! second barrier. Everything else goes through a pool of connections. A lost connection is replaced, and what is
+//! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is
+//! a second barrier. Everything else goes through a pool of connections. A lost connection is replaced, and what is
 //! safe to repeat is repeated for a while; then the callers are told that the storage is out of reach.
 //!
 //! `docs/postgres.md` describes the tables and what the database must support.

@@ -67,8 +67,8 @@ pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')
 /// Begins to receive notifications.
 pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
 
-/// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and the
-/// stamp of its last move.
+/// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
+/// the stamp of its last move.
 pub(super) const OUTCOME: &str = "
 SELECT (SELECT sequence FROM contacts WHERE id = $1),
     (SELECT tenant FROM expired WHERE id = $1),

@@ -82,8 +82,8 @@ impl WriterTask {
         }
     }
 
-    /// Sees to it that each of the changes is made or refused, and answers them; `in_doubt` if an earlier attempt may have
-    /// been committed.
+    /// Sees to it that each of the changes is made or refused, and answers them; `in_doubt` if an earlier attempt may
+    /// have been committed.
     async fn commit_or_answer(&mut self, mut batch: Vec<WriteRequest>, mut in_doubt: bool) {
         let (mut backoff, mut collisions, mut losses) = (Backoff::default(), 0, 0);
         while !batch.is_empty() {

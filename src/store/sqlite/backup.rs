@@ -24,8 +24,8 @@ pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     Ok(database)
 }
 
-/// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy gets
-/// its name when it is complete and on the disk. Returns its bytes.
+/// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy
+/// gets its name when it is complete and on the disk. Returns its bytes.
 pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
     let describe = |error: io::Error| format!("{}: {error}", copy.display());
     if fs::symlink_metadata(copy).is_ok() {

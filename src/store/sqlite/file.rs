@@ -26,8 +26,8 @@ const CACHE: i32 = -65_536;
 /// Statements that the writer keeps prepared.
 const STATEMENTS: usize = 64;
 
-/// A database at the newest version of the tables, and the lock that keeps other processes of ours away. The lock is to outlive the
-/// connection: closing any handle of the file ends the locks that SQLite holds on it.
+/// A database at the newest version of the tables, and the lock that keeps other processes of ours away. The lock is to
+/// outlive the connection: closing any handle of the file ends the locks that SQLite holds on it.
 pub(super) struct Opened {
     pub(super) database: Connection,
     pub(super) lock: Arc<File>,

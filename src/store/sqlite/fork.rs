@@ -1,8 +1,8 @@
-//! Copying the moves of a contact, and removing those that belong to none: in steps, so that the moves of other contacts go on
-//! in between.
+//! Copying the moves of a contact, and removing those that belong to none: in steps, so that the moves of other
+//! contacts go on in between.
 //!
-//! A copy belongs to no contact until it is whole, and then to its contact at once. What a crash leaves without a contact is
-//! removed after the next start.
+//! A copy belongs to no contact until it is whole, and then to its contact at once. What a crash leaves without a
+//! contact is removed after the next start.
 
 use std::sync::Arc;
 
@@ -56,8 +56,8 @@ impl Transaction<'_> {
 }
 
 impl Fork {
-    /// Goes on with a fork; returns whether it is complete. The original may have moved on meanwhile, which the copy does
-    /// not see.
+    /// Goes on with a fork; returns whether it is complete. The original may have moved on meanwhile, which the copy
+    /// does not see.
     pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, ChangeError> {
         copying.step(database)?;
         if copying.copied < copying.last {

@@ -1,9 +1,9 @@
 //! Everything in one SQLite file: durable when it is acknowledged, for one process at a time.
 //!
-//! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have connections
-//! of their own (`readers.rs`) and do not wait. Long work, such as the copy of a million moves, is done in small steps
-//! between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in `docs/storage.md`. What may
-//! fail, and what it means then, is in `fault.rs`.
+//! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have
+//! connections of their own (`readers.rs`) and do not wait. Long work, such as the copy of a million moves, is done in
+//! small steps between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in
+//! `docs/storage.md`. What may fail, and what it means then, is in `fault.rs`.
 
 mod backup;
 mod change;
@@ -98,8 +98,8 @@ impl SqliteStore {
         backup::backup(path, copy)
     }
 
-    /// Has the writer make a change of so many rows, and returns its count when it is durable. The listeners of `touched` are
-    /// woken then.
+    /// Has the writer make a change of so many rows, and returns its count when it is durable. The listeners of
+    /// `touched` are woken then.
     async fn change(
         &self,
         weight: usize,

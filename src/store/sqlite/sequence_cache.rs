@@ -1,4 +1,5 @@
-//! The sequences of contacts that have moved lately: what the writer, which alone changes them, need not ask the database.
+//! The sequences of contacts that have moved lately: what the writer, which alone changes them, need not ask the
+//! database.
 
 use hashlink::LruCache;
 use uuid::Uuid;

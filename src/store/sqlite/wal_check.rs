@@ -1,7 +1,7 @@
 //! Distinguishes a file that has been cut off from one whose last pages are still in the write-ahead log.
 //!
-//! A crash may come while pages move from the log to the file, so that a file shorter than its header says can be sound:
-//! as long as the log has the pages that are missing.
+//! A crash may come while pages move from the log to the file, so that a file shorter than its header says can be
+//! sound: as long as the log has the pages that are missing.
 
 use std::collections::HashSet;
 use std::fs::File;
