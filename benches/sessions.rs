@@ -68,7 +68,7 @@ async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
     for path in body.chunks(PATH).chain([tail]) {
         let plan = Plan::Displacement(path.to_vec());
         let advance = Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10, relax: None };
-        sessions.advance(id, advance, None, None).await.expect("a displacement has no limit");
+        sessions.apply_moves(id, advance, None, None).await.expect("a displacement has no limit");
         // The snapshot is kept behind the reply.
         tokio::time::sleep(Duration::from_millis(200)).await;
     }
@@ -117,7 +117,7 @@ fn opening(criterion: &mut Criterion) {
             if turns == 0 {
                 // Bytes that are no snapshot are ignored.
                 let nothing = Snapshot { sequence: session.sequence + 1, state: Vec::new() };
-                runtime.block_on(store.keep_snapshot(id, nothing)).expect("it is there");
+                runtime.block_on(store.save_snapshot(id, nothing)).expect("it is there");
                 group.bench_function(format!("{name}, without a snapshot"), |bencher| {
                     bencher.iter(|| runtime.block_on(cold.get(id)).expect("it is there"));
                 });

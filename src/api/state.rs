@@ -43,8 +43,8 @@ impl FromRequestParts<App> for TenantApp {
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Self::Rejection> {
         let mut scoped = app.clone();
         if let Some(tenant) = parts.extensions.get::<Tenant>() {
-            scoped.sessions = app.sessions.of(tenant.clone());
-            scoped.jobs = app.jobs.of(tenant.clone());
+            scoped.sessions = app.sessions.for_tenant(tenant.clone());
+            scoped.jobs = app.jobs.for_tenant(tenant.clone());
         }
         Ok(TenantApp(scoped))
     }

@@ -202,7 +202,7 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);
     let working = tokio::spawn(jobs.clone().work(options.job_lease.into()));
-    tokio::spawn(sessions.clone().keep_house(options.expire_after));
+    tokio::spawn(sessions.clone().run_expiry_loop(options.expire_after));
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;
     let app = App { sessions, jobs, pool, access };

@@ -4,7 +4,7 @@ use uuid::Uuid;
 
 use crate::admission::PoolError;
 use crate::simulation::SweepError;
-use crate::store::StoreError;
+use crate::store::{RetryError, StoreError};
 
 /// Why nothing came of a sweep or a job.
 #[derive(Debug, thiserror::Error)]
@@ -49,4 +49,13 @@ pub enum JobError {
     /// What is stored cannot be read: a fault of this program.
     #[error("{0}")]
     Broken(String),
+}
+
+impl From<RetryError> for JobError {
+    fn from(error: RetryError) -> JobError {
+        match error {
+            RetryError::KeyReused => JobError::KeyReused,
+            RetryError::Store(error) => JobError::Store(error),
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! Sweeps, at once or as jobs that go on after their request has been answered.
 //!
-//! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks under
-//! way and no others, and whoever works on the same store goes on with the rest. Jobs take turns, chunk by chunk. What a
-//! tenant may ask for is bounded in number, bytes and work.
+//! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks
+//! under way and no others, and any process on the same store goes on with the rest. Jobs take turns, chunk by chunk.
+//! What a tenant may ask for is bounded in number, bytes and work.
 
 mod error;
 mod events;
@@ -13,19 +13,18 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use prometheus::{IntCounter, IntGauge, Opts};
-use tokio::sync::{Notify, Semaphore, watch};
+use tokio::sync::Notify;
 use uuid::Uuid;
 
 use crate::admission::{INLINE, Nanoseconds};
 use crate::admission::{Pool, Stop};
 use crate::metrics::{counter, gauge};
 use crate::simulation::{Rows, Sweep, Workers};
-use crate::store::{Job, JobLimits, Receipt, Reply, RequestKey, Store, StoreError, Tenant};
+use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{self as wire, JobProgress, JobReply, JobState, SweepRequest};
 
 pub use error::JobError;
-pub use events::Happening;
 
 /// Clients that may follow jobs at a time.
 pub const STREAMS: usize = 250;
@@ -35,11 +34,11 @@ pub const AT_ONCE: Nanoseconds = 1_000_000_000;
 pub const LIMITS: JobLimits = JobLimits { jobs: 50, bytes: 512 * 1024 * 1024, cost: 48 * HOUR };
 /// What one job may cost.
 pub const LARGEST_JOB: Nanoseconds = 12 * HOUR;
-/// How long a process may be silent before others take what it works on.
+/// How long a process may be silent before others claim its chunks.
 pub const LEASE: Duration = Duration::from_secs(30);
 
 const HOUR: Nanoseconds = 3_600_000_000_000;
-/// Bytes of a number in a result, stored or at hand.
+/// Bytes of a number in a result, stored or in memory.
 const NUMBER_BYTES: usize = 8;
 /// What a job takes beside its request and its result.
 const JOB_BYTES: usize = 4_096;
@@ -58,12 +57,12 @@ struct Common {
     pool: Pool,
     // Made with the first sweep.
     workers: OnceLock<Result<Workers, String>>,
-    // Tells those who work that there is something to do.
+    // Wakes the workers of this process: there is a new job.
     new: Notify,
-    // What this process calls itself where it takes chunks.
+    // The name of this process in its claims.
     owner: Uuid,
-    streams: Arc<Semaphore>,
-    ending: watch::Sender<bool>,
+    // Those who follow jobs; their end is also that of the work on jobs.
+    listeners: Listeners,
     meters: JobMeters,
 }
 
@@ -108,8 +107,7 @@ impl Jobs {
             workers: OnceLock::new(),
             new: Notify::new(),
             owner: Uuid::now_v7(),
-            streams: Arc::new(Semaphore::new(STREAMS)),
-            ending: watch::Sender::new(false),
+            listeners: Listeners::new(STREAMS),
             meters: JobMeters::default(),
         };
         Jobs { tenant: Tenant::default(), common: Arc::new(common) }
@@ -117,7 +115,7 @@ impl Jobs {
 
     /// The jobs of another tenant.
     #[must_use]
-    pub fn of(&self, tenant: Tenant) -> Jobs {
+    pub fn for_tenant(&self, tenant: Tenant) -> Jobs {
         Jobs { tenant, common: Arc::clone(&self.common) }
     }
 
@@ -142,13 +140,13 @@ impl Jobs {
         made.as_ref().map_err(|why| JobError::Broken(format!("no threads for sweeps: {why}")))
     }
 
-    /// Makes a job of a sweep. The reply is the job as it stands then.
+    /// Makes a job of a sweep. The reply is the job as it is then.
     ///
     /// # Errors
     /// [`JobError`]; no job has been made then.
     pub async fn start(&self, sweep: &Sweep, key: Option<RequestKey>) -> Result<Reply, JobError> {
-        let key = key.map(|key| key.of(&self.tenant));
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        let idempotent = IdempotentRequest::new(&*self.common.store, &self.tenant, key);
+        if let Some(reply) = idempotent.earlier_reply().await? {
             return Ok(reply);
         }
         if sweep.cost() > LARGEST_JOB {
@@ -171,49 +169,34 @@ impl Jobs {
             bytes: bytes as u64,
             cost: sweep.cost(),
         };
-        let body = serde_json::to_vec(&told(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
+        let body = serde_json::to_vec(&job_reply(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
         let reply = Reply { created: Some(job.id), sequence: 0, body };
-        let receipt = key.clone().map(|request| Receipt { request, reply: reply.clone() });
-        match self.common.store.create_job(job, request, LIMITS, receipt).await {
-            Ok(()) => {
-                self.common.new.notify_waiters();
-                Ok(reply)
-            }
-            // A twin of the request was faster.
-            Err(StoreError::KeyTaken) => self.earlier(key.as_ref()).await?.ok_or(JobError::Store(StoreError::KeyTaken)),
-            Err(error) => Err(JobError::Store(error)),
+        if let Err(error) = self.common.store.create_job(job, request, LIMITS, idempotent.receipt(&reply)).await {
+            return Ok(idempotent.after_refusal(error).await?);
         }
+        self.common.new.notify_waiters();
+        Ok(reply)
     }
 
-    /// The reply that an earlier request with the same key got.
-    async fn earlier(&self, request: Option<&RequestKey>) -> Result<Option<Reply>, JobError> {
-        let Some(request) = request else { return Ok(None) };
-        match self.common.store.receipt(&request.key).await.map_err(JobError::Store)? {
-            None => Ok(None),
-            Some(receipt) if receipt.request.fingerprint == request.fingerprint => Ok(Some(receipt.reply)),
-            Some(_) => Err(JobError::KeyReused),
-        }
-    }
-
-    async fn own(&self, id: Uuid) -> Result<Job, JobError> {
-        let job = self.common.store.job(id).await.map_err(refused(id))?;
+    async fn find_own(&self, id: Uuid) -> Result<Job, JobError> {
+        let job = self.common.store.job(id).await.map_err(store_error(id))?;
         if job.tenant == self.tenant { Ok(job) } else { Err(JobError::NotFound(id)) }
     }
 
-    /// How a job stands.
+    /// The progress of a job.
     ///
     /// # Errors
     /// [`JobError::NotFound`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<JobReply, JobError> {
-        self.own(id).await.map(|job| told(&job))
+        self.find_own(id).await.map(|job| job_reply(&job))
     }
 
-    /// Bytes that the result of a job takes at hand.
+    /// Bytes that the result of a job takes in memory.
     ///
     /// # Errors
     /// [`JobError::NotFound`], [`JobError::Unfinished`], [`JobError::Failed`], or a failure of the store.
     pub async fn size(&self, id: Uuid) -> Result<usize, JobError> {
-        let job = self.own(id).await?;
+        let job = self.find_own(id).await?;
         match (job.finished_at, job.error) {
             (_, Some(error)) => Err(JobError::Failed(error)),
             (None, None) => Err(JobError::Unfinished { done: job.done, points: job.points }),
@@ -227,17 +210,17 @@ impl Jobs {
     /// As [`Jobs::size`].
     pub async fn result(&self, id: Uuid) -> Result<(CheckedSweep, Rows), JobError> {
         self.size(id).await?;
-        let job = self.own(id).await?;
-        let request = self.common.store.job_request(id).await.map_err(refused(id))?;
+        let job = self.find_own(id).await?;
+        let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
         let read = move || wire::read::<SweepRequest>(request.as_bytes());
         let draft = self.common.pool.run(INLINE, read).await?;
         let draft = draft.map_err(|error| JobError::Broken(format!("a job cannot be read: {error}")))?;
         let (mut rows, mut next) = (Rows::default(), 0);
         while next < job.chunks() {
-            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(refused(id))?;
+            let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(store_error(id))?;
             if chunks.is_empty() {
-                // Deleted meanwhile, or else not whole.
-                self.own(id).await?;
+                // Deleted meanwhile, or else incomplete.
+                self.find_own(id).await?;
                 return Err(JobError::Broken(format!("chunk {next} of job {id} is missing")));
             }
             for content in chunks {
@@ -256,21 +239,21 @@ impl Jobs {
     /// # Errors
     /// [`JobError::NotFound`], or a failure of the store.
     pub async fn delete(&self, id: Uuid) -> Result<(), JobError> {
-        self.own(id).await?;
-        self.common.store.delete_job(id).await.map_err(refused(id))
+        self.find_own(id).await?;
+        self.common.store.delete_job(id).await.map_err(store_error(id))
     }
 }
 
-/// What a refusal of the store means for a job.
-fn refused(id: Uuid) -> impl Fn(StoreError) -> JobError {
+/// What an error of the store means for a job.
+fn store_error(id: Uuid) -> impl Fn(StoreError) -> JobError {
     move |error| match error {
         StoreError::NotFound => JobError::NotFound(id),
         other => JobError::Store(other),
     }
 }
 
-/// A job as its owner is told of it.
-fn told(job: &Job) -> JobReply {
+/// A job as its owner sees it.
+fn job_reply(job: &Job) -> JobReply {
     let state = match (job.finished_at, &job.error) {
         (_, Some(_)) => JobState::Failed,
         (Some(_), None) => JobState::Done,

@@ -1,4 +1,4 @@
-//! Working on jobs: claim a chunk, compute it, keep it, again and again.
+//! Working on jobs: claim a chunk, compute it, store it, again and again.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,36 +13,36 @@ use crate::simulation::{Rows, Sweep, SweepError};
 use crate::store::{ChunkResult, Claim, Job, StoreError};
 use stickslip_wire::{self as wire, SweepRequest};
 
-use super::{JobError, Jobs, NUMBER_BYTES, refused};
+use super::{JobError, Jobs, NUMBER_BYTES, store_error};
 
-/// Chunks that a process works on at a time: while one is being stored, the threads have the other.
-const AT_A_TIME: usize = 2;
-/// How long to wait where there is nothing to do, or something is not to be had.
+/// Chunks that a process works on at a time: while one is being stored, the threads compute the other.
+const CHUNKS_AT_A_TIME: usize = 2;
+/// How long to wait where there is nothing to do, or the store or the pool refuses.
 const PAUSE: Duration = Duration::from_secs(1);
 /// How often a claim is renewed within a lease.
 const RENEWALS: u32 = 3;
-/// How often a chunk that the store does not take for now is offered to it.
-const OFFERS: usize = 30;
+/// How often a result is sent to a store that refuses it for now.
+const SAVE_ATTEMPTS: usize = 30;
 
-/// A job that chunks have been taken of.
-type Known = Option<(Job, Arc<Sweep>)>;
+/// The job whose chunks are being computed.
+type OpenJob = Option<(Job, Arc<Sweep>)>;
 
 impl Jobs {
-    /// Works on the jobs of all tenants until [`Jobs::end`], and gives back what is not done then. The chunks of a process that
-    /// has not been heard of for the time of a lease are taken by others.
+    /// Works on the jobs of all tenants until [`Jobs::end`], and gives back what is not done then. The chunks of a
+    /// process that has not been heard of for the time of a lease are taken by others.
     pub async fn work(self, lease: Duration) {
-        futures::future::join_all((0..AT_A_TIME).map(|_| self.clone().work_alone(lease))).await;
+        futures::future::join_all((0..CHUNKS_AT_A_TIME).map(|_| self.clone().work_on_chunks(lease))).await;
     }
 
-    async fn work_alone(self, lease: Duration) {
+    async fn work_on_chunks(self, lease: Duration) {
         let (mut last, mut known) = (None, None);
-        let mut ending = self.common.ending.subscribe();
+        let mut ending = self.common.listeners.ending();
         while !*ending.borrow() {
             let new = self.common.new.notified();
             match self.common.store.claim(self.common.owner, last, lease).await {
                 Ok(Some(claim)) => {
                     last = Some(claim.job);
-                    self.advance(claim, &mut known, lease).await;
+                    self.compute_or_release(claim, &mut known, lease).await;
                 }
                 Ok(None) => {
                     known = None;
@@ -53,39 +53,39 @@ impl Jobs {
                     }
                 }
                 Err(error) => {
-                    tracing::debug!(%error, "no work can be taken for now");
+                    tracing::debug!(%error, "no chunk can be claimed for now");
                     tokio::time::sleep(PAUSE).await;
                 }
             }
         }
     }
 
-    /// Does a chunk, or gives it back.
-    async fn advance(&self, claim: Claim, known: &mut Known, lease: Duration) {
+    /// Computes a chunk, or releases it.
+    async fn compute_or_release(&self, claim: Claim, known: &mut OpenJob, lease: Duration) {
         let meters = &self.common.meters;
         let running = Counted::by(&meters.running);
         let done = self.chunk(claim, known, lease).await;
         drop(running);
         let error = match done {
-            // A job that has been deleted, and a claim that is none any more, are nobody's business.
+            // The job has been deleted, or the claim has ended.
             Ok(()) | Err(JobError::NotFound(_) | JobError::Sweep(SweepError::Failure(_))) => return,
             Err(error) => error,
         };
-        let hopeless = match &error {
+        let permanent = match &error {
             JobError::Broken(why) | JobError::Store(StoreError::Failed(why)) => Some(why.clone()),
             JobError::Sweep(SweepError::Pool(PoolError::Panicked)) | JobError::Pool(PoolError::Panicked) => {
                 Some("the solver has failed; the operator finds the cause in the log".to_owned())
             }
             _ => None,
         };
-        let done = match hopeless {
+        let done = match permanent {
             Some(why) => {
                 tracing::error!(job = %claim.job, chunk = claim.chunk, %error, "a job has failed");
                 meters.failed.inc();
                 self.common.store.fail_job(claim.job, why).await
             }
             None => {
-                tracing::debug!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is given back");
+                tracing::debug!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is released");
                 meters.returned.inc();
                 self.common.store.release(claim).await
             }
@@ -96,7 +96,7 @@ impl Jobs {
         tokio::time::sleep(PAUSE).await;
     }
 
-    async fn chunk(&self, claim: Claim, known: &mut Known, lease: Duration) -> Result<(), JobError> {
+    async fn chunk(&self, claim: Claim, known: &mut OpenJob, lease: Duration) -> Result<(), JobError> {
         if known.as_ref().is_none_or(|(job, _)| job.id != claim.job) {
             *known = Some(self.open(claim.job).await?);
         }
@@ -107,20 +107,20 @@ impl Jobs {
         let bytes = sweep.bytes(pool.capacity().threads) + 4 * NUMBER_BYTES * sweep.numbers(points.len());
         let _held = pool.reserve(bytes).await?;
         let Some(rows) = self.rows(claim, sweep, points.clone(), lease).await? else {
-            return self.common.store.release(claim).await.map_err(refused(claim.job));
+            return self.common.store.release(claim).await.map_err(store_error(claim.job));
         };
         let count = points.len() as u64;
         self.common.meters.points.inc_by(count);
         let result = ChunkResult { points: count, failed: rows.failed, content: rows.to_bytes() };
-        self.keep(claim, result, lease).await?;
+        self.save(claim, result, lease).await?;
         self.common.meters.chunks.inc();
         Ok(())
     }
 
     /// What a job asks for.
     async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
-        let job = self.common.store.job(id).await.map_err(refused(id))?;
-        let request = self.common.store.job_request(id).await.map_err(refused(id))?;
+        let job = self.common.store.job(id).await.map_err(store_error(id))?;
+        let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
         let plan = move || wire::read::<SweepRequest>(request.as_bytes()).and_then(Sweep::plan);
         let sweep = self.common.pool.run(INLINE, plan).await?;
         let sweep =
@@ -142,7 +142,7 @@ impl Jobs {
         let allowed = Some(pool.capacity().deadline);
         let mut rows = std::pin::pin!(sweep.compute(points, pool, workers, &stop, allowed));
         let mut changed = self.common.store.changes().subscribe(claim.job);
-        let mut ending = self.common.ending.subscribe();
+        let mut ending = self.common.listeners.ending();
         loop {
             tokio::select! {
                 rows = &mut rows => return Ok(Some(rows?)),
@@ -157,20 +157,20 @@ impl Jobs {
         }
     }
 
-    /// Keeps what came of a chunk, as soon as the store takes it.
-    async fn keep(&self, claim: Claim, result: ChunkResult, lease: Duration) -> Result<(), JobError> {
-        for _ in 0..OFFERS {
-            match self.common.store.keep_chunk(claim, result.clone()).await {
+    /// Stores the result of a chunk, as soon as the store takes it.
+    async fn save(&self, claim: Claim, result: ChunkResult, lease: Duration) -> Result<(), JobError> {
+        for _ in 0..SAVE_ATTEMPTS {
+            match self.common.store.save_chunk(claim, result.clone()).await {
                 Ok(()) => return Ok(()),
                 Err(StoreError::Full(_) | StoreError::Unavailable(_)) => {
                     tokio::time::sleep(PAUSE).await;
                     // In vain while the store is out of reach.
                     let _ = self.common.store.renew(claim, lease).await;
                 }
-                Err(error) => return Err(refused(claim.job)(error)),
+                Err(error) => return Err(store_error(claim.job)(error)),
             }
         }
-        Err(JobError::Store(StoreError::Unavailable("the storage takes no results".to_owned())))
+        Err(JobError::Store(StoreError::Unavailable("the storage does not take the result".to_owned())))
     }
 }
 

@@ -1,8 +1,8 @@
-//! The states at hand, least recently used out, and the lock of each session that somebody works on.
+//! The cached states, of which the least recently used go first, and the locks of the sessions in use.
 //!
-//! Whoever works on a session takes its state out of the cache, and puts it back at the end with the size that it has then.
-//! A session that nobody works on has no lock, and one that is not at hand takes no memory: asking for identifiers that do
-//! not exist leaves nothing behind, and a million idle sessions are the store's alone.
+//! A request takes the state of its session out of the cache, and puts it back at the end with the size that it has
+//! then. A session that no request uses has no lock, and one that is not cached takes no memory: asking for identifiers
+//! that do not exist leaves nothing behind, and a million idle sessions are the store's alone.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -16,54 +16,55 @@ use crate::admission::Reservation;
 use crate::metrics::counter;
 use crate::store::Tenant;
 
-use super::live::Live;
+use super::loaded::LoadedSession;
 
-/// How many bytes of states are kept at hand by default.
+/// How many bytes of states are cached by default.
 pub const CAPACITY: usize = 256 * 1024 * 1024;
 
-/// A session as one tenant names it. Under the name of a session of somebody else there is nothing at hand and nobody to
-/// wait for.
-type Name = (Tenant, Uuid);
+/// A session of a tenant. Under the identifier of another tenant's session a tenant finds neither a state nor a lock.
+type Key = (Tenant, Uuid);
 
 /// States and locks.
 pub(super) struct Cache {
     // Std mutexes both: held for a lookup, never across an await.
-    desks: Mutex<HashMap<Name, Desk>>,
+    locks: Mutex<HashMap<Key, LockEntry>>,
     states: Mutex<States>,
     capacity: usize,
-    // How often a state that was asked for was at hand.
+    // How often a state that was asked for was cached.
     hits: IntCounter,
 }
 
-/// A session that somebody works on or waits for. It goes with the last of them, so that a session has one lock at a time.
+/// The lock of a session that requests use or wait for. It goes with the last of them, so that a session has one lock
+/// at a time.
 #[derive(Default)]
-struct Desk {
+struct LockEntry {
     // The lock is fair, so that moves apply in the order of their arrival.
     lock: Arc<SessionLock<()>>,
     users: usize,
 }
 
-/// States that nobody works on, with their bytes.
+/// States that no request uses, with their bytes.
 struct States {
-    by_name: LruCache<Name, (Box<Live>, usize)>,
+    by_key: LruCache<Key, (Box<LoadedSession>, usize)>,
     bytes: usize,
 }
 
-/// A session that is one's own until the guard is dropped, when its state goes back to the cache.
+/// Exclusive use of a session until the guard is dropped, when its state goes back to the cache.
 pub(super) struct Guard {
-    /// The state, if it is at hand: that after some move that is stored, though perhaps not the last.
-    pub(super) live: Option<Box<Live>>,
+    /// The state, if it is cached: that after a stored move, though perhaps not the last.
+    pub(super) live: Option<Box<LoadedSession>>,
     /// The memory of a state that did not come out of the cache.
     pub(super) held: Reservation,
-    // Declared, and so released, before the desk is left: whoever comes in between finds the desk and waits at it.
+    // Declared, and so released, before the user: a request that comes in between finds the entry and waits for its
+    // lock.
     _lock: OwnedMutexGuard<()>,
-    place: Place,
+    user: LockUser,
 }
 
-/// One of the users of a desk.
-struct Place {
+/// One of the users of a lock.
+struct LockUser {
     cache: Arc<Cache>,
-    name: Name,
+    key: Key,
 }
 
 impl Cache {
@@ -71,20 +72,20 @@ impl Cache {
     pub(super) fn new(capacity: usize) -> Cache {
         let hits = Opts::new("stickslip_cache_hits_total", "Times that a contact that was asked for was in memory.");
         let hits = counter(hits);
-        let states = States { by_name: LruCache::new_unbounded(), bytes: 0 };
-        Cache { desks: Mutex::default(), states: Mutex::new(states), capacity, hits }
+        let states = States { by_key: LruCache::new_unbounded(), bytes: 0 };
+        Cache { locks: Mutex::default(), states: Mutex::new(states), capacity, hits }
     }
 
-    /// Waits until the session is one's own. Whoever gives up waiting has left.
+    /// Waits for exclusive use of a session. A dropped future no longer waits.
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
-        let (lock, place) = self.enter((tenant.clone(), id));
+        let (lock, user) = self.enter((tenant.clone(), id));
         let lock = lock.lock_owned().await;
-        Guard { live: self.take(&place.name), held: Reservation::default(), _lock: lock, place }
+        Guard { live: self.take(&user.key), held: Reservation::default(), _lock: lock, user }
     }
 
-    /// Whether the state of a session is at hand.
+    /// Whether the state of a session is cached.
     pub(super) fn holds(&self, tenant: &Tenant, id: Uuid) -> bool {
-        self.states().by_name.contains_key(&(tenant.clone(), id))
+        self.states().by_key.contains_key(&(tenant.clone(), id))
     }
 
     /// How many bytes there may be.
@@ -92,47 +93,47 @@ impl Cache {
         self.capacity
     }
 
-    /// How often a state was at hand.
+    /// How often a state was cached.
     pub(super) fn hits(&self) -> &IntCounter {
         &self.hits
     }
 
-    /// Bytes of the states at hand, and how many they are.
+    /// Bytes of the cached states, and how many they are.
     pub(super) fn held(&self) -> (usize, usize) {
         let states = self.states();
-        (states.bytes, states.by_name.len())
+        (states.bytes, states.by_key.len())
     }
 
-    fn enter(self: &Arc<Self>, name: Name) -> (Arc<SessionLock<()>>, Place) {
-        let mut desks = self.desks();
-        let desk = desks.entry(name.clone()).or_default();
-        desk.users += 1;
-        (Arc::clone(&desk.lock), Place { cache: Arc::clone(self), name })
+    fn enter(self: &Arc<Self>, key: Key) -> (Arc<SessionLock<()>>, LockUser) {
+        let mut locks = self.locks();
+        let entry = locks.entry(key.clone()).or_default();
+        entry.users += 1;
+        (Arc::clone(&entry.lock), LockUser { cache: Arc::clone(self), key })
     }
 
-    fn take(&self, name: &Name) -> Option<Box<Live>> {
+    fn take(&self, key: &Key) -> Option<Box<LoadedSession>> {
         let mut states = self.states();
-        let (live, bytes) = states.by_name.remove(name)?;
+        let (live, bytes) = states.by_key.remove(key)?;
         states.bytes -= bytes;
         self.hits.inc();
         Some(live)
     }
 
-    fn put(&self, live: Box<Live>) {
+    fn put(&self, live: Box<LoadedSession>) {
         let bytes = live.bytes();
         if bytes > self.capacity {
-            // It would drive out all others and go with them.
+            // It would evict all others and itself.
             return;
         }
         let mut gone = Vec::new();
         let mut states = self.states();
         states.bytes += bytes;
-        let name = (live.session.tenant.clone(), live.session.id);
-        if let Some((_, bytes)) = states.by_name.insert(name, (live, bytes)) {
+        let key = (live.session.tenant.clone(), live.session.id);
+        if let Some((_, bytes)) = states.by_key.insert(key, (live, bytes)) {
             states.bytes -= bytes;
         }
         while states.bytes > self.capacity
-            && let Some((_, (live, bytes))) = states.by_name.remove_lru()
+            && let Some((_, (live, bytes))) = states.by_key.remove_lru()
         {
             states.bytes -= bytes;
             gone.push(live);
@@ -142,8 +143,8 @@ impl Cache {
         drop(gone);
     }
 
-    fn desks(&self) -> MutexGuard<'_, HashMap<Name, Desk>> {
-        self.desks.lock().unwrap_or_else(PoisonError::into_inner)
+    fn locks(&self) -> MutexGuard<'_, HashMap<Key, LockEntry>> {
+        self.locks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn states(&self) -> MutexGuard<'_, States> {
@@ -154,25 +155,25 @@ impl Cache {
 impl Guard {
     /// The session.
     pub(super) fn id(&self) -> Uuid {
-        self.place.name.1
+        self.user.key.1
     }
 }
 
 impl Drop for Guard {
     fn drop(&mut self) {
         if let Some(live) = self.live.take() {
-            self.place.cache.put(live);
+            self.user.cache.put(live);
         }
     }
 }
 
-impl Drop for Place {
+impl Drop for LockUser {
     fn drop(&mut self) {
-        let mut desks = self.cache.desks();
-        if let Some(desk) = desks.get_mut(&self.name) {
-            desk.users -= 1;
-            if desk.users == 0 {
-                desks.remove(&self.name);
+        let mut locks = self.cache.locks();
+        if let Some(entry) = locks.get_mut(&self.key) {
+            entry.users -= 1;
+            if entry.users == 0 {
+                locks.remove(&self.key);
             }
         }
     }

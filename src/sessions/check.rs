@@ -1,7 +1,7 @@
 //! Is what is stored what happened? Every session is made again from its moves, and compared.
 //!
-//! Nothing is written, and one page of moves at a time is in memory. Others may work on the store meanwhile: of a session
-//! that moves on, the moves that it had when it was looked at are checked.
+//! Nothing is written, and one page of moves at a time is in memory. Others may work on the store meanwhile: of a
+//! session that moves on, the moves that it had when it was looked at are checked.
 
 use std::fmt;
 
@@ -11,8 +11,8 @@ use crate::store::{Record, Session, Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{Faults, JsonPath, State};
 
-use super::live::Live;
-use super::snapshot::{Worth, worth};
+use super::loaded::LoadedSession;
+use super::snapshot::{SnapshotState, compare};
 
 /// Sessions and moves that are fetched at a time.
 const SESSIONS: usize = 1_000;
@@ -64,8 +64,8 @@ impl fmt::Display for Checked {
     }
 }
 
-/// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by `tolerance`,
-/// relative to the largest that the session has seen; nought means not in a single bit.
+/// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by
+/// `tolerance`, relative to the largest that the session has had; 0 means not in a single bit.
 ///
 /// # Errors
 /// [`StoreError::Unavailable`] if the store cannot be asked to the end.
@@ -75,7 +75,7 @@ pub async fn check(
     report: &mut (dyn FnMut(&Finding) + Send),
 ) -> Result<Checked, StoreError> {
     let mut check = Check { store, tolerance, report, checked: Checked::default() };
-    match store.examine().await {
+    match store.check_integrity().await {
         Ok(found) => found.into_iter().for_each(|what| check.found(None, what)),
         Err(error) => check.unreadable(None, "the storage", error)?,
     }
@@ -200,14 +200,18 @@ impl Check<'_> {
     fn compare_snapshot(&mut self, id: Uuid, at: u64, state: &Contact, snapshot: Option<&Snapshot>) {
         let Some(snapshot) = snapshot.filter(|snapshot| snapshot.sequence == at) else { return };
         self.checked.snapshots += 1;
-        match worth(state, &snapshot.state) {
-            Worth::Same => {}
-            Worth::Foreign => {
+        match compare(state, &snapshot.state) {
+            SnapshotState::Sound => {}
+            SnapshotState::Foreign => {
                 self.checked.snapshots -= 1;
                 self.checked.foreign_snapshots += 1;
             }
-            Worth::Damaged => self.found(Some(id), format!("its snapshot of move {at} is damaged; it is not used")),
-            Worth::Wrong => self.found(Some(id), format!("its snapshot of move {at} is not the state after that move")),
+            SnapshotState::Damaged => {
+                self.found(Some(id), format!("its snapshot of move {at} is damaged; it is not used"))
+            }
+            SnapshotState::Wrong => {
+                self.found(Some(id), format!("its snapshot of move {at} is not the state after that move"))
+            }
         }
     }
 }
@@ -217,7 +221,7 @@ fn start(session: Session) -> Result<Contact, String> {
     let mut faults = Faults::default();
     let setup = session.definition.check(JsonPath::Root, &mut faults);
     let setup = faults.done(setup).map_err(|error| error.to_string())?;
-    Live::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
+    LoadedSession::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
 }
 
 /// How many numbers a state has.

@@ -4,7 +4,7 @@ use uuid::Uuid;
 
 use crate::admission::PoolError;
 use crate::simulation;
-use crate::store::StoreError;
+use crate::store::{RetryError, StoreError};
 
 /// Why a session did not do what it was asked for. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
@@ -43,7 +43,7 @@ pub enum SessionError {
     /// As many clients listen to events as may.
     #[error("{} clients listen to events, and no more may", super::STREAMS)]
     TooManyStreams,
-    /// The mechanics has no answer, or nobody waits for it.
+    /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
     Failure(#[from] simulation::Failure),
     /// The idempotency key belongs to another request.
@@ -58,4 +58,13 @@ pub enum SessionError {
     /// What is stored cannot be replayed, or a reply not be written: a fault of this program.
     #[error("{0}")]
     Broken(String),
+}
+
+impl From<RetryError> for SessionError {
+    fn from(error: RetryError) -> SessionError {
+        match error {
+            RetryError::KeyReused => SessionError::KeyReused,
+            RetryError::Store(error) => SessionError::Store(error),
+        }
+    }
 }

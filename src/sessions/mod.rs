@@ -1,26 +1,26 @@
-//! A contact that lives: one writer a session, a cache of states, and the past replayed where the cache has none.
+//! Contacts that live: one writer for each, a cache of states, and a replay of the moves where a state is not cached.
 //!
 //! Moves of one session queue at its lock in the order of their arrival; sessions do not wait for each other. A move is
-//! computed, appended to the store, and only then visible: whoever reads a state reads one that is stored. A client that
-//! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client that
-//! loses its connection must expect, and whoever comes next asks the store.
+//! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that
+//! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client
+//! that loses its connection must expect, and the next request asks the store.
 //!
-//! Other processes may work on the same store. A state at hand is always one that the session has been in, so that the
-//! moves stored beyond it lead to the present one: a read makes them first, and a move whose number the store has given
-//! away makes them and tries again. What has been deleted or has expired is told by the store too, whatever is at hand.
+//! Other processes may work on the same store. A cached state is always one that the session has been in, so that
+//! the moves stored after it lead to the current one: a read applies them first, and a move whose sequence another
+//! process has taken applies them and tries again. The store also says what has been deleted or has expired, whatever
+//! is cached.
 //!
-//! A handle works for one tenant ([`Sessions::of`]). What belongs to others is not there for it: their states and locks have
-//! other names, and what comes from the store is looked at before it is used.
+//! A handle works for one tenant ([`Sessions::for_tenant`]) and does not see what belongs to others: their states and
+//! locks have other keys, and the tenant of what comes from the store is checked before it is used.
 
-mod advance;
+mod apply;
 mod cache;
 mod check;
 mod error;
 mod events;
-mod house;
-mod idempotency;
-mod live;
-mod meters;
+mod expiry;
+mod loaded;
+mod metrics;
 mod read;
 mod relax;
 mod replay;
@@ -36,18 +36,18 @@ use uuid::Uuid;
 
 use crate::admission::Pool;
 use crate::otlp;
-use crate::store::{Reply, RequestKey, Session, Store, StoreError, Tenant};
+use crate::store::{IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip_wire::session::Creation;
 
 pub use cache::CAPACITY;
 use cache::{Cache, Guard};
 pub use check::{Checked, Finding, check};
 pub use error::SessionError;
-pub use events::{Happening, STREAMS};
-use live::Live;
-pub use meters::Readings;
+pub use events::STREAMS;
+use loaded::LoadedSession;
+pub use metrics::Readings;
 
-/// How often a change that another process has forestalled is tried. Each time, that process has got on.
+/// How often a change is tried that other processes overtake. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
@@ -62,14 +62,14 @@ struct Common {
     store: Arc<dyn Store>,
     pool: Pool,
     cache: Arc<Cache>,
-    // A permit for each snapshot that is being kept.
+    // A permit for each snapshot that is being stored.
     snapshots: Arc<Semaphore>,
-    streams: events::Streams,
-    meters: meters::Meters,
+    listeners: Listeners,
+    metrics: metrics::SessionMetrics,
 }
 
 impl Sessions {
-    /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are kept at hand; the rest is
+    /// Sessions in a store, of the tenant without a name. At most `capacity` bytes of states are cached; the rest is
     /// replayed when needed.
     #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
@@ -78,15 +78,15 @@ impl Sessions {
             pool,
             cache: Arc::new(Cache::new(capacity)),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
-            streams: events::Streams::new(),
-            meters: meters::Meters::default(),
+            listeners: Listeners::new(STREAMS),
+            metrics: metrics::SessionMetrics::default(),
         };
         Sessions { tenant: Tenant::default(), common: Arc::new(common) }
     }
 
     /// The sessions of another tenant.
     #[must_use]
-    pub fn of(&self, tenant: Tenant) -> Sessions {
+    pub fn for_tenant(&self, tenant: Tenant) -> Sessions {
         Sessions { tenant, common: Arc::clone(&self.common) }
     }
 
@@ -98,13 +98,18 @@ impl Sessions {
         self.common.store.ready().await.map_err(SessionError::Store)
     }
 
-    /// Bytes of the states that are kept at hand, and how many sessions they are.
+    /// Bytes of the cached states, and how many sessions they are.
     #[must_use]
     pub fn held(&self) -> (usize, usize) {
         self.common.cache.held()
     }
 
-    /// A session to work on: waits for those who came before, as long as the pool lets it.
+    /// A request that may have been answered before.
+    fn request(&self, key: Option<RequestKey>) -> IdempotentRequest<'_> {
+        IdempotentRequest::new(&*self.common.store, &self.tenant, key)
+    }
+
+    /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
     }
@@ -114,8 +119,8 @@ impl Sessions {
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn create(&self, creation: Creation, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let key = key.map(|key| key.of(&self.tenant));
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        let request = self.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
         let now = Timestamp::now();
@@ -128,31 +133,31 @@ impl Sessions {
             created_at: now,
             updated_at: now,
         };
-        let live = Live::start(session, creation.setup)?;
-        let reply = live.introduce()?;
-        // Whoever finds the new session in the store waits until it is at hand.
+        let live = LoadedSession::start(session, creation.setup)?;
+        let reply = live.created_reply()?;
+        // A request that finds the new session in the store waits until it is cached.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
-        let stored = self.common.store.create(live.session.clone(), idempotency::receipt(key.clone(), &reply));
-        match stored.instrument(otlp::part!("store")).await {
-            Ok(()) => guard.live = Some(Box::new(live)),
-            Err(error) => return self.lost(error, key).await,
+        let stored = self.common.store.create(live.session.clone(), request.receipt(&reply));
+        if let Err(error) = stored.instrument(otlp::part!("store")).await {
+            return Ok(request.after_refusal(error).await?);
         }
+        guard.live = Some(Box::new(live));
         Ok(reply)
     }
 
-    /// Makes a session with the same past.
+    /// Makes a session with the same moves.
     ///
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
     pub async fn fork(&self, id: Uuid, label: Option<String>, key: Option<RequestKey>) -> Result<Reply, SessionError> {
-        let key = key.map(|key| key.of(&self.tenant));
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        let request = self.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
         let mut guard = self.lock(id).await?;
         let mut found = 0;
         for _ in 0..ATTEMPTS {
-            let mut copy = self.present(&mut guard).await?.clone();
+            let mut copy = self.current(&mut guard).await?.clone();
             let now = Timestamp::now();
             copy.session = Session {
                 id: Uuid::now_v7(),
@@ -161,10 +166,9 @@ impl Sessions {
                 updated_at: now,
                 ..copy.session
             };
-            let reply = copy.introduce()?;
+            let reply = copy.created_reply()?;
             let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
-            let receipt = idempotency::receipt(key.clone(), &reply);
-            let stored = self.common.store.fork(id, copy.session.clone(), receipt);
+            let stored = self.common.store.fork(id, copy.session.clone(), request.receipt(&reply));
             match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
                     new.live = Some(Box::new(copy));
@@ -172,9 +176,9 @@ impl Sessions {
                 }
                 Err(StoreError::Stale { found: moved }) => found = moved,
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.failed(&mut guard, error));
+                    return Err(self.store_failure(&mut guard, error));
                 }
-                Err(error) => return self.lost(error, key).await,
+                Err(error) => return Ok(request.after_refusal(error).await?),
             }
         }
         Err(SessionError::Overtaken { found })
@@ -188,7 +192,7 @@ impl Sessions {
         let mut guard = self.lock(id).await?;
         let found = match &guard.live {
             Some(live) => live.session.sequence,
-            None => self.own(id).await?.sequence,
+            None => self.find_own(id).await?.sequence,
         };
         let mut at = expected.unwrap_or(found);
         for _ in 0..ATTEMPTS {
@@ -202,7 +206,7 @@ impl Sessions {
                     return Err(SessionError::Stale { expected, found });
                 }
                 (Err(StoreError::Stale { found }), None) => at = found,
-                (Err(error), _) => return Err(self.failed(&mut guard, error)),
+                (Err(error), _) => return Err(self.store_failure(&mut guard, error)),
             }
         }
         Err(SessionError::Overtaken { found: at })

@@ -13,7 +13,7 @@ use crate::simulation::{self, stresses};
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
-use super::live::table_points;
+use super::loaded::table_points;
 use super::{SessionError, Sessions, written};
 
 impl Sessions {
@@ -23,12 +23,12 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
         let mut guard = self.lock(id).await?;
-        let live = self.present(&mut guard).await?;
+        let live = self.current(&mut guard).await?;
         Ok(SessionReply {
             id,
             label: live.session.label.clone(),
             sequence: live.session.sequence,
-            contact: live.about.figures.clone(),
+            contact: live.derived.figures.clone(),
             state: live.contact.state().into(),
             created_at: live.session.created_at,
             updated_at: live.session.updated_at,
@@ -42,7 +42,7 @@ impl Sessions {
     pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
         let definition = {
             let mut guard = self.lock(id).await?;
-            Arc::clone(&self.present(&mut guard).await?.session.definition)
+            Arc::clone(&self.current(&mut guard).await?.session.definition)
         };
         let points = table_points(&definition.profile);
         let held = self.common.pool.reserve(points * cost::WRITTEN_POINT_BYTES).await?;
@@ -50,8 +50,8 @@ impl Sessions {
         Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// What `write` makes of the stresses of a session, of its contact and its sequence, in `more` bytes beyond JSON's columns at
-    /// the most and in so much `longer` time; with the sequence, and the memory that it takes.
+    /// What `write` makes of the stresses of a session, of its contact and its sequence, in `more` bytes beyond JSON's
+    /// columns at the most and in so much `longer` time; with the sequence, and the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
@@ -67,7 +67,7 @@ impl Sessions {
         // The lock is held for a copy alone, so that the session can move on meanwhile.
         let (contact, sequence, held) = {
             let mut guard = self.lock(id).await?;
-            let live = self.present(&mut guard).await?;
+            let live = self.current(&mut guard).await?;
             let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
             let held = self.common.pool.reserve(bytes + more).await?;
             (live.contact.clone(), live.session.sequence, held)
@@ -105,26 +105,21 @@ impl Sessions {
         Ok(SessionPage { items: found, next })
     }
 
-    /// A page of a session's past, oldest first.
+    /// A page of a session's moves, oldest first.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
         if !self.common.cache.holds(&self.tenant, id) {
-            self.own(id).await?;
+            self.find_own(id).await?;
         }
-        self.past(id, after, limit).await
+        self.history_page(id, after, limit).await
     }
 
-    /// The same of a session that is known to be one's own.
-    pub(super) async fn past(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        let mut found = self
-            .common
-            .store
-            .history(id, after, limit + 1)
-            .instrument(otlp::part!("store"))
-            .await
-            .map_err(|error| self.refused(id, error))?;
+    /// The same of a session that is known to belong to the tenant.
+    pub(super) async fn history_page(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
+        let found = self.common.store.history(id, after, limit + 1).instrument(otlp::part!("store")).await;
+        let mut found = found.map_err(|error| self.store_error(id, error))?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|record| record.sequence);

@@ -8,17 +8,17 @@ use stickslip_mechanics::DEFAULT_TOLERANCE;
 use stickslip_wire::protocol::{ProtocolTask, Relaxation};
 use stickslip_wire::{ContactDefinition, Plan, ProtocolReply, RelaxReply, Steps};
 
-use super::live::Live;
+use super::loaded::LoadedSession;
 use super::{SessionError, Sessions, written};
 
 /// The protocol that begins from the present state of a session.
-pub(super) fn found(live: &Live, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
+pub(super) fn find_protocol(live: &LoadedSession, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     let definition = &*live.session.definition;
     simulation::protocol(&Subject { contact: &live.contact, definition, first: None, setup: None }, task, stop)
 }
 
 /// The failure of a move that the client has not given itself.
-pub(super) fn of_the_whole(failure: Failure) -> Failure {
+pub(super) fn without_step(failure: Failure) -> Failure {
     match failure {
         Failure::Refused { error, .. } => Failure::Refused { pointer: String::new(), error },
         Failure::MemoryFull { depth, .. } => Failure::MemoryFull { pointer: String::new(), depth },
@@ -28,8 +28,8 @@ pub(super) fn of_the_whole(failure: Failure) -> Failure {
 }
 
 impl Sessions {
-    /// The protocol that begins from the present state of a session, which `said` to have this definition, and the sequence
-    /// that it belongs to, with the memory that it takes.
+    /// The protocol that begins from the present state of a session, which `said` to have this definition, and the
+    /// sequence that it belongs to, with the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError`], among them [`SessionError::OtherDefinition`].
@@ -39,29 +39,30 @@ impl Sessions {
         said: Option<ContactDefinition>,
         task: ProtocolTask,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
-        self.look(id, said, None, task, move |live, stop| written(&found(live, &task, stop)?)).await
+        self.with_copy(id, said, None, task, move |live, stop| written(&find_protocol(live, &task, stop)?)).await
     }
 
-    /// What [`Sessions::advance`] would do to relax a session at the sequence that the client expects; nothing is changed.
+    /// What [`Sessions::apply_moves`] would do to relax a session at the sequence that the client expects; nothing
+    /// changes.
     ///
     /// # Errors
     /// [`SessionError`].
-    pub async fn rehearse(
+    pub async fn dry_run_relax(
         &self,
         id: Uuid,
         relaxation: Relaxation,
         expected: Option<u64>,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let Relaxation { task, steps, .. } = relaxation;
-        let work = move |live: &mut Live, stop: &Stop| {
-            let protocol = found(live, &task, stop)?;
+        let work = move |live: &mut LoadedSession, stop: &Stop| {
+            let protocol = find_protocol(live, &task, stop)?;
             let plan = Plan::Displacement(protocol.path.displacement.clone());
             let mut states = Vec::new();
             if steps.is_some() {
                 follow(&mut live.contact, &plan, None, DEFAULT_TOLERANCE, stop, |_, contact| {
                     states.push(contact.state().into());
                 })
-                .map_err(of_the_whole)?;
+                .map_err(without_step)?;
             }
             if steps == Some(Steps::Last) {
                 states.drain(..states.len().saturating_sub(1));
@@ -69,22 +70,22 @@ impl Sessions {
             let (sequence, steps) = (live.session.sequence, steps.map(|_| states));
             written(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
         };
-        self.look(id, None, expected, task, work).await
+        self.with_copy(id, None, expected, task, work).await
     }
 
     /// Works on a copy of a session: the lock is held for the copy alone, so that the session can move on meanwhile.
-    async fn look(
+    async fn with_copy(
         &self,
         id: Uuid,
         said: Option<ContactDefinition>,
         expected: Option<u64>,
         task: ProtocolTask,
-        work: impl FnOnce(&mut Live, &Stop) -> Result<Vec<u8>, SessionError> + Send + 'static,
+        work: impl FnOnce(&mut LoadedSession, &Stop) -> Result<Vec<u8>, SessionError> + Send + 'static,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let (mut live, held) = {
             let mut guard = self.lock(id).await?;
-            let live = self.present(&mut guard).await?;
+            let live = self.current(&mut guard).await?;
             let found = live.session.sequence;
             if let Some(expected) = expected.filter(|expected| *expected != found) {
                 return Err(SessionError::Stale { expected, found });

@@ -1,4 +1,4 @@
-//! From what is stored to a state: the newest snapshot, and the moves beyond it.
+//! From what is stored to a state: the newest snapshot, and the moves after it.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::store::{Record, Session, StoreError};
 use stickslip_wire::{Faults, JsonPath, limits};
 
 use super::cache::Guard;
-use super::live::Live;
+use super::loaded::LoadedSession;
 use super::{SessionError, Sessions};
 
 /// Moves that are fetched from the store at a time.
@@ -20,38 +20,39 @@ const PIECES: usize = 4;
 const PIECE_BYTES: usize = 96;
 
 impl Sessions {
-    /// The session as it is at hand, or else as it is stored. Other processes may have moved it on, or deleted it: what comes
-    /// of it is to be held against the store.
-    pub(super) async fn at_hand<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut Live, SessionError> {
+    /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
+    /// result is to be checked against the store.
+    pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.is_none() {
-            self.open(guard).await?;
+            self.load(guard).await?;
         }
         let id = guard.id();
         guard.live.as_deref_mut().ok_or(SessionError::NotFound(id))
     }
 
     /// The session as it is stored: with what other processes have done to it up to now.
-    pub(super) async fn present<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut Live, SessionError> {
-        if let Some(at_hand) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let stored = self.common.store.sequence(guard.id()).await.map_err(|error| self.failed(guard, error))?;
-            if stored > at_hand {
+    pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
+        if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
+            let stored =
+                self.common.store.sequence(guard.id()).await.map_err(|error| self.store_failure(guard, error))?;
+            if stored > cached {
                 self.catch_up(guard).await?;
-            } else if stored < at_hand {
-                // The store has been put back to an earlier time.
+            } else if stored < cached {
+                // The store has been restored from a backup.
                 guard.live = None;
             }
         }
-        self.at_hand(guard).await
+        self.cached(guard).await
     }
 
-    /// Makes the moves that are stored beyond the state at hand; says whether there were any.
+    /// Applies the moves that are stored after the cached state; returns whether there were any.
     pub(super) async fn catch_up(&self, guard: &mut Guard) -> Result<bool, SessionError> {
         let id = guard.id();
         let mut moved = false;
         while let Some(sequence) = guard.live.as_ref().map(|live| live.session.sequence) {
             let page = match self.common.store.history(id, sequence, PAGE).await {
                 Ok(page) => page,
-                Err(error) => return Err(self.failed(guard, error)),
+                Err(error) => return Err(self.store_failure(guard, error)),
             };
             let (first, last_page) = (page.first().map(|record| record.sequence), page.len() < PAGE);
             if let Some(first) = first
@@ -76,20 +77,20 @@ impl Sessions {
         Ok(moved)
     }
 
-    /// Brings a session that is not at hand from the store.
-    async fn open(&self, guard: &mut Guard) -> Result<(), SessionError> {
+    /// Loads a session that is not cached from the store.
+    async fn load(&self, guard: &mut Guard) -> Result<(), SessionError> {
         let (id, begin) = (guard.id(), Instant::now());
         // The snapshot first: taken later, it might be of a move that the session found has not made yet.
         let snapshot = self.common.store.snapshot(id).await;
-        let session = self.own(id).await?;
+        let session = self.find_own(id).await?;
         let (sequence, updated_at) = (session.sequence, session.updated_at);
         let pieces = usize::try_from(sequence).unwrap_or(usize::MAX).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
         guard.held = self.common.pool.reserve(pieces * PIECE_BYTES).await?;
         let mut faults = Faults::default();
         let setup = session.definition.check(JsonPath::Root, &mut faults);
         let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;
-        let mut live = Box::new(Live::start(session, setup).map_err(|error| broken(guard, &error))?);
-        (live.contact, live.session.sequence) = self.newest(snapshot, live.contact, sequence).await?;
+        let mut live = Box::new(LoadedSession::start(session, setup).map_err(|error| broken(guard, &error))?);
+        (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, sequence).await?;
         guard.live = Some(live);
         self.catch_up(guard).await?;
         if let Some(live) = guard.live.as_mut() {
@@ -103,12 +104,16 @@ impl Sessions {
             }
             live.shared = false;
         }
-        self.common.meters.open.observe(begin.elapsed().as_secs_f64());
+        self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }
 
-    /// Makes moves of the past.
-    async fn follow(&self, mut live: Box<Live>, page: Vec<Record>) -> Result<Box<Live>, SessionError> {
+    /// Applies stored moves.
+    async fn follow(
+        &self,
+        mut live: Box<LoadedSession>,
+        page: Vec<Record>,
+    ) -> Result<Box<LoadedSession>, SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
         let cost = Work { moves: page.len(), curved, ..Work::default() }.cost(live.contact.profile());
         let replayed = self.common.pool.run(cost, move || {
@@ -118,7 +123,7 @@ impl Sessions {
                 live.session.sequence = record.sequence;
                 live.session.updated_at = record.at;
             }
-            live.beyond.add(page.len(), begin.elapsed());
+            live.replay_cost.add(page.len(), begin.elapsed());
             Ok(live)
         });
         replayed.await?.map_err(|error: stickslip_mechanics::Error| {
@@ -126,25 +131,25 @@ impl Sessions {
         })
     }
 
-    /// The session as it is stored, if it is one's own.
-    pub(super) async fn own(&self, id: Uuid) -> Result<Session, SessionError> {
+    /// The session as it is stored, if it belongs to the tenant.
+    pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
         match self.common.store.find(id).await {
             Ok(session) if session.tenant == self.tenant => Ok(session),
             Ok(_) => Err(SessionError::NotFound(id)),
-            Err(error) => Err(self.refused(id, error)),
+            Err(error) => Err(self.store_error(id, error)),
         }
     }
 
     /// What a failure of the store means for a client. Where the session is gone, its state goes too.
-    pub(super) fn failed(&self, guard: &mut Guard, error: StoreError) -> SessionError {
+    pub(super) fn store_failure(&self, guard: &mut Guard, error: StoreError) -> SessionError {
         if matches!(error, StoreError::NotFound | StoreError::Expired(_)) {
             guard.live = None;
         }
-        self.refused(guard.id(), error)
+        self.store_error(guard.id(), error)
     }
 
     /// What a failure of the store means for a client.
-    pub(super) fn refused(&self, id: Uuid, error: StoreError) -> SessionError {
+    pub(super) fn store_error(&self, id: Uuid, error: StoreError) -> SessionError {
         match error {
             StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),
             StoreError::NotFound | StoreError::Expired(_) => SessionError::NotFound(id),

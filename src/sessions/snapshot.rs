@@ -1,18 +1,18 @@
 //! Snapshots: states kept in the store, so that opening a session need not replay all of its moves.
 //!
-//! A snapshot is a cache and never a truth: one that is damaged, or of another version of the engine, is ignored, and the
-//! session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and read,
-//! which bounds both the time to open a session and the bytes written for a move.
+//! A snapshot is a cache and never a truth: one that is damaged, or of another version of the engine, is ignored, and
+//! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
+//! read, which bounds both the time to open a session and the bytes written for a move.
 
 use std::time::Duration;
 
 use crate::store::{Snapshot, StoreError};
 use stickslip_mechanics::Contact;
 
-use super::live::Live;
+use super::loaded::LoadedSession;
 use super::{SessionError, Sessions};
 
-/// Snapshots that are being kept at a time. A session for which there is no room tries again with its next move.
+/// Snapshots that are being stored at a time. A session for which there is no room tries again with its next move.
 pub(super) const AT_ONCE: usize = 2;
 /// No replay shorter than this is worth a snapshot.
 const LEAST: Duration = Duration::from_millis(20);
@@ -23,87 +23,87 @@ const BYTE: Duration = Duration::from_nanos(3);
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 
-/// The way that a replay would have to go beyond the last snapshot.
+/// What a replay from the last snapshot would cost.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Beyond {
+pub(super) struct ReplayCost {
     moves: u32,
     work: Duration,
 }
 
-impl Beyond {
+impl ReplayCost {
     /// Adds moves that took so long to compute.
     pub(super) fn add(&mut self, moves: usize, work: Duration) {
         self.moves = self.moves.saturating_add(u32::try_from(moves).unwrap_or(u32::MAX));
         self.work = self.work.saturating_add(work);
     }
 
-    /// Whether a snapshot of so many bytes is worth its while.
-    fn is_long(self, bytes: usize) -> bool {
+    /// Whether a snapshot of so many bytes costs less than the replay that it spares.
+    fn is_worth_snapshot(self, bytes: usize) -> bool {
         let spared = self.work.saturating_add(FETCH.saturating_mul(self.moves));
         spared >= LEAST.max(BYTE.saturating_mul(u32::try_from(bytes).unwrap_or(u32::MAX)))
     }
 }
 
 impl Sessions {
-    /// Has a snapshot of a stored state kept in the background, if one is due.
-    pub(super) fn offer_snapshot(&self, live: &mut Live) {
-        if !live.beyond.is_long(live.contact.packed_length()) {
+    /// Stores a snapshot of a stored state in the background, if one is due.
+    pub(super) fn offer_snapshot(&self, live: &mut LoadedSession) {
+        if !live.replay_cost.is_worth_snapshot(live.contact.packed_length()) {
             return;
         }
         let Ok(permit) = self.common.snapshots.clone().try_acquire_owned() else { return };
-        live.beyond = Beyond::default();
+        live.replay_cost = ReplayCost::default();
         let (store, contact) = (self.common.store.clone(), live.contact.clone());
         let (id, sequence) = (live.session.id, live.session.sequence);
         tokio::spawn(async move {
             let _permit = permit;
-            let Ok(state) = tokio::task::spawn_blocking(move || sealed(&contact)).await else { return };
+            let Ok(state) = tokio::task::spawn_blocking(move || with_checksum(&contact)).await else { return };
             // The session loses nothing by it but time.
-            if let Err(error) = store.keep_snapshot(id, Snapshot { sequence, state }).await {
-                tracing::warn!(%id, sequence, %error, "a snapshot was not kept");
+            if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }).await {
+                tracing::warn!(%id, sequence, %error, "a snapshot was not stored");
             }
         });
     }
 
-    /// The contact after some stored move and the number of that move; `virgin` and nought if there is no snapshot to read.
-    pub(super) async fn newest(
+    /// The contact after some stored move and the number of that move; `initial` and 0 if there is no snapshot to read.
+    pub(super) async fn load_snapshot(
         &self,
         snapshot: Result<Option<Snapshot>, StoreError>,
-        virgin: Contact,
+        initial: Contact,
         last: u64,
     ) -> Result<(Contact, u64), SessionError> {
         let snapshot = match snapshot {
             Ok(Some(snapshot)) if snapshot.sequence <= last => snapshot,
-            Ok(_) => return Ok((virgin, 0)),
+            Ok(_) => return Ok((initial, 0)),
             Err(error) => {
                 tracing::warn!(%error, "a snapshot was not read");
-                return Ok((virgin, 0));
+                return Ok((initial, 0));
             }
         };
         // Reading a byte is below a nanosecond.
         let cost = snapshot.state.len() as u64;
-        let read = self.common.pool.run(cost, move || match unsealed(&virgin, &snapshot.state) {
+        let read = self.common.pool.run(cost, move || match from_checked(&initial, &snapshot.state) {
             Some(contact) => (contact, snapshot.sequence),
-            None => (virgin, 0),
+            None => (initial, 0),
         });
         Ok(read.await?)
     }
 }
 
-fn sealed(contact: &Contact) -> Vec<u8> {
+fn with_checksum(contact: &Contact) -> Vec<u8> {
     let mut bytes = contact.pack();
     bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
     bytes
 }
 
-fn unsealed(virgin: &Contact, bytes: &[u8]) -> Option<Contact> {
+fn from_checked(initial: &Contact, bytes: &[u8]) -> Option<Contact> {
     let (state, checksum) = bytes.split_last_chunk::<CHECKSUM>()?;
-    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| virgin.unpack(state))?
+    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| initial.unpack(state))?
 }
 
 /// What a snapshot is worth.
-pub(super) enum Worth {
+pub(super) enum SnapshotState {
     /// It is the state, to the last bit.
-    Same,
+    Sound,
     /// Another engine made it; it is never read.
     Foreign,
     /// It is not what was written; it is never read.
@@ -113,31 +113,31 @@ pub(super) enum Worth {
 }
 
 /// Compares a snapshot with the state that it should be.
-pub(super) fn worth(state: &Contact, snapshot: &[u8]) -> Worth {
+pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> SnapshotState {
     let sound = snapshot.split_last_chunk::<CHECKSUM>();
     match sound.filter(|(state, checksum)| crc32fast::hash(state) == u32::from_le_bytes(**checksum)) {
-        None => Worth::Damaged,
-        Some((state, _)) if !Contact::is_current_packing(state) => Worth::Foreign,
-        Some(_) if snapshot == sealed(state) => Worth::Same,
-        Some(_) => Worth::Wrong,
+        None => SnapshotState::Damaged,
+        Some((state, _)) if !Contact::is_current_packing(state) => SnapshotState::Foreign,
+        Some(_) if snapshot == with_checksum(state) => SnapshotState::Sound,
+        Some(_) => SnapshotState::Wrong,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Beyond;
+    use super::ReplayCost;
     use std::time::Duration;
 
     #[test]
     fn snapshots_are_rare_where_they_are_large_and_frequent_where_moves_are_dear() {
         let after = |moves, micros| {
-            let mut beyond = Beyond::default();
-            beyond.add(moves, Duration::from_micros(micros));
-            beyond
+            let mut cost = ReplayCost::default();
+            cost.add(moves, Duration::from_micros(micros));
+            cost
         };
-        assert!(!after(5_000, 2_000).is_long(1_000));
-        assert!(after(10_000, 0).is_long(1_000));
-        assert!(after(10, 30_000).is_long(1_000) && !after(10, 30_000).is_long(20_000_000));
-        assert!(after(usize::MAX, u64::MAX).is_long(usize::MAX));
+        assert!(!after(5_000, 2_000).is_worth_snapshot(1_000));
+        assert!(after(10_000, 0).is_worth_snapshot(1_000));
+        assert!(after(10, 30_000).is_worth_snapshot(1_000) && !after(10, 30_000).is_worth_snapshot(20_000_000));
+        assert!(after(usize::MAX, u64::MAX).is_worth_snapshot(usize::MAX));
     }
 }

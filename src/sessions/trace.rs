@@ -1,4 +1,4 @@
-//! The way between recorded states, made again in small steps beside the session, which does not move.
+//! The path between recorded states, computed again in small steps on a copy: the session itself does not move.
 
 use uuid::Uuid;
 
@@ -21,7 +21,8 @@ const PIECE: usize = 96;
 const POINTS: &str = "/points_per_move";
 
 impl Sessions {
-    /// The loop through moves of the past, so many points a move; `past` are those moves, and the first comes after the move
+    /// The loop through earlier moves, with so many points a move; `past` are those moves, and the first follows the
+    /// move
     /// `after`.
     ///
     /// # Errors
@@ -43,14 +44,14 @@ impl Sessions {
         let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
         let _held = self.common.pool.reserve(2 * PIECE * pieces).await?;
         let snapshot = self.common.store.snapshot(id).await;
-        let virgin = {
+        let initial = {
             let mut guard = self.lock(id).await?;
-            self.present(&mut guard).await?.contact.virgin()
+            self.current(&mut guard).await?.contact.virgin()
         };
-        let (mut contact, mut at) = self.newest(snapshot, virgin, after).await?;
+        let (mut contact, mut at) = self.load_snapshot(snapshot, initial, after).await?;
         while at < last {
             let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
-            let records = self.common.store.history(id, at, most).await.map_err(|error| self.refused(id, error))?;
+            let records = self.common.store.history(id, at, most).await.map_err(|error| self.store_error(id, error))?;
             let Some(end) = records.last().filter(|_| records[0].sequence == at + 1).map(|record| record.sequence)
             else {
                 return Err(SessionError::Broken(format!("move {} of contact {id} is missing", at + 1)));
@@ -65,7 +66,7 @@ impl Sessions {
             let work = move || {
                 for record in &records {
                     let wanted = if record.sequence > after { points } else { 1 };
-                    along(&mut contact, record, wanted, &stop, &mut page)?;
+                    trace_move(&mut contact, record, wanted, &stop, &mut page)?;
                     if record.sequence > after {
                         page.push_end(record.sequence, &record.state);
                     }
@@ -85,8 +86,8 @@ impl Sessions {
     }
 }
 
-/// Makes a move of the past, and before it notes the points on its way.
-fn along(
+/// Applies an earlier move, after adding the points on its way to the page.
+fn trace_move(
     contact: &mut Contact,
     record: &Record,
     points: usize,

@@ -1,6 +1,7 @@
 //! Waiting for a session to change.
 //!
-//! A wake-up says that something may have happened, not what: whoever is woken reads the history beyond what it has seen.
+//! A wake-up says that something may have happened, not what: a listener that is woken reads the moves after the last
+//! that it has seen.
 //! So wake-ups may be merged or come in vain, and none that matters is lost.
 
 use std::collections::HashMap;
@@ -50,7 +51,7 @@ mod tests {
     use uuid::Uuid;
 
     #[test]
-    fn only_those_who_wait_for_a_session_are_woken_and_nobody_is_kept_who_left() {
+    fn only_the_listeners_of_a_session_are_woken_and_none_is_kept_that_left() {
         let (changes, here, elsewhere) = (Changes::default(), Uuid::now_v7(), Uuid::now_v7());
         let (mut waits, idles) = (changes.subscribe(here), changes.subscribe(elsewhere));
         changes.wake(here);

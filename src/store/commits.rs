@@ -1,4 +1,4 @@
-//! What a store that commits counts.
+//! Metrics of a store that commits.
 
 use std::time::Duration;
 

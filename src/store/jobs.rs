@@ -1,23 +1,23 @@
 //! Jobs: work that goes on after its request has been answered, in chunks whose results are kept as they come.
 //!
-//! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are claimed
-//! by whoever has time for them, and a claim ends with its holder. What a chunk comes to are bytes that the store does not
-//! read.
+//! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are
+//! claimed by any worker, and a claim ends with its worker. The store does not read the bytes of a result.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Unbounded};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use async_trait::async_trait;
 use jiff::{SignedDuration, Timestamp};
 use uuid::Uuid;
 
-use super::{Answer, Receipt, StoreError, Tenant};
+use super::{Receipt, Result, StoreError, Tenant};
 
 /// How long a job that has ended is kept, with its result.
 pub const JOB_LIFETIME: Duration = Duration::from_secs(24 * 60 * 60);
 /// How long a job may take to end.
-pub const JOB_PATIENCE: Duration = Duration::from_secs(7 * 24 * 60 * 60);
+pub const JOB_TIME_LIMIT: Duration = Duration::from_secs(7 * 24 * 60 * 60);
 
 /// A job as it is stored.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,7 @@ impl Job {
     pub fn expires_at(&self) -> Timestamp {
         let (from, time) = match self.finished_at {
             Some(at) => (at, JOB_LIFETIME),
-            None => (self.created_at, JOB_PATIENCE),
+            None => (self.created_at, JOB_TIME_LIMIT),
         };
         let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
         from.checked_add(time).unwrap_or(Timestamp::MAX)
@@ -78,7 +78,7 @@ pub struct JobLimits {
 
 impl JobLimits {
     /// Whether a tenant with so many jobs, bytes and work to do may have another job.
-    pub(super) fn admit(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<(), StoreError> {
+    pub(super) fn check(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<()> {
         if jobs >= self.jobs {
             return Err(StoreError::TooManyJobs(format!("{jobs} jobs are kept, and no more may be")));
         }
@@ -87,9 +87,7 @@ impl JobLimits {
         }
         if cost.saturating_add(new.cost) > self.cost {
             let allowed = Duration::from_nanos(self.cost).as_secs();
-            return Err(StoreError::TooManyJobs(format!(
-                "the jobs under way may have {allowed} s of work before them"
-            )));
+            return Err(StoreError::TooManyJobs(format!("the jobs that are not done may need {allowed} s of work")));
         }
         Ok(())
     }
@@ -117,63 +115,67 @@ pub struct ChunkResult {
     pub content: Vec<u8>,
 }
 
-/// A place to keep jobs. As with sessions, tenants are kept apart by the callers.
+/// Storage of jobs. As with sessions, the callers keep tenants apart.
+#[async_trait]
 pub trait JobStore: Send + Sync + 'static {
-    /// Stores a new job and what was asked for, and the receipt with it, if the tenant may have another.
-    fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    /// Stores a new job with its request, and the receipt with it, if the limits of its tenant allow another job.
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()>;
 
     /// The job.
-    fn job(&self, id: Uuid) -> Answer<'_, Job>;
+    async fn job(&self, id: Uuid) -> Result<Job>;
 
-    /// What was asked for.
-    fn job_request(&self, id: Uuid) -> Answer<'_, String>;
+    /// The request that the job was made of.
+    async fn job_request(&self, id: Uuid) -> Result<String>;
 
-    /// A chunk that nobody works on, of the first job beyond `after` that has one, or else of the first of all. In a store of
-    /// many processes it is free again after `lease`, unless it is renewed.
-    fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Answer<'_, Option<Claim>>;
+    /// Claims a chunk that nobody works on, of the first job with an identifier greater than `after` that has one, or
+    /// else of the first of all. Where many processes share the storage the claim ends after `lease`, unless it is
+    /// renewed.
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>>;
 
-    /// Holds a claim for another `lease`; says whether it still is one.
-    fn renew(&self, claim: Claim, lease: Duration) -> Answer<'_, bool>;
+    /// Extends a claim by another `lease`; returns whether it still held.
+    async fn renew(&self, claim: Claim, lease: Duration) -> Result<bool>;
 
     /// Gives a chunk back.
-    fn release(&self, claim: Claim) -> Answer<'_, ()>;
+    async fn release(&self, claim: Claim) -> Result<()>;
 
-    /// Keeps what came of a chunk. Of two who did the same chunk the first is heard. With the last chunk the job ends.
-    fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()>;
+    /// Stores the result of a chunk. If two workers compute the same chunk the first result counts. With its last chunk
+    /// the job ends.
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()>;
 
     /// Ends a job that cannot be done.
-    fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()>;
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()>;
 
-    /// What came of at most `limit` chunks from a number on, in order.
-    fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>>;
+    /// The results of at most `limit` chunks from the number `first` on, in order.
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>>;
 
     /// Deletes a job, whether it has ended or not.
-    fn delete_job(&self, id: Uuid) -> Answer<'_, ()>;
+    async fn delete_job(&self, id: Uuid) -> Result<()>;
 }
 
-/// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives it.
+/// The chunks that wait and those that are worked on, for stores that only one process works with: no claim outlives
+/// it.
 #[derive(Default)]
-pub(super) struct Board {
+pub(super) struct ChunkQueue {
     // A std mutex: held for a lookup.
-    open: Mutex<BTreeMap<Uuid, Open>>,
+    open: Mutex<BTreeMap<Uuid, OpenJob>>,
 }
 
 #[derive(Default)]
-struct Open {
+struct OpenJob {
     waiting: BTreeSet<u64>,
     claimed: BTreeSet<u64>,
 }
 
-impl Board {
+impl ChunkQueue {
     /// Puts up a job with the chunks that are to be done.
-    pub(super) fn open(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
-        self.lock().insert(id, Open { waiting: waiting.collect(), claimed: BTreeSet::new() });
+    pub(super) fn add_job(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
+        self.lock().insert(id, OpenJob { waiting: waiting.collect(), claimed: BTreeSet::new() });
     }
 
     /// A chunk to work on.
     pub(super) fn claim(&self, owner: Uuid, after: Option<Uuid>) -> Option<Claim> {
         let mut open = self.lock();
-        let from = after.unwrap_or(Uuid::nil());
+        let from = after.unwrap_or_default();
         let beyond = open.range((Excluded(from), Unbounded)).chain(open.range(..=from));
         let job = beyond.filter(|(_, job)| !job.waiting.is_empty()).map(|(id, _)| *id).next()?;
         let found = open.get_mut(&job)?;
@@ -183,7 +185,7 @@ impl Board {
     }
 
     /// Whether a claim still is one.
-    pub(super) fn holds(&self, claim: Claim) -> bool {
+    pub(super) fn is_claimed(&self, claim: Claim) -> bool {
         self.lock().get(&claim.job).is_some_and(|job| job.claimed.contains(&claim.chunk))
     }
 
@@ -197,7 +199,7 @@ impl Board {
     }
 
     /// Takes down a chunk that is done.
-    pub(super) fn done(&self, claim: Claim) {
+    pub(super) fn finish(&self, claim: Claim) {
         let mut open = self.lock();
         if let Some(job) = open.get_mut(&claim.job) {
             job.claimed.remove(&claim.chunk);
@@ -208,41 +210,41 @@ impl Board {
     }
 
     /// Takes down a job.
-    pub(super) fn close(&self, id: Uuid) {
+    pub(super) fn remove_job(&self, id: Uuid) {
         self.lock().remove(&id);
     }
 
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<Uuid, Open>> {
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<Uuid, OpenJob>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Board;
+    use super::ChunkQueue;
     use uuid::Uuid;
 
     #[test]
     fn jobs_take_turns_and_each_chunk_is_given_once() {
-        let (board, owner) = (Board::default(), Uuid::now_v7());
+        let (queue, owner) = (ChunkQueue::default(), Uuid::now_v7());
         let (first, second) = (Uuid::now_v7(), Uuid::now_v7());
-        board.open(first, 0..2);
-        board.open(second, 0..2);
+        queue.add_job(first, 0..2);
+        queue.add_job(second, 0..2);
         let mut last = None;
         let mut turns = Vec::new();
-        while let Some(claim) = board.claim(owner, last) {
+        while let Some(claim) = queue.claim(owner, last) {
             last = Some(claim.job);
             turns.push((claim.job, claim.chunk));
         }
         assert_eq!(turns, [(first, 0), (second, 0), (first, 1), (second, 1)]);
         let claim = super::Claim { job: first, chunk: 1, owner };
-        assert!(board.holds(claim));
-        board.release(claim);
-        assert!(!board.holds(claim));
-        assert_eq!(board.claim(owner, None), Some(claim));
-        board.close(first);
-        assert!(!board.holds(claim));
-        board.release(claim);
-        assert_eq!(board.claim(owner, None), None);
+        assert!(queue.is_claimed(claim));
+        queue.release(claim);
+        assert!(!queue.is_claimed(claim));
+        assert_eq!(queue.claim(owner, None), Some(claim));
+        queue.remove_job(first);
+        assert!(!queue.is_claimed(claim));
+        queue.release(claim);
+        assert_eq!(queue.claim(owner, None), None);
     }
 }

@@ -1,21 +1,25 @@
-//! What must survive: definitions, the moves made since, and the replies that a retry is owed.
+//! What must survive: definitions, the moves made since, and the replies that retries get again.
 //!
 //! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
 //! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
-//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] tells them apart by
-//! their URLs.
+//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by
+//! the URL.
 
 pub mod changes;
 pub mod commits;
+pub mod idempotency;
 pub mod jobs;
+pub mod listeners;
 pub mod memory;
 pub mod open;
 pub mod postgres;
+mod rows;
+pub mod schema;
 pub mod sqlite;
 
 use std::sync::Arc;
 
-use futures::future::BoxFuture;
+use async_trait::async_trait;
 use jiff::Timestamp;
 use uuid::Uuid;
 
@@ -23,7 +27,9 @@ use stickslip_wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;
+pub use idempotency::{IdempotentRequest, RetryError};
 pub use jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
+pub use listeners::{Listener, Listeners, StreamEvent};
 pub use memory::MemoryStore;
 pub use open::{OpenError, backup, open, open_to_read};
 pub use postgres::PostgresStore;
@@ -32,8 +38,8 @@ pub use sqlite::SqliteStore;
 /// How long a reply is kept for retries with the same idempotency key.
 pub const RECEIPT_LIFETIME: std::time::Duration = std::time::Duration::from_secs(24 * 60 * 60);
 
-/// Whose sessions are: who has a key of one tenant knows nothing of the others. Without keys there is one tenant, and it has
-/// no name.
+/// Who owns sessions: a key of one tenant gives no access to those of others. Without keys there is one tenant, without
+/// a name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Tenant(Arc<str>);
 
@@ -95,9 +101,9 @@ pub struct RequestKey {
 }
 
 impl RequestKey {
-    /// The same key as that of a tenant. No key holds a space, so that those of two tenants never meet.
+    /// The same key as that of a tenant. No key holds a space, so that the keys of two tenants always differ.
     #[must_use]
-    pub fn of(self, tenant: &Tenant) -> RequestKey {
+    pub fn for_tenant(self, tenant: &Tenant) -> RequestKey {
         match tenant.name() {
             "" => self,
             name => RequestKey { key: format!("{name} {}", self.key), ..self },
@@ -134,18 +140,18 @@ pub struct Snapshot {
     pub state: Vec<u8>,
 }
 
-/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after [`StoreError::Unavailable`]
-/// and [`StoreError::Failed`].
+/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after
+/// [`StoreError::Unavailable`] and [`StoreError::Failed`].
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// There is no such session.
-    #[error("there is no such session")]
+    #[error("there is no such contact")]
     NotFound,
     /// There was such a session, of this tenant; it has expired.
-    #[error("the session has expired")]
+    #[error("the contact has expired")]
     Expired(Tenant),
     /// The session has another sequence than expected.
-    #[error("the session is at sequence {found}")]
+    #[error("the contact is at sequence {found}")]
     Stale {
         /// Its sequence.
         found: u64,
@@ -153,7 +159,7 @@ pub enum StoreError {
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
-    /// The tenant has as many jobs as it may, and says what there is too much of.
+    /// The tenant has as many jobs as it may; the text says which limit is reached.
     #[error("{0}")]
     TooManyJobs(String),
     /// There is no room left. Nothing has changed.
@@ -168,54 +174,57 @@ pub enum StoreError {
 }
 
 /// What a call to a store comes to.
-pub type Answer<'a, T> = BoxFuture<'a, Result<T, StoreError>>;
+pub type Result<T, E = StoreError> = std::result::Result<T, E>;
 
-/// A place to keep sessions. It tells whose they are, and leaves it to its callers to keep tenants apart: an identifier is as
-/// good as any other here.
+/// Storage of contacts. It says whose a contact is and leaves it to its callers to keep tenants apart: any identifier
+/// is accepted here.
+#[async_trait]
 pub trait Store: JobStore {
     /// Whether it can serve.
-    fn ready(&self) -> Answer<'_, ()>;
+    async fn ready(&self) -> Result<()>;
 
-    /// Stores a new session without a past, and the receipt with it.
-    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    /// Stores a new session that has not moved, and the receipt with it.
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()>;
 
     /// The session.
-    fn find(&self, id: Uuid) -> Answer<'_, Session>;
+    async fn find(&self, id: Uuid) -> Result<Session>;
 
-    /// The sequence of a session: all that somebody who knows the rest has to ask.
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64>;
+    /// The sequence of a session: all that a caller who has the rest cached needs to ask.
+    async fn sequence(&self, id: Uuid) -> Result<u64>;
 
-    /// At most `limit` sessions of a tenant, or of all of them, with identifiers beyond `after`, in order. Without their
-    /// definitions: a page of those could be larger than the memory.
-    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>>;
+    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order.
+    /// Without their definitions: a page of those could be larger than the memory.
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.
-    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()>;
 
-    /// At most `limit` moves of a session with numbers beyond `after`, in order.
-    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>>;
+    /// At most `limit` moves of a session with sequences greater than `after`, in order.
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>>;
 
-    /// Stores `copy`, with the past of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
-    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()>;
+    /// Stores `copy`, with the moves of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()>;
 
-    /// Deletes a session that is at sequence `expected`, and its past.
-    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()>;
+    /// Deletes a session that is at sequence `expected`, and its moves.
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()>;
 
     /// The receipt for an idempotency key, if the key has been used within [`RECEIPT_LIFETIME`].
-    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>>;
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>>;
 
     /// The newest snapshot of a session, if there is one.
-    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>>;
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>>;
 
-    /// Keeps a snapshot in place of an older one. Nothing happens where the session is gone or a newer one is kept.
-    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()>;
+    /// Stores a snapshot in place of an older one. Does nothing where the session is gone or a newer snapshot is
+    /// stored.
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()>;
 
-    /// Deletes receipts past [`RECEIPT_LIFETIME`], and, where `idle_since` is given, the sessions that have not moved since.
-    /// Those are [`StoreError::Expired`] from then on. Jobs go too whose time is over. Returns how many sessions went.
-    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64>;
+    /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the
+    /// sessions that have not moved since. Those are [`StoreError::Expired`] from then on. Returns how many sessions
+    /// expired.
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64>;
 
-    /// Who waits for changes, and is woken by every change that this or any other process on the same storage makes.
+    /// Wakes those who wait for changes, whichever process on the same storage makes them.
     fn changes(&self) -> &Changes;
 
     /// What it has committed; none if it has nothing to commit.
@@ -223,8 +232,8 @@ pub trait Store: JobStore {
         None
     }
 
-    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no session.
-    fn examine(&self) -> Answer<'_, Vec<String>> {
-        Box::pin(std::future::ready(Ok(Vec::new())))
+    /// What is wrong with the storage itself, a line each: what is damaged, and what belongs to no contact.
+    async fn check_integrity(&self) -> Result<Vec<String>> {
+        Ok(Vec::new())
     }
 }

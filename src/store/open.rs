@@ -52,15 +52,15 @@ fn kind(url: &str) -> Result<Kind<'_>, OpenError> {
     Err(OpenError::of(url, "unknown kind of store, expected sqlite:PATH, postgres://… or memory:"))
 }
 
-/// Opens a store: `memory:`, `sqlite:` and the path of a file, which is made if it is missing, or the URL of a PostgreSQL
-/// database, `postgres://…`.
+/// Opens a store: `memory:`, `sqlite:` and the path of a file, which is made if it is missing, or the URL of a
+/// PostgreSQL database, `postgres://…`.
 ///
 /// # Errors
 /// [`OpenError`] if the URL names no store, or one that cannot be used.
 pub async fn open(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     match kind(url)? {
         Kind::Memory => {
-            tracing::warn!("contacts are kept in memory: all of them are gone when this process ends");
+            tracing::warn!("contacts are kept in memory: they are lost when this process ends");
             Ok(Arc::new(MemoryStore::new()))
         }
         Kind::Sqlite(path) => {
@@ -70,7 +70,7 @@ pub async fn open(url: &str) -> Result<Arc<dyn Store>, OpenError> {
         }
         Kind::Postgres => {
             let store = PostgresStore::open(url).await.map_err(|error| OpenError::of(url, error.to_string()))?;
-            tracing::info!(place = store.place(), "contacts are kept in a database");
+            tracing::info!(address = store.address(), "contacts are kept in a database");
             Ok(Arc::new(store))
         }
     }
@@ -91,7 +91,7 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     }
 }
 
-/// Copies a store to a file that is not there yet, while it is in use or not; says how many bytes that has.
+/// Copies a store to a file that is not there yet, while it is in use or not; returns its bytes.
 ///
 /// # Errors
 /// [`OpenError`] if the store is none that is kept in a file, or why there is no copy.

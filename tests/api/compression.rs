@@ -168,7 +168,7 @@ async fn a_client_that_accepts_nothing_gets_the_reply_to_what_was_done() {
 
 #[tokio::test]
 async fn an_encoder_counts_as_memory_until_its_reply_is_sent() {
-    let pool = Pool::of_the_machine();
+    let pool = Pool::with_defaults();
     let server = Server::over(Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY), pool.clone()).await;
     let contact = format!("/contacts/{}", server.contact().await);
     let long = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}}}).to_string();

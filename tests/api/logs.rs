@@ -36,7 +36,7 @@ async fn a_request_is_one_line_and_the_life_of_the_server_a_few() {
     }
     let requests: Vec<Value> = log.extract_if(.., |line| line["message"] == "request").collect();
     let lives: Vec<&str> = log.iter().map(|line| line["message"].as_str().unwrap()).collect();
-    let about_memory = "contacts are kept in memory: all of them are gone when this process ends";
+    let about_memory = "contacts are kept in memory: they are lost when this process ends";
     assert_eq!(lives, [about_memory, "starting", "listening", "stopping", "stopped"]);
     let said: Vec<_> =
         requests.iter().map(|line| (line["route"].as_str().unwrap(), line["status"].as_u64().unwrap())).collect();

@@ -1,6 +1,8 @@
-//! `stickslip backup`: a copy taken while the service writes holds every move that was acknowledged before, bit for bit.
+//! `stickslip backup`: a copy taken while the service writes holds every move that was acknowledged before, bit for
+//! bit.
 
 use crate::common;
+use crate::fixtures::url;
 
 use std::collections::HashMap;
 use std::fs;
@@ -21,10 +23,6 @@ const SESSIONS: usize = 6;
 const COPIES: usize = 4;
 /// Acknowledged moves of each session between two copies.
 const MOVES: u64 = 25;
-
-fn url(path: &Path) -> String {
-    format!("sqlite:{}", path.display())
-}
 
 /// Makes a copy by the command line; what it says on standard error if it refuses.
 fn backup(store: &str, copy: &Path) -> Result<(), String> {
@@ -124,12 +122,12 @@ async fn what_cannot_be_copied_is_refused_in_one_line_and_nothing_is_touched() {
     refused("mysql://me:secret@localhost/contacts", &fresh, "unknown kind of store");
     let mut left: Vec<String> =
         fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
-    // A look at a store that nobody serves leaves an empty log beside it.
+    // Reading a store that no process serves leaves an empty log beside it.
     left.retain(|name| !matches!(name.as_str(), "contacts.db-shm" | "contacts.db-wal"));
     left.sort();
     assert_eq!(left, ["contacts.db", "copy.db", "other.db"]);
 
-    // What an interrupted copy has left stands in nobody's way.
+    // What an interrupted copy has left does not prevent another.
     fs::write(folder.path().join("fresh.db.new"), "half of a copy").unwrap();
     backup(&url(&store), &fresh).unwrap();
     assert!(!folder.path().join("fresh.db.new").exists());

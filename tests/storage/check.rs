@@ -1,6 +1,7 @@
 //! `stickslip check`: it finds every kind of damage, and none in a sound store.
 
 use crate::common;
+use crate::fixtures::{along, url};
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,17 +14,9 @@ use common::process::Process;
 use common::{create, run};
 use rusqlite::Connection;
 use stickslip_wire::client::{Client, Options};
-use stickslip_wire::{ForkRequest, Move, Path as Moves, PathRequest, Steps};
+use stickslip_wire::{ForkRequest, Move};
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
-
-fn url(path: &Path) -> String {
-    format!("sqlite:{}", path.display())
-}
-
-fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
-}
 
 async fn check(store: &str, more: &[&str]) -> Output {
     let arguments: Vec<String> =
@@ -50,8 +43,8 @@ async fn is_found(store: &str, findings: &[&str]) {
     assert!(said.lines().last().unwrap().contains(&format!("{} findings", findings.len())), "{said}");
 }
 
-/// Sessions with all kinds of moves: one has a snapshot, one is a fork of it, one has a reply kept for retries, and one has
-/// never moved. Returns their identifiers.
+/// Sessions with all kinds of moves: one has a snapshot, one is a fork of it, one has a reply kept for retries, and one
+/// has never moved. Returns their identifiers.
 async fn fill(client: &Client) -> [Uuid; 4] {
     let options = Options::default();
     let mut random = Random(7);
@@ -68,7 +61,7 @@ async fn fill(client: &Client) -> [Uuid; 4] {
             Options { idempotency_key: Some(format!("move {number}").replace(' ', "-")), ..Options::default() };
         client.apply(keyed, &random.step().into(), &options).await.unwrap();
     }
-    // Of minus nought a database makes what it likes.
+    // Of -0.0 a database makes what it likes.
     client.apply(still, &Move::displacement(-0.0).into(), &options).await.unwrap();
     [long, fork, keyed, still]
 }
@@ -84,7 +77,7 @@ async fn has_snapshot(path: &Path) {
     tokio::time::timeout(PATIENCE, there).await.expect("no snapshot was kept");
 }
 
-/// A sound file that nobody uses.
+/// A sound file that no process uses.
 async fn sound(folder: &TempDir) -> (PathBuf, [Uuid; 4]) {
     let path = folder.path().join("sound.db");
     let server = Process::start(&url(&path)).await;
@@ -117,7 +110,7 @@ async fn every_kind_of_damage_is_found_in_a_file() {
             &["regime Separated instead of Stick"],
         ),
         (
-            "the sign of nought",
+            "the sign of zero",
             format!("UPDATE moves SET negative_zeros = 1 << 6 WHERE contact = {still_number}"),
             &["move 1 is recorded with force -0e0 instead of 0e0"],
         ),

@@ -1,6 +1,7 @@
 //! A disk without room: changes are refused, nothing acknowledged is lost, and the service resumes by itself.
 
 use crate::common;
+use crate::fixtures::{along, keyed};
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -12,7 +13,7 @@ use common::kill::{Random, exact, history, replays_to_the_last_bit};
 use common::process::Process;
 use futures::future::join_all;
 use stickslip_wire::client::{Client, Error, Options};
-use stickslip_wire::{Move, MoveReply, Path as Moves, PathRequest, Steps};
+use stickslip_wire::{Move, MoveReply};
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
@@ -82,10 +83,6 @@ fn refusal(error: &Error) -> (u16, &str) {
     (problem.status, &problem.code)
 }
 
-fn keyed(key: impl ToString) -> Options {
-    Options { idempotency_key: Some(key.to_string()), ..Options::default() }
-}
-
 async fn apply(client: &Client, id: Uuid, step: Move, key: u64) -> Result<MoveReply, Error> {
     client.apply(id, &step.into(), &keyed(key)).await
 }
@@ -104,7 +101,7 @@ async fn a_full_disk_refuses_changes_and_loses_none() {
 
     // What is too large for the room that is left does not stand in the way of what is not.
     let moves = (0..5_000).map(|index| Move::displacement(f64::from(index % 2) * 1e-8)).collect();
-    let long = PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None };
+    let long = along(moves);
     let (plain, first) = (Options::default(), sessions[0]);
     let (path, beside) =
         futures::join!(client.path(first, &long, &plain), apply(&client, sessions[1], Move::force(0.1), 0));

@@ -5,11 +5,12 @@ mod common;
 
 mod backup;
 mod check;
-mod contract;
 mod disk_full;
 mod durability;
+mod fixtures;
+mod guarantees;
+mod migrations;
 mod postgres;
-mod promises;
 mod replicas;
 mod sessions;
 mod sqlite_file;

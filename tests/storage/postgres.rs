@@ -1,6 +1,7 @@
 //! What the PostgreSQL store promises beyond what every store does.
 
 use crate::common;
+use crate::fixtures::soon;
 
 use std::sync::Arc;
 
@@ -154,27 +155,6 @@ async fn replicas_that_start_together_make_the_tables_once_and_a_newer_schema_is
 }
 
 #[tokio::test]
-async fn older_tables_are_brought_up_to_date_with_all_that_is_in_them() {
-    let cluster = Cluster::shared();
-    let url = cluster.database().await;
-    cluster.execute(url.rsplit('/').next().unwrap(), include_str!("../data/postgres_1.sql")).await;
-    let store = PostgresStore::open(&url).await.unwrap();
-    let [here, expired] = [1, 2].map(|number| Uuid::from_u128(0x0199_c0de_0000_7000_8000_0000_0000_0000 + number));
-    let found = store.find(here).await.unwrap();
-    assert_eq!((found.tenant, found.sequence, found.label.as_deref()), (Tenant::default(), 1, Some("old")));
-    assert_eq!(found.updated_at.to_string(), "2025-10-09T08:53:23.000000007Z");
-    assert_eq!(store.history(here, 0, 10).await.unwrap()[0].state.force.to_bits(), 0.5_f64.to_bits());
-    assert_eq!(store.receipt("kept").await.unwrap().unwrap().reply.body, b"{}");
-    let gone = store.find(expired).await;
-    assert!(matches!(&gone, Err(StoreError::Expired(tenant)) if *tenant == Tenant::default()), "{gone:?}");
-    let listed = store.list(Some(Tenant::default()), None, 10).await.unwrap();
-    assert_eq!(listed.into_iter().map(|one| one.id).collect::<Vec<_>>(), [here]);
-    // What is new works on what is old.
-    store.append(here, 1, vec![record(2, 1.0)], None).await.unwrap();
-    assert_eq!(store.find(here).await.unwrap().sequence, 2);
-}
-
-#[tokio::test]
 async fn a_key_may_be_used_again_after_its_time() {
     let cluster = Cluster::shared();
     let url = cluster.database().await;
@@ -191,7 +171,7 @@ async fn a_key_may_be_used_again_after_its_time() {
     cluster.execute(name, &older(25)).await;
     store.fork(new.id, Session { id: Uuid::now_v7(), sequence: 1, ..new.clone() }, receipt("key")).await.unwrap();
     cluster.execute(name, &older(25)).await;
-    store.sweep(None).await.unwrap();
+    store.purge_expired(None).await.unwrap();
     cluster.execute(name, &older(1)).await;
     assert_eq!(store.receipt("key").await.unwrap(), None);
 }
@@ -207,9 +187,9 @@ async fn several_sweep_at_once_and_each_idle_session_goes_once() {
     let fresh = Session { updated_at: Timestamp::now(), ..session() };
     stores[0].create(fresh.clone(), None).await.unwrap();
     // The session was last moved at this very nanosecond, and so not before it.
-    let not_yet = join_all(stores.iter().map(|store| store.sweep(Some(idle[0].updated_at)))).await;
+    let not_yet = join_all(stores.iter().map(|store| store.purge_expired(Some(idle[0].updated_at)))).await;
     assert!(not_yet.into_iter().all(|count| count.unwrap() == 0));
-    let swept = join_all(stores.iter().map(|store| store.sweep(Some(fresh.updated_at)))).await;
+    let swept = join_all(stores.iter().map(|store| store.purge_expired(Some(fresh.updated_at)))).await;
     assert_eq!(swept.into_iter().map(Result::unwrap).sum::<u64>(), 230);
     assert!(matches!(stores[1].find(idle[7].id).await, Err(StoreError::Expired(_))));
     assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired(_))));
@@ -265,7 +245,7 @@ async fn tls_is_used_and_verified_as_the_url_says() {
     let open = async |options: &str| PostgresStore::open(&format!("{url}?{options}")).await.map(drop);
     let other = tempfile::NamedTempFile::new().unwrap();
     let full = format!("sslmode=verify-full&sslrootcert={}", certificate.display());
-    // The server lets nobody in without TLS.
+    // The server accepts no connection without TLS.
     for good in ["sslmode=require", "sslmode=prefer", "", &full] {
         open(good).await.unwrap_or_else(|error| panic!("{good}: {error}"));
     }
@@ -292,8 +272,4 @@ async fn a_password_is_never_shown() {
         let refused = stickslip::store::open(url).await.map(drop).unwrap_err().to_string();
         assert!(!refused.contains("secret"), "{refused}");
     }
-}
-
-async fn soon<T>(future: impl Future<Output = T>) -> T {
-    tokio::time::timeout(std::time::Duration::from_secs(20), future).await.expect("nothing happened")
 }

@@ -1,6 +1,7 @@
 //! Several servers on one PostgreSQL: they serve as one, and go on when a part of them fails.
 
 use crate::common;
+use crate::fixtures::soon;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -118,12 +119,12 @@ async fn sixteen_clients_on_two_replicas_lose_nothing_while_one_is_killed_and_th
         by_session.entry(one.id).or_default().push(one);
     }
     for id in ids {
-        let mut told = by_session.remove(&id).unwrap();
-        told.sort_by_key(|one| one.reply.sequence);
+        let mut acknowledged = by_session.remove(&id).unwrap();
+        acknowledged.sort_by_key(|one| one.reply.sequence);
         let past = history(&servers[0], id).await;
         let sequences: Vec<u64> = past.iter().map(|item| item.sequence).collect();
-        assert_eq!(sequences, (1..=told.len() as u64).collect::<Vec<_>>());
-        for (item, one) in past.iter().zip(&told) {
+        assert_eq!(sequences, (1..=acknowledged.len() as u64).collect::<Vec<_>>());
+        for (item, one) in past.iter().zip(&acknowledged) {
             assert_eq!((item.sequence, item.step, item.state), (one.reply.sequence, one.step, one.reply.state));
         }
         assert_eq!(past.iter().map(|item| item.state).collect::<Vec<_>>(), replay(&past));
@@ -276,10 +277,6 @@ async fn a_lost_database_is_admitted_and_found_again() {
     assert_eq!(history(&server.client, id.parse().unwrap()).await.len(), count);
 }
 
-async fn soon<T>(future: impl Future<Output = T>) -> T {
-    tokio::time::timeout(Duration::from_secs(60), future).await.expect("nothing happened")
-}
-
 #[tokio::test]
 async fn moves_made_at_one_replica_are_told_by_the_other_also_after_the_database_was_away() {
     let cluster = Cluster::start();
@@ -287,7 +284,7 @@ async fn moves_made_at_one_replica_are_told_by_the_other_also_after_the_database
     let (here, there) = (Process::start(&url).await, Process::start(&url).await);
     let id = here.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut events = Box::pin(there.client.events(id, Some(0)).await.unwrap());
-    let mut told = Vec::new();
+    let mut seen_events = Vec::new();
     let seen = Seen::default();
     for index in 0..40 {
         if index == 20 {
@@ -295,14 +292,14 @@ async fn moves_made_at_one_replica_are_told_by_the_other_also_after_the_database
             cluster.resume();
         }
         let servers = [here.client.clone()];
-        insist(&servers, 0, id, step(index), format!("told-{index}"), &seen).await;
+        insist(&servers, 0, id, step(index), format!("event-{index}"), &seen).await;
         let event = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("no event came");
         match event.expect("the events ended").unwrap() {
-            Event::State(state) => told.push((state.sequence, state.step, state.state)),
+            Event::State(state) => seen_events.push((state.sequence, state.step, state.state)),
             Event::End(reason) => panic!("the events ended: {reason:?}"),
         }
     }
     let past = history(&there.client, id).await;
     let past: Vec<_> = past.into_iter().map(|item| (item.sequence, Some(item.step), item.state)).collect();
-    assert_eq!(told, past);
+    assert_eq!(seen_events, past);
 }

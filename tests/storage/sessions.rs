@@ -9,6 +9,7 @@ use std::time::Duration;
 use common::{Binary, Server, ball, create, problem};
 use futures::StreamExt as _;
 use futures::future::join_all;
+use jiff::Timestamp;
 use reqwest::Method;
 use serde_json::json;
 use stickslip::admission::Pool;
@@ -21,7 +22,7 @@ use stickslip_wire::{
 };
 use uuid::Uuid;
 
-/// Nothing stays at hand.
+/// Nothing stays in memory.
 const NO_CACHE: usize = 0;
 
 /// Moves of all kinds, some of them curved, many small ones among them that leave a deep memory.
@@ -126,14 +127,14 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     damaged[taken.state.len() / 2] ^= 0x10;
     let cut = taken.state[..taken.state.len() - 8].to_vec();
     for (sequence, state) in [(401, damaged), (402, cut), (403, Vec::new()), (501, taken.state.clone())] {
-        store.keep_snapshot(other, Snapshot { sequence, state }).await.unwrap();
+        store.save_snapshot(other, Snapshot { sequence, state }).await.unwrap();
         assert_eq!(store.snapshot(other).await.unwrap().unwrap().sequence, sequence);
         assert_eq!(client.contact(other).await.unwrap(), truth);
     }
-    // A sound one is not held against the moves: that would be the replay that it spares.
+    // A sound one is not compared with the moves: that would be the replay that it spares.
     let third = client.create(&create(), &options).await.unwrap().id;
     client.apply(third, &Move::displacement(1e-9).into(), &options).await.unwrap();
-    store.keep_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
+    store.save_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
     let (found, expected) = (client.contact(third).await.unwrap(), client.contact(one).await.unwrap());
     assert_eq!((found.sequence, bits(&found.state)), (1, bits(&expected.state)));
 }
@@ -221,19 +222,20 @@ async fn what_is_not_touched_and_what_does_not_exist_takes_no_room() {
 }
 
 #[tokio::test]
-async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_hand() {
+async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cached() {
     let store = Arc::new(MemoryStore::new());
     let pool = Pool::with_defaults();
-    let sessions = Sessions::new(store, pool.clone(), 1 << 20);
+    let sessions = Sessions::new(store.clone(), pool.clone(), 1 << 20);
     let server = Server::over(sessions.clone(), pool).await;
     let (client, options) = (&server.client, Options::default());
     let idle = client.create(&create(), &options).await.unwrap().id;
     let mut events = Box::pin(client.events(idle, Some(0)).await.unwrap());
-    tokio::time::sleep(Duration::from_millis(1_100)).await;
+    let between = Timestamp::now();
     let busy = client.create(&create(), &options).await.unwrap().id;
-    assert_eq!(sessions.sweep(None).await.unwrap(), 0);
+    assert_eq!(sessions.purge_expired(None).await.unwrap(), 0);
     client.contact(idle).await.unwrap();
-    assert_eq!(sessions.sweep(Some(Duration::from_secs(1))).await.unwrap(), 1);
+    assert_eq!(sessions.purge_expired(Some(Duration::from_secs(3_600))).await.unwrap(), 0);
+    assert_eq!(store.purge_expired(Some(between)).await.unwrap(), 1);
 
     let last = tokio::time::timeout(Duration::from_secs(30), events.next()).await.expect("the events did not end");
     assert_eq!(last.unwrap().unwrap(), Event::End(EndReason::Expired));
@@ -255,6 +257,7 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_at_
     }
     client.contact(busy).await.unwrap();
     assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 1);
+    assert_eq!(sessions.purge_expired(Some(Duration::ZERO)).await.unwrap(), 1);
 }
 
 #[tokio::test]
@@ -272,7 +275,7 @@ async fn the_binary_lets_idle_contacts_expire_when_it_is_told_to() {
     assert_eq!(client.contact(id).await.unwrap_err().problem().unwrap().status, 410);
 }
 
-/// Two session layers over one store stand for two processes: neither knows what the other has at hand.
+/// Two session layers over one store stand for two processes: neither knows what the other has cached.
 #[tokio::test]
 async fn processes_that_share_a_store_see_each_others_moves() {
     let store = Arc::new(MemoryStore::new());

@@ -1,6 +1,7 @@
 //! The file of the SQLite store: what is refused at start and left alone, what is taken up, and what people can read.
 
 use crate::common;
+use crate::fixtures::{along, keyed, url};
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,15 +11,11 @@ use common::create;
 use common::kill::{PATIENCE, exact, history};
 use common::process::{Process, refused};
 use rusqlite::Connection;
-use stickslip::store::{SqliteStore, Store as _, StoreError, Tenant};
+use stickslip::store::{SqliteStore, Store as _, StoreError};
+use stickslip_wire::Move;
 use stickslip_wire::client::Options;
-use stickslip_wire::{Move, Path as Moves, PathRequest, Steps};
 use tempfile::tempdir;
 use uuid::Uuid;
-
-fn url(path: &Path) -> String {
-    format!("sqlite:{}", path.display())
-}
 
 /// All files of a folder. Of shared memory only that it is there: readers leave marks in it, and it holds no data.
 fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -48,8 +45,7 @@ async fn used(path: &Path, gracefully: bool) -> Uuid {
     let (client, options) = (&process.client, Options::default());
     let id = client.create(&create(), &options).await.unwrap().id;
     let moves = (0..300).map(|index| Move::displacement(f64::from(index % 7) * 1e-8)).collect();
-    let path = PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None };
-    client.path(id, &path, &options).await.unwrap();
+    client.path(id, &along(moves), &options).await.unwrap();
     client.apply(id, &Move::force(0.25).into(), &options).await.unwrap();
     if gracefully {
         process.stop().await
@@ -156,45 +152,14 @@ async fn a_file_in_use_is_refused_and_serves_on() {
 }
 
 #[tokio::test]
-async fn an_older_file_opens_with_all_that_is_in_it() {
-    let folder = tempdir().unwrap();
-    let path = folder.path().join("older.db");
-    Connection::open(&path).unwrap().execute_batch(include_str!("../data/store_1.sql")).unwrap();
-    let [first, second] = [1, 2].map(|number| Uuid::from_u128(0x0199_c0de_0000_7000_8000_0000_0000_0000 + number));
-    let store = SqliteStore::open(&path).unwrap();
-    let listed = store.list(None, None, 10).await.unwrap();
-    assert_eq!(listed.iter().map(|found| (found.id, found.sequence)).collect::<Vec<_>>(), [(first, 3), (second, 0)]);
-    assert_eq!(listed[0].updated_at.to_string(), "2025-10-09T08:53:25.123456789Z");
-    assert_eq!(listed[1].updated_at.to_string(), "2025-10-09T08:53:22Z");
-    let past = store.history(first, 0, 10).await.unwrap();
-    assert_eq!(exact(&past[1].step.force), exact(&Some(-0.0)));
-    assert_eq!(exact(&past[1].state.force), "0.0");
-    assert_eq!((past[2].step.indentation, past[2].step.relative), (Some(-1e-8), true));
-    assert_eq!(store.receipt("kept").await.unwrap().unwrap().reply.body, b"{}");
-    // What nobody owned belongs to the tenant without a name.
-    assert_eq!(store.find(first).await.unwrap().tenant, Tenant::default());
-    assert_eq!(store.list(Some(Tenant::default()), None, 10).await.unwrap(), listed);
-    // What is new works on what is old.
-    store.keep_snapshot(first, stickslip::store::Snapshot { sequence: 3, state: vec![1] }).await.unwrap();
-    assert!(store.snapshot(first).await.unwrap().is_some());
-    drop(store);
-    let version = |path| Connection::open(path).unwrap().pragma_query_value(None, "user_version", |row| row.get(0));
-    let newest: i32 = version(&path).unwrap();
-    assert!(newest > 1);
-    drop(SqliteStore::open(&folder.path().join("new.db")).unwrap());
-    assert_eq!(version(&folder.path().join("new.db")).unwrap(), newest);
-}
-
-#[tokio::test]
 async fn receipts_are_gone_after_a_day() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("receipts.db");
     let process = Process::start(&url(&path)).await;
-    let (client, key) =
-        (&process.client, |key: &str| Options { idempotency_key: Some(key.to_owned()), ..Options::default() });
-    let id = client.create(&create(), &key("old")).await.unwrap().id;
-    client.apply(id, &Move::force(0.5).into(), &key("older")).await.unwrap();
-    client.apply(id, &Move::force(0.4).into(), &key("young")).await.unwrap();
+    let client = &process.client;
+    let id = client.create(&create(), &keyed("old")).await.unwrap().id;
+    client.apply(id, &Move::force(0.5).into(), &keyed("older")).await.unwrap();
+    client.apply(id, &Move::force(0.4).into(), &keyed("young")).await.unwrap();
     process.stop().await;
     let day = 24 * 3600 * 1_000_000_000_i64;
     let database = Connection::open(&path).unwrap();
@@ -204,10 +169,10 @@ async fn receipts_are_gone_after_a_day() {
     drop(store);
     // Past its time a key names another request, swept or not.
     let process = Process::start(&url(&path)).await;
-    assert_eq!(process.client.apply(id, &Move::force(0.3).into(), &key("old")).await.unwrap().sequence, 3);
+    assert_eq!(process.client.apply(id, &Move::force(0.3).into(), &keyed("old")).await.unwrap().sequence, 3);
     process.stop().await;
     let store = SqliteStore::open(&path).unwrap();
-    store.sweep(None).await.unwrap();
+    store.purge_expired(None).await.unwrap();
     let keys = || -> Vec<String> {
         let mut statement = database.prepare("SELECT key FROM receipts ORDER BY key").unwrap();
         statement.query_map([], |row| row.get(0)).unwrap().collect::<Result<_, _>>().unwrap()
@@ -237,7 +202,7 @@ async fn what_a_crash_left_half_made_is_cleared_away() {
             tokio::time::sleep(std::time::Duration::from_millis(5)).await;
         }
     };
-    tokio::time::timeout(PATIENCE, gone).await.expect("what belongs to nobody stays for ever");
+    tokio::time::timeout(PATIENCE, gone).await.expect("moves without a contact are never removed");
     assert_eq!(store.history(id, 0, 1_000).await.unwrap().len(), 301);
     assert!(matches!(store.find(Uuid::now_v7()).await, Err(StoreError::NotFound)));
 }

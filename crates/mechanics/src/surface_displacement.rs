@@ -74,7 +74,8 @@ impl Contact {
         for (ring, line) in self.history.rings() {
             if (at.square - ring.inner.square).value() > 0.0 {
                 let outer = line.at(ring.outer.level).value();
-                sum += outer * self.profile.arc(&at, &ring) - line.slope.value() * self.profile.lift(&at, &ring);
+                sum += outer * self.profile.arc(&at, &ring)
+                    - line.slope.value() * self.profile.displacement_integral(&at, &ring);
             }
         }
         FRAC_2_PI * sum

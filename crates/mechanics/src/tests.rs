@@ -58,7 +58,7 @@ fn moves_call_for_no_stress() {
     // The summary of the contact needs the largest pressure: that at the centre and at the edge.
     let calls = path(REVERSALS);
     assert!(calls.kernel <= 2, "{calls:?}");
-    assert_eq!((calls.kernel_slope, calls.lift, calls.states), (0, 0, REVERSALS + 1), "{calls:?}");
+    assert_eq!((calls.kernel_slope, calls.displacement_integral, calls.states), (0, 0, REVERSALS + 1), "{calls:?}");
     let more = path(10 * REVERSALS);
     assert_eq!(more.kernel, calls.kernel, "ten times the moves");
     // A straight move at constant load cuts one piece, closes another and sums two.
@@ -93,8 +93,11 @@ fn each_field_costs_its_own_calls_and_no_others() {
         ];
         for (field, compute, kernel, lift) in fields {
             let (calls, ()) = during(compute);
-            assert!(calls.kernel <= kernel && calls.lift <= lift, "{field}: {calls:?} with {pieces} pieces");
-            assert!(calls.kernel + calls.lift > 0, "{field}: {calls:?}");
+            assert!(
+                calls.kernel <= kernel && calls.displacement_integral <= lift,
+                "{field}: {calls:?} with {pieces} pieces"
+            );
+            assert!(calls.kernel + calls.displacement_integral > 0, "{field}: {calls:?}");
             assert_eq!((calls.kernel_slope, calls.moments, calls.states), (0, 0, 0), "{field}");
         }
     }
@@ -108,7 +111,7 @@ fn extrema_are_searched_for_when_asked_for() {
         assert!(calls.kernel > 0, "{calls:?}");
         // On a parabola the kinks tell where the extrema are.
         assert_eq!(calls.kernel_slope > 0, !parabola, "{calls:?}");
-        assert_eq!((calls.lift, calls.moments, calls.states), (0, 0, 0), "{calls:?}");
+        assert_eq!((calls.displacement_integral, calls.moments, calls.states), (0, 0, 0), "{calls:?}");
     }
 }
 

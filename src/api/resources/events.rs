@@ -4,7 +4,7 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use futures::{Stream, StreamExt as _};
 use utoipa::IntoParams;
 
-use crate::sessions::Happening;
+use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};
 
 use crate::api::extract::{ContactId, LastEventId};
@@ -42,10 +42,10 @@ pub async fn events(
     params: Params,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Problem> {
     params.none()?;
-    let events = app.sessions.events(id, after).await?.map(|happening| match happening {
-        Happening::State(state) => Event::default().id(state.sequence.to_string()).event("state").json_data(state),
+    let events = app.sessions.events(id, after).await?.map(|event| match event {
+        StreamEvent::State(state) => Event::default().id(state.sequence.to_string()).event("state").json_data(state),
         // Without an identifier, so that a client that comes back goes on where it was.
-        Happening::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),
+        StreamEvent::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)))
 }

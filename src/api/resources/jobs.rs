@@ -7,7 +7,7 @@ use futures::StreamExt as _;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use crate::jobs::Happening;
+use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobReply, JobState, SweepReply};
 
 use crate::api::App;
@@ -88,8 +88,8 @@ pub async fn events(TenantApp(app): TenantApp, JobId(id): JobId, params: Params)
 
 /// The events of a job as a reply.
 pub async fn stream(app: &App, id: Uuid) -> Result<Response, Problem> {
-    let events = app.jobs.events(id).await?.map(|happening| match happening {
-        Happening::Progress(job) => {
+    let events = app.jobs.events(id).await?.map(|event| match event {
+        StreamEvent::State(job) => {
             let name = match job.state {
                 JobState::Running => "progress",
                 JobState::Done => "done",
@@ -97,7 +97,7 @@ pub async fn stream(app: &App, id: Uuid) -> Result<Response, Problem> {
             };
             Event::default().event(name).json_data(job)
         }
-        Happening::End(reason) => Event::default().event("end").json_data(JobEndEvent { reason }),
+        StreamEvent::End(reason) => Event::default().event("end").json_data(JobEndEvent { reason }),
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
 }

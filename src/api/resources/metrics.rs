@@ -79,7 +79,7 @@ fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> 
     show(page, &misses)?;
     show(page, readings.open)?;
     for (name, help, value) in [
-        ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.at_hand),
+        ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),
         ("stickslip_cache_bytes", "Bytes of their states.", readings.bytes),
         (
             "stickslip_cache_capacity_bytes",

@@ -85,12 +85,12 @@ pub async fn relax(
 ) -> Result<Response, Problem> {
     let Command { body, key, mut held } = command;
     if body.dry_run {
-        let (sequence, body, memory) = app.sessions.rehearse(id, body, expected).await?;
+        let (sequence, body, memory) = app.sessions.dry_run_relax(id, body, expected).await?;
         return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
     }
     let advance = Advance::from(body);
     held.resize(&app.pool, cost::bytes_of_advance(&advance)).await?;
-    Ok(held.on(reply::of_change(app.sessions.advance(id, advance, expected, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, expected, key).await?)))
 }
 
 async fn advance<T: Document<Checked = Advance>>(
@@ -100,5 +100,5 @@ async fn advance<T: Document<Checked = Advance>>(
     Command { body, key, mut held }: Command<T>,
 ) -> Result<Response, Problem> {
     held.resize(&app.pool, cost::bytes_of_advance(&body)).await?;
-    Ok(held.on(reply::of_change(app.sessions.advance(id, body, expected, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, body, expected, key).await?)))
 }

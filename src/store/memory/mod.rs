@@ -3,16 +3,17 @@
 mod jobs;
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::ops::Bound::{Excluded, Unbounded};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use futures::FutureExt as _;
+use async_trait::async_trait;
 use jiff::Timestamp;
 use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
-use super::{Answer, Changes, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 
 /// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
@@ -39,8 +40,8 @@ struct Inner {
 
 struct Stored {
     session: Session,
-    // Forks share the past until one of them moves on.
-    past: Arc<Vec<Record>>,
+    // Forks share the moves until one of them moves on.
+    moves: Arc<Vec<Record>>,
     snapshot: Option<Snapshot>,
 }
 
@@ -60,7 +61,8 @@ impl MemoryStore {
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        // Nothing that can panic stands between the first and the last change of a call, so that a poisoned map is whole.
+        // Nothing that can panic stands between the first and the last change of a call, so that a poisoned map is
+        // whole.
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -71,36 +73,37 @@ impl Inner {
         self.expired.get(&id).cloned().map_or(StoreError::NotFound, StoreError::Expired)
     }
 
-    fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored, StoreError> {
-        let missing = self.missing(id);
-        let stored = self.sessions.get_mut(&id).ok_or(missing)?;
-        if stored.session.sequence == expected {
-            Ok(stored)
-        } else {
-            Err(StoreError::Stale { found: stored.session.sequence })
-        }
+    fn get(&self, id: Uuid) -> Result<&Stored> {
+        self.sessions.get(&id).ok_or_else(|| self.missing(id))
+    }
+
+    /// The session, which must be at a sequence.
+    fn at(&mut self, id: Uuid, expected: u64) -> Result<&mut Stored> {
+        let found = self.get(id)?.session.sequence;
+        let stored = self.sessions.get_mut(&id).ok_or(StoreError::NotFound)?;
+        if found == expected { Ok(stored) } else { Err(StoreError::Stale { found }) }
     }
 }
 
 impl Receipts {
-    fn free(&mut self, receipt: Option<&Receipt>) -> Result<(), StoreError> {
-        self.sweep();
+    fn check_free(&mut self, receipt: Option<&Receipt>) -> Result<()> {
+        self.purge();
         match receipt {
             Some(receipt) if self.by_key.contains_key(&receipt.request.key) => Err(StoreError::KeyTaken),
             _ => Ok(()),
         }
     }
 
-    fn keep(&mut self, receipt: Option<Receipt>) {
+    fn insert(&mut self, receipt: Option<Receipt>) {
         if let Some(receipt) = receipt {
             self.bytes += size(&receipt);
             self.arrivals.push_back((Instant::now(), receipt.request.key.clone()));
             self.by_key.insert(receipt.request.key.clone(), receipt);
-            self.sweep();
+            self.purge();
         }
     }
 
-    fn sweep(&mut self) {
+    fn purge(&mut self) {
         while let Some((arrival, key)) = self.arrivals.front() {
             if arrival.elapsed() < RECEIPT_LIFETIME && self.bytes <= RECEIPT_BYTES {
                 break;
@@ -122,125 +125,114 @@ fn summary(session: &Session) -> SessionSummary {
     SessionSummary { id, label: label.clone(), sequence, created_at, updated_at }
 }
 
-fn answer<'a, T: Send + 'a>(result: Result<T, StoreError>) -> Answer<'a, T> {
-    std::future::ready(result).boxed()
-}
-
+#[async_trait]
 impl Store for MemoryStore {
-    fn ready(&self) -> Answer<'_, ()> {
-        answer(Ok(()))
+    async fn ready(&self) -> Result<()> {
+        Ok(())
     }
 
-    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
-        answer(inner.receipts.free(receipt.as_ref()).map(|()| {
-            inner.sessions.insert(session.id, Stored { session, past: Arc::default(), snapshot: None });
-            inner.receipts.keep(receipt);
-        }))
+        inner.receipts.check_free(receipt.as_ref())?;
+        inner.sessions.insert(session.id, Stored { session, moves: Arc::default(), snapshot: None });
+        inner.receipts.insert(receipt);
+        Ok(())
     }
 
-    fn find(&self, id: Uuid) -> Answer<'_, Session> {
+    async fn find(&self, id: Uuid) -> Result<Session> {
+        self.lock().get(id).map(|stored| stored.session.clone())
+    }
+
+    async fn sequence(&self, id: Uuid) -> Result<u64> {
+        self.lock().get(id).map(|stored| stored.session.sequence)
+    }
+
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
         let inner = self.lock();
-        answer(inner.sessions.get(&id).map(|stored| stored.session.clone()).ok_or_else(|| inner.missing(id)))
+        let sessions = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
+        let sessions = sessions.map(|(_, stored)| &stored.session);
+        let own = sessions.filter(|session| tenant.as_ref().is_none_or(|tenant| session.tenant == *tenant));
+        Ok(own.take(limit).map(summary).collect())
     }
 
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
-        let inner = self.lock();
-        answer(inner.sessions.get(&id).map(|stored| stored.session.sequence).ok_or_else(|| inner.missing(id)))
-    }
-
-    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
-        use std::ops::Bound::{Excluded, Unbounded};
-        let inner = self.lock();
-        let beyond =
-            inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded)).map(|(_, stored)| &stored.session);
-        let own = beyond.filter(|session| of.as_ref().is_none_or(|tenant| session.tenant == *tenant));
-        answer(Ok(own.take(limit).map(summary).collect()))
-    }
-
-    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        let append = |inner: &mut Inner| {
-            inner.receipts.free(receipt.as_ref())?;
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
+        {
+            let mut inner = self.lock();
+            inner.receipts.check_free(receipt.as_ref())?;
             let stored = inner.at(id, expected)?;
             if let Some(last) = records.last() {
                 stored.session.sequence = last.sequence;
                 stored.session.updated_at = last.at;
             }
-            Arc::make_mut(&mut stored.past).extend(records);
-            inner.receipts.keep(receipt);
-            Ok(())
-        };
-        let appended = append(&mut self.lock());
+            Arc::make_mut(&mut stored.moves).extend(records);
+            inner.receipts.insert(receipt);
+        }
         self.changes.wake(id);
-        answer(appended)
+        Ok(())
     }
 
-    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
-        // Copied under the lock: a shared past would have to be copied whole by the next append.
-        let inner = self.lock();
-        let page = inner.sessions.get(&id).map(|stored| {
-            // Numbers count from 1, so that the number of the last one seen is the index of the next.
-            let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.past.len());
-            stored.past[start..].iter().take(limit).copied().collect()
-        });
-        answer(page.ok_or_else(|| inner.missing(id)))
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
+        // Copied under the lock: moves that are shared would have to be copied whole by the next append.
+        self.lock().get(id).map(|stored| {
+            // Sequences count from 1, so that the sequence of the last move seen is the index of the next one.
+            let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.moves.len());
+            stored.moves[start..].iter().take(limit).copied().collect()
+        })
     }
 
-    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        let fork = |inner: &mut Inner| {
-            inner.receipts.free(receipt.as_ref())?;
-            let Stored { past, snapshot, .. } = inner.at(id, copy.sequence)?;
-            let (past, snapshot) = (Arc::clone(past), snapshot.clone());
-            inner.sessions.insert(copy.id, Stored { session: copy, past, snapshot });
-            inner.receipts.keep(receipt);
-            Ok(())
-        };
-        answer(fork(&mut self.lock()))
-    }
-
-    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
-        let deleted = inner.at(id, expected).map(|_| ()).map(|()| inner.sessions.remove(&id));
-        drop(inner);
+        inner.receipts.check_free(receipt.as_ref())?;
+        let Stored { moves, snapshot, .. } = inner.at(id, copy.sequence)?;
+        let (moves, snapshot) = (Arc::clone(moves), snapshot.clone());
+        inner.sessions.insert(copy.id, Stored { session: copy, moves, snapshot });
+        inner.receipts.insert(receipt);
+        Ok(())
+    }
+
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
+        {
+            let mut inner = self.lock();
+            inner.at(id, expected)?;
+            inner.sessions.remove(&id);
+        }
         self.changes.wake(id);
-        answer(deleted.map(drop))
+        Ok(())
     }
 
-    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let mut inner = self.lock();
-        inner.receipts.sweep();
-        answer(Ok(inner.receipts.by_key.get(key).cloned()))
+        inner.receipts.purge();
+        Ok(inner.receipts.by_key.get(key).cloned())
     }
 
-    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
-        let inner = self.lock();
-        answer(inner.sessions.get(&id).map(|stored| stored.snapshot.clone()).ok_or_else(|| inner.missing(id)))
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
+        self.lock().get(id).map(|stored| stored.snapshot.clone())
     }
 
-    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
         if let Some(stored) = self.lock().sessions.get_mut(&id)
-            && stored.snapshot.as_ref().is_none_or(|kept| kept.sequence < snapshot.sequence)
+            && stored.snapshot.as_ref().is_none_or(|older| older.sequence < snapshot.sequence)
         {
             stored.snapshot = Some(snapshot);
         }
-        answer(Ok(()))
+        Ok(())
     }
 
-    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
-        self.jobs.sweep();
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
+        self.jobs.purge();
         let mut inner = self.lock();
-        inner.receipts.sweep();
-        let idle: Vec<Uuid> = idle_since.map_or_else(Vec::new, |since| {
-            let idle = inner.sessions.values().filter(|stored| stored.session.updated_at < since);
-            idle.map(|stored| stored.session.id).collect()
-        });
+        inner.receipts.purge();
+        let Some(since) = idle_since else { return Ok(0) };
+        let idle = inner.sessions.values().filter(|stored| stored.session.updated_at < since);
+        let idle: Vec<Uuid> = idle.map(|stored| stored.session.id).collect();
         for id in &idle {
             if let Some(stored) = inner.sessions.remove(id) {
                 inner.expired.insert(*id, stored.session.tenant);
             }
             self.changes.wake(*id);
         }
-        answer(Ok(idle.len() as u64))
+        Ok(idle.len() as u64)
     }
 
     fn changes(&self) -> &Changes {
@@ -263,10 +255,10 @@ mod tests {
     fn old_receipts_make_room_for_new_ones() {
         let mut receipts = Receipts::default();
         for key in ["a", "b", "c"] {
-            receipts.keep(Some(receipt(key, RECEIPT_BYTES / 3)));
+            receipts.insert(Some(receipt(key, RECEIPT_BYTES / 3)));
         }
         assert!(!receipts.by_key.contains_key("a"));
-        assert!(receipts.free(Some(&receipt("c", 0))).is_err() && receipts.bytes <= RECEIPT_BYTES);
+        assert!(receipts.check_free(Some(&receipt("c", 0))).is_err() && receipts.bytes <= RECEIPT_BYTES);
         assert_eq!(receipts.arrivals.len(), receipts.by_key.len());
     }
 

@@ -10,10 +10,9 @@ use tokio_postgres::error::{DbError, SqlState};
 
 use crate::store::StoreError;
 
-use super::target::told;
+use super::connect::error_chain;
 
-/// How long a lost database is waited for before its clients are told. Once they have been told, nobody waits any more
-/// until it is back.
+/// How long to wait for a lost database before clients are told. After that no request waits until it is back.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// How soon to try again at first; the time doubles up to the longest.
 const FIRST_PAUSE: Duration = Duration::from_millis(25);
@@ -24,11 +23,11 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(400);
 pub(super) enum Fault {
     /// The connection is lost; whether the change was made is unknown.
     Lost(String),
-    /// Nothing has changed, and the same may go well at once: two transactions got in each other's way.
-    Again(String),
+    /// Nothing has changed, and the same may go well at once: two transactions conflicted.
+    Conflict(String),
     /// Nothing has changed: a key or an identifier is there already.
     Duplicate(String),
-    /// Nothing has changed, and it is no use trying again.
+    /// Nothing has changed, and another attempt would fail too.
     Refused(StoreError),
 }
 
@@ -36,8 +35,8 @@ impl From<Error> for Fault {
     fn from(error: Error) -> Fault {
         match error.as_db_error() {
             Some(refusal) => refused(refusal),
-            None if distrusted(&error) => Fault::Refused(StoreError::Failed(told(&error))),
-            None => Fault::Lost(told(&error)),
+            None if distrusted(&error) => Fault::Refused(StoreError::Failed(error_chain(&error))),
+            None => Fault::Lost(error_chain(&error)),
         }
     }
 }
@@ -80,8 +79,8 @@ fn refused(refusal: &DbError) -> Fault {
         _ if *code == SqlState::TOO_MANY_CONNECTIONS || *code == SqlState::READ_ONLY_SQL_TRANSACTION => {
             Fault::Lost(text)
         }
-        "40" => Fault::Again(text),
-        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Again(text),
+        "40" => Fault::Conflict(text),
+        _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Conflict(text),
         _ if *code == SqlState::UNIQUE_VIOLATION => Fault::Duplicate(text),
         _ if *code == SqlState::DISK_FULL => Fault::Refused(StoreError::Full(text)),
         "53" => Fault::Refused(StoreError::Unavailable(text)),
@@ -91,10 +90,15 @@ fn refused(refusal: &DbError) -> Fault {
 }
 
 impl Fault {
-    /// What is left to say when it is not tried again.
-    pub(super) fn finally(self) -> StoreError {
+    /// The database has not answered in time; whether the change was made is unknown.
+    pub(super) fn no_answer() -> Fault {
+        Fault::Lost("no answer in time".to_owned())
+    }
+
+    /// The error for the caller when there is no further attempt.
+    pub(super) fn into_store_error(self) -> StoreError {
         match self {
-            Fault::Lost(text) | Fault::Again(text) => StoreError::Unavailable(text),
+            Fault::Lost(text) | Fault::Conflict(text) => StoreError::Unavailable(text),
             Fault::Duplicate(text) => StoreError::Failed(text),
             Fault::Refused(error) => error,
         }
@@ -104,7 +108,7 @@ impl Fault {
 /// Since when the database has been out of reach, as far as anybody has noticed.
 #[derive(Default)]
 pub(super) struct Outage {
-    // A std mutex: held for a glance, never across an await.
+    // A std mutex: held for a read, never across an await.
     since: Mutex<Option<Instant>>,
 }
 
@@ -116,8 +120,8 @@ impl Outage {
         }
     }
 
-    /// Notes that it could not; tells whether it is worth while to try again.
-    pub(super) fn bearable(&self, fault: &str) -> bool {
+    /// Notes that it could not; returns whether another attempt is worth waiting for.
+    pub(super) fn worth_waiting(&self, fault: &str) -> bool {
         let mut since = self.lock();
         if since.is_none() {
             tracing::warn!(error = fault, "the database is out of reach");
@@ -130,17 +134,17 @@ impl Outage {
     }
 }
 
-/// Pauses that grow.
-pub(super) struct Pauses(Duration);
+/// Backoff that grow.
+pub(super) struct Backoff(Duration);
 
-impl Default for Pauses {
-    fn default() -> Pauses {
-        Pauses(FIRST_PAUSE)
+impl Default for Backoff {
+    fn default() -> Backoff {
+        Backoff(FIRST_PAUSE)
     }
 }
 
-impl Pauses {
-    /// Waits, longer from time to time.
+impl Backoff {
+    /// Waits, each time longer.
     pub(super) async fn pause(&mut self) {
         tokio::time::sleep(self.0).await;
         self.0 = (2 * self.0).min(LONGEST_PAUSE);

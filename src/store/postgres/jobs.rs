@@ -1,29 +1,28 @@
-//! Jobs in the database, whose chunks all replicas take.
+//! Jobs in the database, whose chunks all replicas compute.
 //!
-//! Whoever takes a chunk has a lease on it, and renews it while it works. The chunks of a replica that is gone are taken by
-//! others when its leases are over.
+//! A worker has a lease on the chunk that it computes, and renews it. The chunks of a replica that is gone are claimed
+//! by others when its leases are over.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use async_trait::async_trait;
 use deadpool_postgres::Object;
-use futures::FutureExt as _;
-use jiff::Timestamp;
-use tokio_postgres::Row;
 use uuid::Uuid;
 
-use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_PATIENCE, Job, JobLimits, JobStore};
-use crate::store::{Answer, RECEIPT_LIFETIME, Receipt, StoreError, Tenant};
+use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
+use crate::store::rows;
+use crate::store::{RECEIPT_LIFETIME, Receipt, Result, StoreError};
 
 use super::PostgresStore;
-use super::alone::{begin, execute};
+use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
+use super::columns::{from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
-use super::link::{ANSWER, LONG_ANSWER, Link, Parameter, call, once};
-use super::rows::{count, counted, joined, odd, split};
 use super::sql;
+use super::transactions::{begin, execute};
 
-/// Jobs that one statement sweeps: their results are large.
-const SWEPT: i64 = 4;
+/// Jobs that one statement deletes: their results are large.
+const PURGED_AT_ONCE: i64 = 4;
 
 /// A job to be stored.
 struct NewJob {
@@ -34,7 +33,7 @@ struct NewJob {
 }
 
 impl NewJob {
-    async fn make(&self, link: &Link, connection: &mut Object, sent: &AtomicBool) -> Result<(), Fault> {
+    async fn make(&self, pool: &ClientPool, connection: &mut Object, commit_sent: &AtomicBool) -> Result<(), Fault> {
         let NewJob { job, request, limits, receipt } = self;
         let transaction = begin(connection).await?;
         let tenant = job.tenant.name();
@@ -42,54 +41,37 @@ impl NewJob {
         execute(&transaction, sql::LOCK_TENANT, &[&i64::from(crc32fast::hash(tenant.as_bytes()))]).await?;
         let statement = transaction.prepare_cached(sql::JOBS_OF_TENANT).await?;
         let found = transaction.query_one(&statement, &[&tenant]).await?;
-        limits.admit(count(found.get(0)), count(found.get(1)), count(found.get(2)), job)?;
-        let (at, ns) = split(job.created_at);
-        let (points, chunk) = (counted(job.points), counted(job.chunk));
-        let (bytes, cost) = (counted(job.bytes), counted(job.cost));
+        limits.check(from_bigint(found.get(0)), from_bigint(found.get(1)), from_bigint(found.get(2)), job)?;
+        let (at, ns) = split_time(job.created_at);
+        let (points, chunk) = (to_bigint(job.points), to_bigint(job.chunk));
+        let (bytes, cost) = (to_bigint(job.bytes), to_bigint(job.cost));
         let row: [Parameter<'_>; 9] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, request];
         execute(&transaction, sql::CREATE_JOB, &row).await?;
-        execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &counted(job.chunks())]).await?;
+        execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &to_bigint(job.chunks())]).await?;
         if let Some(Receipt { request, reply }) = receipt {
             let keys = [request.key.as_str()];
-            execute(&transaction, sql::FREE_KEYS, &[&keys.as_slice(), &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+            execute(&transaction, sql::DELETE_OLD_KEYS, &[&keys.as_slice(), &RECEIPT_LIFETIME.as_secs_f64()]).await?;
             let fingerprint = request.fingerprint.as_slice();
-            let sequence = counted(reply.sequence);
+            let sequence = to_bigint(reply.sequence);
             let row: [Parameter<'_>; 5] = [&request.key, &fingerprint, &reply.created, &sequence, &reply.body];
-            execute(&transaction, sql::KEEP_RECEIPT, &row).await?;
+            execute(&transaction, sql::SAVE_RECEIPT, &row).await?;
         }
-        link.announce(&transaction, &[job.id]).await?;
-        sent.store(true, Ordering::Relaxed);
+        pool.announce(&transaction, &[job.id]).await?;
+        commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(())
     }
 }
 
-fn job(row: &Row) -> Result<Job, StoreError> {
-    let finished: Option<std::time::SystemTime> = row.get(4);
-    Ok(Job {
-        id: row.get(0),
-        tenant: Tenant::new(row.get(1)),
-        created_at: joined(row.get(2), row.get(3))?,
-        finished_at: finished.map(Timestamp::try_from).transpose().map_err(|error| odd(&error))?,
-        error: row.get(5),
-        points: count(row.get(6)),
-        chunk: count(row.get(7)),
-        done: count(row.get(8)),
-        failed: count(row.get(9)),
-        bytes: count(row.get(10)),
-        cost: count(row.get(11)),
-    })
-}
-
-impl Link {
-    async fn create_job(&self, new: NewJob) -> Result<(), StoreError> {
-        let sent = AtomicBool::new(false);
-        let error = match call!(self, LONG_ANSWER, connection => new.make(self, connection, &sent)) {
+impl ClientPool {
+    async fn create_job(&self, new: NewJob) -> Result<()> {
+        let commit_sent = AtomicBool::new(false);
+        let error = match with_retries!(self, LONG_ANSWER, connection => new.make(self, connection, &commit_sent)) {
             Ok(()) => return Ok(()),
             Err(error) => error,
         };
         // A lost connection may have hidden that an earlier attempt went well.
-        if sent.into_inner() && self.row(sql::JOB, &[&new.job.id]).await?.is_some() {
+        if commit_sent.into_inner() && self.row(sql::JOB, &[&new.job.id]).await?.is_some() {
             return Ok(());
         }
         match &new.receipt {
@@ -98,28 +80,16 @@ impl Link {
         }
     }
 
-    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>, StoreError> {
-        let lease = lease.as_secs_f64();
-        let mut froms = vec![Uuid::nil()];
-        froms.extend(after);
-        while let Some(from) = froms.pop() {
-            if let Some(row) = self.row(sql::CLAIM, &[&from, &owner, &lease]).await? {
-                return Ok(Some(Claim { job: row.get(0), chunk: count(row.get(1)), owner }));
-            }
-        }
-        Ok(None)
-    }
-
     /// Whether there was such a job.
-    async fn keep_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
+    async fn save_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         let Claim { job, chunk, .. } = claim;
         let statement = transaction.prepare_cached(sql::LOCK_JOB).await?;
         if transaction.query_opt(&statement, &[&job]).await?.is_none() {
             return Ok(false);
         }
-        if execute(&transaction, sql::KEEP_CHUNK, &[&job, &counted(chunk), &result.content]).await? > 0 {
-            let (points, failed) = (counted(result.points), counted(result.failed));
+        if execute(&transaction, sql::SAVE_CHUNK, &[&job, &to_bigint(chunk), &result.content]).await? > 0 {
+            let (points, failed) = (to_bigint(result.points), to_bigint(result.failed));
             execute(&transaction, sql::COUNT_CHUNK, &[&job, &points, &failed]).await?;
             self.announce(&transaction, &[job]).await?;
         }
@@ -139,103 +109,89 @@ impl Link {
         Ok(())
     }
 
-    async fn delete_job(&self, connection: &mut Object, id: Uuid, sent: &AtomicBool) -> Result<bool, Fault> {
+    async fn delete_job(&self, connection: &mut Object, id: Uuid, commit_sent: &AtomicBool) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         if execute(&transaction, sql::DELETE_JOB, &[&id]).await? == 0 {
-            return Ok(sent.load(Ordering::Relaxed));
+            return Ok(commit_sent.load(Ordering::Relaxed));
         }
         self.announce(&transaction, &[id]).await?;
-        sent.store(true, Ordering::Relaxed);
+        commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(true)
     }
 
-    /// Deletes the jobs whose time is over.
-    pub(super) async fn sweep_jobs(&self) -> Result<(), StoreError> {
-        while counted(call!(self, LONG_ANSWER, connection => sweep(connection))?) == SWEPT {}
+    /// Deletes the jobs past their time.
+    pub(super) async fn purge_jobs(&self) -> Result<()> {
+        while to_bigint(with_retries!(self, LONG_ANSWER, connection => purge(connection))?) == PURGED_AT_ONCE {}
         Ok(())
     }
 }
 
-async fn sweep(connection: &mut Object) -> Result<u64, Fault> {
+async fn purge(connection: &mut Object) -> Result<u64, Fault> {
     let transaction = begin(connection).await?;
-    let times = [JOB_LIFETIME, JOB_PATIENCE].map(|time| time.as_secs_f64());
-    let gone = execute(&transaction, sql::SWEEP_JOBS, &[&times[0], &times[1], &SWEPT]).await?;
+    let times = [JOB_LIFETIME, JOB_TIME_LIMIT].map(|time| time.as_secs_f64());
+    let gone = execute(&transaction, sql::PURGE_JOBS, &[&times[0], &times[1], &PURGED_AT_ONCE]).await?;
     transaction.commit().await?;
     Ok(gone)
 }
 
+#[async_trait]
 impl JobStore for PostgresStore {
-    fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.link.create_job(NewJob { job, request, limits, receipt }).boxed()
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
+        self.pool.create_job(NewJob { job, request, limits, receipt }).await
     }
 
-    fn job(&self, id: Uuid) -> Answer<'_, Job> {
-        async move { self.link.row(sql::JOB, &[&id]).await?.as_ref().map_or(Err(StoreError::NotFound), job) }.boxed()
+    async fn job(&self, id: Uuid) -> Result<Job> {
+        let row = self.pool.row(sql::JOB, &[&id]).await?.ok_or(StoreError::NotFound)?;
+        rows::job(&mut reader(&row))
     }
 
-    fn job_request(&self, id: Uuid) -> Answer<'_, String> {
-        async move {
-            let found = self.link.row(sql::JOB_REQUEST, &[&id]).await?;
-            found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
+    async fn job_request(&self, id: Uuid) -> Result<String> {
+        let found = self.pool.row(sql::JOB_REQUEST, &[&id]).await?;
+        found.map(|row| row.get(0)).ok_or(StoreError::NotFound)
+    }
+
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>> {
+        // First the jobs after the last one, then all of them.
+        for from in after.into_iter().chain([Uuid::nil()]) {
+            if let Some(row) = self.pool.row(sql::CLAIM, &[&from, &owner, &lease.as_secs_f64()]).await? {
+                return Ok(Some(Claim { job: row.get(0), chunk: from_bigint(row.get(1)), owner }));
+            }
         }
-        .boxed()
+        Ok(None)
     }
 
-    fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Answer<'_, Option<Claim>> {
-        self.link.claim(owner, after, lease).boxed()
+    async fn renew(&self, Claim { job, chunk, owner }: Claim, lease: Duration) -> Result<bool> {
+        let (chunk, lease) = (to_bigint(chunk), lease.as_secs_f64());
+        Ok(self.pool.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
     }
 
-    fn renew(&self, claim: Claim, lease: Duration) -> Answer<'_, bool> {
-        async move {
-            let Claim { job, chunk, owner } = claim;
-            let (chunk, lease) = (counted(chunk), lease.as_secs_f64());
-            Ok(self.link.row(sql::RENEW, &[&job, &chunk, &owner, &lease]).await?.is_some())
-        }
-        .boxed()
+    async fn release(&self, Claim { job, chunk, owner }: Claim) -> Result<()> {
+        self.pool.rows(sql::RELEASE, &[&job, &to_bigint(chunk), &owner]).await.map(drop)
     }
 
-    fn release(&self, claim: Claim) -> Answer<'_, ()> {
-        async move {
-            let Claim { job, chunk, owner } = claim;
-            self.link.rows(sql::RELEASE, &[&job, &counted(chunk), &owner]).await.map(drop)
-        }
-        .boxed()
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
+        let found = with_retries!(self.pool, ANSWER, connection => self.pool.save_chunk(connection, claim, &result))?;
+        self.changes.wake(claim.job);
+        if found { Ok(()) } else { Err(StoreError::NotFound) }
     }
 
-    fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()> {
-        async move {
-            let kept = call!(self.link, ANSWER, connection => self.link.keep_chunk(connection, claim, &result))?;
-            self.changes.wake(claim.job);
-            if kept { Ok(()) } else { Err(StoreError::NotFound) }
-        }
-        .boxed()
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
+        with_retries!(self.pool, ANSWER, connection => self.pool.fail_job(connection, id, &error))?;
+        self.changes.wake(id);
+        Ok(())
     }
 
-    fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()> {
-        async move {
-            call!(self.link, ANSWER, connection => self.link.fail_job(connection, id, &error))?;
-            self.changes.wake(id);
-            Ok(())
-        }
-        .boxed()
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
+        let found = self.pool.rows(sql::CHUNKS, &[&id, &to_bigint(first), &to_bigint(limit as u64)]).await?;
+        Ok(found.iter().map(|row| row.get(0)).collect())
     }
 
-    fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>> {
-        async move {
-            let found = self.link.rows(sql::CHUNKS, &[&id, &counted(first), &counted(limit as u64)]).await?;
-            Ok(found.iter().map(|row| row.get(0)).collect())
-        }
-        .boxed()
-    }
-
-    fn delete_job(&self, id: Uuid) -> Answer<'_, ()> {
-        async move {
-            let sent = AtomicBool::new(false);
-            let gone = call!(self.link, LONG_ANSWER, connection => self.link.delete_job(connection, id, &sent))?;
-            self.changes.wake(id);
-            if gone { Ok(()) } else { Err(StoreError::NotFound) }
-        }
-        .boxed()
+    async fn delete_job(&self, id: Uuid) -> Result<()> {
+        let commit_sent = AtomicBool::new(false);
+        let deleted =
+            with_retries!(self.pool, LONG_ANSWER, connection => self.pool.delete_job(connection, id, &commit_sent))?;
+        self.changes.wake(id);
+        if deleted { Ok(()) } else { Err(StoreError::NotFound) }
     }
 }

@@ -1,4 +1,4 @@
-//! Hearing of changes that other processes make.
+//! Listening to changes that other processes make.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,45 +10,45 @@ use uuid::Uuid;
 
 use crate::store::Changes;
 
-use super::fault::{Fault, Pauses};
-use super::link::Link;
+use super::client_pool::ClientPool;
+use super::fault::{Backoff, Fault};
 use super::sql;
 
-/// How often those who wait are sent to look where the engine knows no announcements.
+/// How often listeners are woken where the database has no notifications.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// Wakes those who wait for changes, for ever.
-pub(super) async fn listen(link: Arc<Link>, changes: Arc<Changes>) {
-    if !link.announces {
+/// Wakes listeners when the database notifies of changes; never ends.
+pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
+    if !pool.announces {
         loop {
             tokio::time::sleep(LOOK).await;
             changes.wake_all();
         }
     }
-    let mut pauses = Pauses::default();
+    let mut backoff = Backoff::default();
     loop {
-        let mut heard = false;
-        if let Err(fault) = hear(&link, &changes, &mut heard).await {
-            tracing::debug!(?fault, "no announcements are heard for now");
+        let mut listening = false;
+        if let Err(fault) = receive(&pool, &changes, &mut listening).await {
+            tracing::debug!(?fault, "no notifications are received for now");
         }
-        if heard {
-            pauses = Pauses::default();
+        if listening {
+            backoff = Backoff::default();
         }
-        pauses.pause().await;
+        backoff.pause().await;
     }
 }
 
-/// Listens on one connection until it is lost; `heard` tells whether it came about.
-async fn hear(link: &Link, changes: &Changes, heard: &mut bool) -> Result<(), Fault> {
-    let (client, mut driver) = link.target.connect().await?;
+/// Listens on one connection until it is lost; sets `listening` when it has begun.
+async fn receive(pool: &ClientPool, changes: &Changes, listening: &mut bool) -> Result<(), Fault> {
+    let (client, mut driver) = pool.target.connect().await?;
     let mut messages = stream::poll_fn(move |context| driver.poll_message(context));
     let mut listen = std::pin::pin!(client.batch_execute(sql::LISTEN));
     loop {
         tokio::select! {
-            listening = &mut listen, if !*heard => {
-                listening?;
-                *heard = true;
-                // Whatever happened before is not announced to this connection.
+            done = &mut listen, if !*listening => {
+                done?;
+                *listening = true;
+                // Earlier changes are not notified to this connection.
                 changes.wake_all();
             }
             message = messages.next() => match message {

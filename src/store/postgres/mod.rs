@@ -1,46 +1,48 @@
 //! PostgreSQL, shared by many processes: what one has acknowledged all the others find.
 //!
 //! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
-//! sequence of a session decides who wins where several processes move it at once; the primary key of the moves would catch
-//! whatever got past it. Everything else goes through a pool of connections. A lost connection is replaced, and what is
+//! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is
+//! a second barrier. Everything else goes through a pool of connections. A lost connection is replaced, and what is
 //! safe to repeat is repeated for a while; then the callers are told that the storage is out of reach.
 //!
-//! `docs/postgres.md` describes the tables and what the engine has to know.
+//! `docs/postgres.md` describes the tables and what the database must support.
 
-mod alone;
-mod explain;
+mod batch_tx;
+mod client_pool;
+mod columns;
+mod connect;
 mod fault;
-mod flight;
-mod job;
 mod jobs;
-mod link;
 mod listen;
-mod rows;
-mod schema;
+mod outcome;
+mod request;
+pub mod schema;
 mod sql;
-mod target;
+mod transactions;
 mod writer;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use futures::FutureExt as _;
+use async_trait::async_trait;
 use jiff::Timestamp;
 use tokio::task::AbortHandle;
+use tokio::time::timeout;
 use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
+use super::rows;
 use super::{
-    Answer, Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant,
+    Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
 };
 
-use fault::{Fault, Pauses};
-use job::{Change, Job};
-use link::Link;
-use rows::{count, counted};
+use client_pool::ClientPool;
+use columns::{from_bigint, reader, to_bigint};
+use connect::ConnectTarget;
+use fault::{Backoff, Fault};
+use request::Change;
 use schema::SchemaError;
-use target::Target;
 use writer::Writer;
 
 /// How long a start waits for the database.
@@ -50,7 +52,7 @@ const READY: Duration = Duration::from_secs(2);
 
 /// Sessions in a PostgreSQL database.
 pub struct PostgresStore {
-    link: Arc<Link>,
+    pool: Arc<ClientPool>,
     writer: Writer,
     changes: Arc<Changes>,
     listener: AbortHandle,
@@ -62,46 +64,46 @@ impl PostgresStore {
     ///
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if it or its tables cannot be used.
-    pub async fn open(url: &str) -> Result<PostgresStore, StoreError> {
-        let target = Target::parse(url).map_err(StoreError::Failed)?;
-        let place = target.place();
-        let announces = prepared(&target).await.map_err(|error| match error {
-            StoreError::Unavailable(text) => StoreError::Unavailable(format!("{place}: {text}")),
-            StoreError::Failed(text) => StoreError::Failed(format!("{place}: {text}")),
+    pub async fn open(url: &str) -> Result<PostgresStore> {
+        let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
+        let address = target.address();
+        let announces = prepare(&target).await.map_err(|error| match error {
+            StoreError::Unavailable(text) => StoreError::Unavailable(format!("{address}: {text}")),
+            StoreError::Failed(text) => StoreError::Failed(format!("{address}: {text}")),
             other => other,
         })?;
         if !announces {
-            tracing::warn!("the database knows no pg_notify: changes by other processes are looked for once a second");
+            tracing::warn!("the database has no pg_notify: listeners read changes by other processes once a second");
         }
-        let link = Arc::new(Link::new(target, announces)?);
+        let pool = Arc::new(ClientPool::new(target, announces)?);
         let changes = Arc::new(Changes::default());
-        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
-        let listener = tokio::spawn(listen::listen(Arc::clone(&link), Arc::clone(&changes))).abort_handle();
-        Ok(PostgresStore { link, writer, changes, listener })
+        let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
+        let listener = tokio::spawn(listen::listen(Arc::clone(&pool), Arc::clone(&changes))).abort_handle();
+        Ok(PostgresStore { pool, writer, changes, listener })
     }
 
     /// Connects to a database to look at, beside the processes that work with it. Its tables must be there already.
     ///
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
-    pub async fn open_to_read(url: &str) -> Result<PostgresStore, StoreError> {
-        let target = Target::parse(url).map_err(StoreError::Failed)?;
-        let place = target.place();
+    pub async fn open_to_read(url: &str) -> Result<PostgresStore> {
+        let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
+        let address = target.address();
         let checked = async { schema::check(&target.open().await?).await };
-        checked
-            .await
-            .map_err(|error: SchemaError| StoreError::Failed(format!("{place}: {}", Fault::from(error).finally())))?;
-        let link = Arc::new(Link::new(target, false)?);
+        checked.await.map_err(|error: SchemaError| {
+            StoreError::Failed(format!("{address}: {}", Fault::from(error).into_store_error()))
+        })?;
+        let pool = Arc::new(ClientPool::new(target, false)?);
         let changes = Arc::new(Changes::default());
-        let writer = Writer::start(Arc::clone(&link), Arc::clone(&changes));
+        let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
         let listener = tokio::spawn(std::future::pending::<()>()).abort_handle();
-        Ok(PostgresStore { link, writer, changes, listener })
+        Ok(PostgresStore { pool, writer, changes, listener })
     }
 
     /// Which database it is, without the password.
     #[must_use]
-    pub fn place(&self) -> String {
-        self.link.target.place()
+    pub fn address(&self) -> String {
+        self.pool.target.address()
     }
 }
 
@@ -111,20 +113,20 @@ impl Drop for PostgresStore {
     }
 }
 
-/// Brings the tables up to date, and tells whether the engine knows announcements.
-async fn prepared(target: &Target) -> Result<bool, StoreError> {
-    let (begin, mut pauses) = (Instant::now(), Pauses::default());
+/// Migrates the tables, and returns whether the database has notifications.
+async fn prepare(target: &ConnectTarget) -> Result<bool> {
+    let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
         let fault = match target.open().await.map_err(SchemaError::from) {
-            Ok(mut client) => match schema::migrate(&mut client).await {
+            Ok(mut client) => match schema::migrate(&mut client, schema::MIGRATIONS).await {
                 Ok(()) => return Ok(client.batch_execute(sql::PROBE_NOTIFY).await.is_ok()),
                 Err(error) => error.into(),
             },
             Err(error) => Fault::from(error),
         };
         match fault {
-            Fault::Lost(_) | Fault::Again(_) if begin.elapsed() < START => pauses.pause().await,
-            fault => return Err(fault.finally()),
+            Fault::Lost(_) | Fault::Conflict(_) if begin.elapsed() < START => backoff.pause().await,
+            fault => return Err(fault.into_store_error()),
         }
     }
 }
@@ -133,154 +135,123 @@ impl From<SchemaError> for Fault {
     fn from(error: SchemaError) -> Fault {
         match error {
             SchemaError::Database(error) => error.into(),
-            newer => Fault::Refused(StoreError::Failed(newer.to_string())),
+            SchemaError::Version(error) => Fault::Refused(StoreError::Failed(error.to_string())),
         }
     }
 }
 
 /// The definition of a session as it is stored: exactly the JSON that it was.
-fn definition(session: &Session) -> Result<String, StoreError> {
+fn definition(session: &Session) -> Result<String> {
     let written = serde_json::to_string(&*session.definition);
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
 }
 
+#[async_trait]
 impl Store for PostgresStore {
-    fn ready(&self) -> Answer<'_, ()> {
-        async {
-            let asked = async { link::once!(self.link, READY, connection => link::rows(connection, sql::READY, &[])) };
-            let asked = tokio::time::timeout(READY, asked).await;
-            match asked.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned()))) {
-                Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
-                Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
-                Err(fault) => Err(fault.finally()),
-            }
+    async fn ready(&self) -> Result<()> {
+        let asked = async {
+            client_pool::try_once!(self.pool, READY, connection => client_pool::rows(connection, sql::READY, &[]))
+        };
+        match timeout(READY, asked).await.unwrap_or_else(|_| Err(Fault::no_answer())) {
+            Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
+            Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
+            Err(fault) => Err(fault.into_store_error()),
         }
-        .boxed()
     }
 
-    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        async {
-            let definition = definition(&session)?;
-            let change = Change::Create(session, definition);
-            self.writer.write(|answer| Job { change, receipt, stamp: job::stamp(), answer }).await
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
+        let definition = definition(&session)?;
+        self.writer.write(Change::Create(session, definition), receipt).await
+    }
+
+    async fn find(&self, id: Uuid) -> Result<Session> {
+        match self.pool.row(sql::FIND, &[&id]).await? {
+            Some(row) => rows::session(&mut reader(&row)),
+            None => Err(self.pool.missing(id).await),
         }
-        .boxed()
     }
 
-    fn find(&self, id: Uuid) -> Answer<'_, Session> {
-        async move {
-            match self.link.row(sql::FIND, &[&id]).await? {
-                Some(row) => rows::session(&row),
-                None => Err(self.link.missing(id).await),
-            }
+    async fn sequence(&self, id: Uuid) -> Result<u64> {
+        match self.pool.row(sql::SEQUENCE, &[&id]).await? {
+            Some(row) => Ok(from_bigint(row.get(0))),
+            None => Err(self.pool.missing(id).await),
         }
-        .boxed()
     }
 
-    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
-        async move {
-            // Nothing lies before the nil identifier, and no session has it.
-            let after = after.unwrap_or(Uuid::nil());
-            let limit = counted(limit as u64);
-            let found = match of {
-                None => self.link.rows(sql::LIST, &[&after, &limit]).await?,
-                Some(tenant) => self.link.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
-            };
-            found.iter().map(rows::summary).collect()
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
+        // Nothing lies before the nil identifier, and no session has it.
+        let (after, limit) = (after.unwrap_or_default(), to_bigint(limit as u64));
+        let found = match tenant {
+            None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,
+            Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
+        };
+        found.iter().map(|row| rows::summary(&mut reader(row))).collect()
+    }
+
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
+        self.writer.write(Change::Append { id, expected, records }, receipt).await
+    }
+
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
+        let found = self.pool.rows(sql::HISTORY, &[&id, &to_bigint(after), &to_bigint(limit as u64)]).await?;
+        if found.is_empty() {
+            self.sequence(id).await?;
         }
-        .boxed()
+        found.iter().map(|row| rows::record(&mut reader(row))).collect()
     }
 
-    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        let change = Change::Append { id, expected, records };
-        self.writer.write(move |answer| Job { change, receipt, stamp: job::stamp(), answer }).boxed()
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
+        self.pool.fork(id, copy, receipt).await
     }
 
-    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
-        async move {
-            let found = self.link.rows(sql::HISTORY, &[&id, &counted(after), &counted(limit as u64)]).await?;
-            if found.is_empty() && self.link.row(sql::SEQUENCE, &[&id]).await?.is_none() {
-                return Err(self.link.missing(id).await);
-            }
-            found.iter().map(rows::record).collect()
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
+        self.pool.delete(id, expected).await?;
+        self.changes.wake(id);
+        Ok(())
+    }
+
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
+        self.pool.receipt(key).await
+    }
+
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
+        let found = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
+        if found.is_none() {
+            self.sequence(id).await?;
         }
-        .boxed()
+        found.map(|row| rows::snapshot(&mut reader(&row))).transpose()
     }
 
-    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.link.fork(id, copy, receipt).boxed()
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
+        self.pool.save_snapshot(id, snapshot).await
     }
 
-    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
-        async move {
-            self.link.delete(id, expected).await?;
-            self.changes.wake(id);
-            Ok(())
-        }
-        .boxed()
-    }
-
-    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
-        self.link.receipt(key).boxed()
-    }
-
-    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
-        async move {
-            let kept = self.link.row(sql::SNAPSHOT, &[&id]).await?;
-            if kept.is_none() && self.link.row(sql::SEQUENCE, &[&id]).await?.is_none() {
-                return Err(self.link.missing(id).await);
-            }
-            Ok(kept.as_ref().map(rows::snapshot))
-        }
-        .boxed()
-    }
-
-    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
-        self.link.keep_snapshot(id, snapshot).boxed()
-    }
-
-    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
-        async move {
-            self.link.sweep_jobs().await?;
-            let gone = self.link.sweep(idle_since).await?;
-            gone.iter().for_each(|id| self.changes.wake(*id));
-            Ok(gone.len() as u64)
-        }
-        .boxed()
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
+        self.pool.purge_jobs().await?;
+        let expired = self.pool.purge_expired(idle_since).await?;
+        expired.iter().for_each(|id| self.changes.wake(*id));
+        Ok(expired.len() as u64)
     }
 
     fn changes(&self) -> &Changes {
         &self.changes
     }
 
-    fn examine(&self) -> Answer<'_, Vec<String>> {
-        async {
-            let strays = self.link.rows(sql::STRAYS, &[]).await?;
-            let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
-            Ok(strays.iter().map(|row| line(row.get(0))).collect())
-        }
-        .boxed()
-    }
-
     fn commits(&self) -> Option<&Commits> {
         Some(&self.writer.commits)
     }
 
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
-        async move {
-            match self.link.row(sql::SEQUENCE, &[&id]).await? {
-                Some(row) => Ok(count(row.get(0))),
-                None => Err(self.link.missing(id).await),
-            }
-        }
-        .boxed()
+    async fn check_integrity(&self) -> Result<Vec<String>> {
+        let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
+        let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
+        Ok(orphans.iter().map(|row| line(row.get(0))).collect())
     }
 }
 
-impl Link {
+impl ClientPool {
     /// [`Store::receipt`]
-    async fn receipt(&self, key: &str) -> Result<Option<Receipt>, StoreError> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let row = self.row(sql::RECEIPT, &[&key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
-        row.map(|row| rows::receipt(key, &row)).transpose()
+        row.map(|row| rows::receipt(key, &mut reader(&row))).transpose()
     }
 }

@@ -1,6 +1,6 @@
-//! Every statement that is sent, by name. `docs/postgres.md` says which features of the engine they need.
+//! Every statement that is sent, by name. `docs/postgres.md` says which features of the database they need.
 
-/// Where changes are announced.
+/// The channel of notifications of changes.
 pub(super) const CHANNEL: &str = "stickslip_changes";
 
 /// Bounds for every statement of a connection; and no notices, which only say that a table exists already.
@@ -61,29 +61,29 @@ ORDER BY receipt.key";
 /// Announces changes; a payload names as many sessions as fit.
 pub(super) const NOTIFY: &str = "SELECT pg_notify($1, payload) FROM unnest($2::text[]) AS payload";
 
-/// Asks whether the engine knows announcements at all.
+/// Fails where the database has no notifications.
 pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')";
 
-/// Begins to hear announcements.
+/// Begins to receive notifications.
 pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
 
-/// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and the
-/// stamp of its last move.
-pub(super) const EXPLAIN: &str = "
+/// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
+/// the stamp of its last move.
+pub(super) const OUTCOME: &str = "
 SELECT (SELECT sequence FROM contacts WHERE id = $1),
     (SELECT tenant FROM expired WHERE id = $1),
     EXISTS (SELECT 1 FROM receipts WHERE key = $2 AND created_at > now() - $3::double precision * INTERVAL '1 second'),
     (SELECT stamp FROM moves WHERE contact = $1 AND sequence = $4)";
 
 /// Makes room for keys that may be used again.
-pub(super) const FREE_KEYS: &str = "
+pub(super) const DELETE_OLD_KEYS: &str = "
 DELETE FROM receipts
 WHERE key = ANY($1) AND created_at <= now() - $2::double precision * INTERVAL '1 second'";
 
 pub(super) const READY: &str = "SELECT current_setting('transaction_read_only')";
 
 pub(super) const FIND: &str = "
-SELECT id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant
+SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns, definition, tenant
 FROM contacts WHERE id = $1";
 
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
@@ -99,9 +99,9 @@ SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
 FROM contacts WHERE tenant = $3 AND id > $1 ORDER BY id LIMIT $2";
 
 pub(super) const HISTORY: &str = "
-SELECT sequence, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
+SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
     displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
-    elastic_energy, memory_depth, at, at_ns
+    elastic_energy, memory_depth
 FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3";
 
 pub(super) const RECEIPT: &str = "
@@ -110,12 +110,12 @@ WHERE key = $1 AND created_at > now() - $2::double precision * INTERVAL '1 secon
 
 pub(super) const SNAPSHOT: &str = "SELECT sequence, state FROM snapshots WHERE contact = $1";
 
-pub(super) const KEEP_SNAPSHOT: &str = "
+pub(super) const SAVE_SNAPSHOT: &str = "
 INSERT INTO snapshots (contact, sequence, state) SELECT id, $2::bigint, $3::bytea FROM contacts WHERE id = $1
 ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
 WHERE snapshots.sequence < excluded.sequence";
 
-/// Copies the past of `$2` up to `$3`. Nobody has to be locked out: a past only grows.
+/// Copies the moves of `$2` up to `$3`. No lock is needed: moves are only appended.
 pub(super) const COPY_PAST: &str = "
 INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
@@ -134,7 +134,7 @@ pub(super) const DELETE: &str = "DELETE FROM contacts WHERE id = $1 AND sequence
 pub(super) const DELETE_PAST: &str = "DELETE FROM moves WHERE contact = $1";
 
 /// Receipts past their time, some at a time. What another replica is deleting is left to it.
-pub(super) const SWEEP_RECEIPTS: &str = "
+pub(super) const PURGE_RECEIPTS: &str = "
 DELETE FROM receipts WHERE key IN (
     SELECT key FROM receipts WHERE created_at <= now() - $1::double precision * INTERVAL '1 second'
     ORDER BY created_at LIMIT $2 FOR UPDATE SKIP LOCKED)";
@@ -143,7 +143,7 @@ pub(super) const IDLE: &str = "
 SELECT id FROM contacts WHERE (updated_at, updated_ns) < ($1, $2) LIMIT $3";
 
 /// Deletes those of the sessions that are still idle. What another replica moves or deletes meanwhile is left to it.
-pub(super) const SWEEP_IDLE: &str = "
+pub(super) const PURGE_IDLE: &str = "
 WITH gone AS (
     DELETE FROM contacts WHERE id IN (
         SELECT id FROM contacts WHERE id = ANY($1) AND (updated_at, updated_ns) < ($2, $3)
@@ -156,8 +156,8 @@ WITH gone AS (
 )
 SELECT id FROM gone";
 
-/// Moves whose session is not there: from owner to owner by the index, past their moves.
-pub(super) const STRAYS: &str = "
+/// Moves whose contact does not exist: a recursive query that reads one row of the index for each contact.
+pub(super) const ORPHANED_MOVES: &str = "
 WITH RECURSIVE owners (contact) AS (
     (SELECT contact FROM moves ORDER BY contact LIMIT 1)
     UNION ALL
@@ -167,7 +167,7 @@ WITH RECURSIVE owners (contact) AS (
 SELECT contact FROM owners
 WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.id = owners.contact)";
 
-/// Held while the jobs of a tenant are counted and another is made.
+/// Held while the jobs of a tenant are to_bigint and another is made.
 pub(super) const LOCK_TENANT: &str = "SELECT pg_advisory_xact_lock($1)";
 
 pub(super) const JOBS_OF_TENANT: &str = "
@@ -182,7 +182,7 @@ VALUES ($1, $2, $3, $4, $5, $6, 0, 0, $7, $8, $9)";
 pub(super) const CREATE_CHUNKS: &str = "
 INSERT INTO job_chunks (job, chunk) SELECT $1::uuid, chunk FROM generate_series(0::bigint, $2::bigint - 1) AS chunk";
 
-pub(super) const KEEP_RECEIPT: &str = "
+pub(super) const SAVE_RECEIPT: &str = "
 INSERT INTO receipts (key, fingerprint, created, sequence, body) VALUES ($1, $2, $3, $4, $5)";
 
 pub(super) const JOB: &str = "
@@ -191,7 +191,7 @@ FROM jobs WHERE id = $1";
 
 pub(super) const JOB_REQUEST: &str = "SELECT request FROM jobs WHERE id = $1";
 
-/// Takes a chunk of a job beyond `$1` that nobody works on, or whose holder has not been heard of for so long.
+/// Claims a chunk of a job after `$1` that is not claimed, or whose lease is over.
 pub(super) const CLAIM: &str = "
 WITH next AS (
     SELECT job, chunk FROM job_chunks
@@ -214,7 +214,7 @@ WHERE job = $1 AND chunk = $2 AND owner = $3 AND content IS NULL";
 /// Locks a job that has not ended: before its chunks, as deleting it does.
 pub(super) const LOCK_JOB: &str = "SELECT id FROM jobs WHERE id = $1 AND finished_at IS NULL FOR UPDATE";
 
-pub(super) const KEEP_CHUNK: &str = "
+pub(super) const SAVE_CHUNK: &str = "
 UPDATE job_chunks SET content = $3, owner = NULL, leased_until = NULL
 WHERE job = $1 AND chunk = $2 AND content IS NULL";
 
@@ -233,7 +233,7 @@ SELECT content FROM job_chunks WHERE job = $1 AND chunk >= $2 AND content IS NOT
 pub(super) const DELETE_JOB: &str = "DELETE FROM jobs WHERE id = $1";
 
 /// Jobs whose time is over, some at a time. What another replica is deleting is left to it.
-pub(super) const SWEEP_JOBS: &str = "
+pub(super) const PURGE_JOBS: &str = "
 DELETE FROM jobs WHERE id IN (
     SELECT id FROM jobs
     WHERE finished_at < now() - $1::double precision * INTERVAL '1 second'

@@ -9,13 +9,13 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
 use crate::metrics::Counted;
-use crate::store::{Changes, Commits, RECEIPT_LIFETIME, StoreError};
+use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Receipt, Result, StoreError};
 
-use super::explain::{Verdict, explain};
-use super::fault::{Fault, Pauses};
-use super::flight::Line;
-use super::job::{Change, Job, gather};
-use super::link::Link;
+use super::batch_tx::WriterConnection;
+use super::client_pool::ClientPool;
+use super::fault::{Backoff, Fault};
+use super::outcome::{Outcome, outcome_of};
+use super::request::{Change, WriteRequest, collect_batch, stamp};
 use super::sql;
 
 /// Changes that may wait.
@@ -24,32 +24,30 @@ const QUEUE: usize = 4096;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// How often a batch may collide with what others do before its clients are told.
 const COLLISIONS: usize = 8;
-/// How often a connection may be lost under one batch: perhaps it is the batch that the engine does not bear.
+/// How often a connection may be lost under one batch: perhaps the batch itself is the cause.
 const LOSSES: usize = 4;
 
 /// Where changes are handed in.
 pub(super) struct Writer {
-    queue: mpsc::Sender<Job>,
+    queue: mpsc::Sender<WriteRequest>,
     pub(super) commits: Arc<Commits>,
 }
 
 impl Writer {
     /// Starts the writer. It ends, after what waits, when this handle is dropped.
-    pub(super) fn start(link: Arc<Link>, changes: Arc<Changes>) -> Writer {
-        let (queue, jobs) = mpsc::channel(QUEUE);
+    pub(super) fn start(pool: Arc<ClientPool>, changes: Arc<Changes>) -> Writer {
+        let (queue, requests) = mpsc::channel(QUEUE);
         let commits = Arc::new(Commits::new("postgres"));
-        tokio::spawn(Desk { link, changes, commits: Arc::clone(&commits), line: None }.run(jobs));
+        tokio::spawn(WriterTask { pool, changes, commits: Arc::clone(&commits), connection: None }.run(requests));
         Writer { queue, commits }
     }
 
     /// Makes a change, and returns when it is committed.
-    pub(super) async fn write(
-        &self,
-        job: impl FnOnce(oneshot::Sender<Result<(), StoreError>>) -> Job,
-    ) -> Result<(), StoreError> {
+    pub(super) async fn write(&self, change: Change, receipt: Option<Receipt>) -> Result<()> {
         let _pending = Counted::by(&self.commits.pending);
         let (answer, answered) = oneshot::channel();
-        match timeout(PATIENCE, self.queue.send(job(answer))).await {
+        let request = WriteRequest { change, receipt, stamp: stamp(), answer };
+        match timeout(PATIENCE, self.queue.send(request)).await {
             Ok(Ok(())) => {}
             Ok(Err(_)) => return Err(StoreError::Failed("the writer has ended".to_owned())),
             Err(_) => return Err(StoreError::Unavailable("too many changes wait".to_owned())),
@@ -59,45 +57,45 @@ impl Writer {
 }
 
 /// The writer's side of the queue.
-struct Desk {
-    link: Arc<Link>,
+struct WriterTask {
+    pool: Arc<ClientPool>,
     changes: Arc<Changes>,
     commits: Arc<Commits>,
-    line: Option<Line>,
+    connection: Option<WriterConnection>,
 }
 
-impl Desk {
-    async fn run(mut self, mut jobs: mpsc::Receiver<Job>) {
+impl WriterTask {
+    async fn run(mut self, mut requests: mpsc::Receiver<WriteRequest>) {
         let mut backlog = VecDeque::new();
         loop {
             if backlog.is_empty() {
-                match jobs.recv().await {
-                    Some(job) => backlog.push_back(job),
+                match requests.recv().await {
+                    Some(request) => backlog.push_back(request),
                     None => return,
                 }
             }
             while backlog.len() < QUEUE
-                && let Ok(job) = jobs.try_recv()
+                && let Ok(request) = requests.try_recv()
             {
-                backlog.push_back(job);
+                backlog.push_back(request);
             }
-            self.settle(gather(&mut backlog), false).await;
+            self.commit_or_answer(collect_batch(&mut backlog), false).await;
         }
     }
 
-    /// Sees to it that each of the changes is made or refused, and answers them; `in_doubt` if an earlier attempt may have
-    /// been committed.
-    async fn settle(&mut self, mut batch: Vec<Job>, mut in_doubt: bool) {
-        let (mut pauses, mut collisions, mut losses) = (Pauses::default(), 0, 0);
+    /// Sees to it that each of the changes is made or refused, and answers them; `in_doubt` if an earlier attempt may
+    /// have been committed.
+    async fn commit_or_answer(&mut self, mut batch: Vec<WriteRequest>, mut in_doubt: bool) {
+        let (mut backoff, mut collisions, mut losses) = (Backoff::default(), 0, 0);
         while !batch.is_empty() {
             let begin = Instant::now();
-            let fault = match self.line().await {
-                Ok(line) => match line.fly(&batch).await {
+            let fault = match self.connection().await {
+                Ok(connection) => match connection.commit_batch(&batch).await {
                     Ok(found) => {
-                        self.link.outage.end();
+                        self.pool.outage.end();
                         self.commits.committed(batch.len(), begin.elapsed());
-                        for job in batch {
-                            self.landed(found.get(&job.id()).copied(), job, in_doubt);
+                        for request in batch {
+                            self.reply_committed(found.get(&request.id()).copied(), request, in_doubt);
                         }
                         return;
                     }
@@ -113,18 +111,18 @@ impl Desk {
             self.commits.failed.inc();
             match fault {
                 Fault::Lost(text) => {
-                    self.line = None;
-                    if !self.link.outage.bearable(&text) || losses > LOSSES {
+                    self.connection = None;
+                    if !self.pool.outage.worth_waiting(&text) || losses > LOSSES {
                         return answer_all(batch, || StoreError::Unavailable(text.clone()));
                     }
-                    pauses.pause().await;
+                    backoff.pause().await;
                 }
-                Fault::Again(text) | Fault::Duplicate(text) if collisions == COLLISIONS => {
+                Fault::Conflict(text) | Fault::Duplicate(text) if collisions == COLLISIONS => {
                     return answer_all(batch, || StoreError::Unavailable(text.clone()));
                 }
-                Fault::Again(_) => {
+                Fault::Conflict(_) => {
                     collisions += 1;
-                    pauses.pause().await;
+                    backoff.pause().await;
                 }
                 Fault::Duplicate(_) => {
                     collisions += 1;
@@ -133,8 +131,8 @@ impl Desk {
                 Fault::Refused(StoreError::Full(text)) => return answer_all(batch, || StoreError::Full(text.clone())),
                 // One of them is to blame, and the others shall not suffer for it.
                 Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => {
-                    for job in batch {
-                        Box::pin(self.settle(vec![job], in_doubt)).await;
+                    for request in batch {
+                        Box::pin(self.commit_or_answer(vec![request], in_doubt)).await;
                     }
                     return;
                 }
@@ -146,36 +144,36 @@ impl Desk {
         }
     }
 
-    async fn line(&mut self) -> Result<&Line, Fault> {
-        match self.line.take().filter(Line::is_open) {
-            Some(line) => Ok(self.line.insert(line)),
-            None => Ok(self.line.insert(Line::open(&self.link).await?)),
+    async fn connection(&mut self) -> Result<&WriterConnection, Fault> {
+        match self.connection.take().filter(WriterConnection::is_open) {
+            Some(connection) => Ok(self.connection.insert(connection)),
+            None => Ok(self.connection.insert(WriterConnection::open(&self.pool).await?)),
         }
     }
 
     /// Answers a request of a batch that has been committed.
-    fn landed(&self, found: Option<u64>, job: Job, in_doubt: bool) {
-        let Change::Append { id, expected, .. } = &job.change else {
-            return job.answer(Ok(()));
+    fn reply_committed(&self, found: Option<u64>, request: WriteRequest, in_doubt: bool) {
+        let Change::Append { id, expected, .. } = &request.change else {
+            return request.answer(Ok(()));
         };
         match found {
             Some(found) if found == *expected => {
                 self.changes.wake(*id);
-                job.answer(Ok(()));
+                request.answer(Ok(()));
             }
-            Some(found) if job.receipt.is_none() && !in_doubt => job.answer(Err(StoreError::Stale { found })),
+            Some(found) if request.receipt.is_none() && !in_doubt => request.answer(Err(StoreError::Stale { found })),
             found => {
                 // The next batch need not wait for the reasons why a request of this one lost.
-                let (link, changes) = (Arc::clone(&self.link), Arc::clone(&self.changes));
+                let (pool, changes) = (Arc::clone(&self.pool), Arc::clone(&self.changes));
                 tokio::spawn(async move {
                     let unexplained = found.map_or(StoreError::NotFound, |found| StoreError::Stale { found });
-                    match explain(&link, &job, in_doubt).await {
-                        Verdict::Stored => {
-                            changes.wake(job.id());
-                            job.answer(Ok(()));
+                    match outcome_of(&pool, &request, in_doubt).await {
+                        Outcome::Stored => {
+                            changes.wake(request.id());
+                            request.answer(Ok(()));
                         }
-                        Verdict::Refused(error) => job.answer(Err(error)),
-                        Verdict::Open => job.answer(Err(unexplained)),
+                        Outcome::Refused(error) => request.answer(Err(error)),
+                        Outcome::NotStored => request.answer(Err(unexplained)),
                     }
                 });
             }
@@ -183,28 +181,28 @@ impl Desk {
     }
 
     /// Answers those requests of a batch whose keys or identifiers are taken, and returns the rest.
-    async fn without_duplicates(&self, batch: Vec<Job>, in_doubt: bool) -> Vec<Job> {
-        let keys: Vec<&str> = batch.iter().filter_map(Job::key).collect();
-        let freed = self.link.rows(sql::FREE_KEYS, &[&keys, &RECEIPT_LIFETIME.as_secs_f64()]).await;
+    async fn without_duplicates(&self, batch: Vec<WriteRequest>, in_doubt: bool) -> Vec<WriteRequest> {
+        let keys: Vec<&str> = batch.iter().filter_map(WriteRequest::key).collect();
+        let freed = self.pool.rows(sql::DELETE_OLD_KEYS, &[&keys, &RECEIPT_LIFETIME.as_secs_f64()]).await;
         if let Err(error) = freed {
             tracing::warn!(%error, "idempotency keys past their time could not be freed");
         }
-        let verdicts = join_all(batch.iter().map(|job| explain(&self.link, job, in_doubt))).await;
+        let outcome = join_all(batch.iter().map(|request| outcome_of(&self.pool, request, in_doubt))).await;
         let mut rest = Vec::new();
-        for (job, verdict) in batch.into_iter().zip(verdicts) {
-            match verdict {
-                Verdict::Stored => {
-                    self.changes.wake(job.id());
-                    job.answer(Ok(()));
+        for (request, outcome) in batch.into_iter().zip(outcome) {
+            match outcome {
+                Outcome::Stored => {
+                    self.changes.wake(request.id());
+                    request.answer(Ok(()));
                 }
-                Verdict::Refused(error) => job.answer(Err(error)),
-                Verdict::Open => rest.push(job),
+                Outcome::Refused(error) => request.answer(Err(error)),
+                Outcome::NotStored => rest.push(request),
             }
         }
         rest
     }
 }
 
-fn answer_all(batch: Vec<Job>, error: impl Fn() -> StoreError) {
-    batch.into_iter().for_each(|job| job.answer(Err(error())));
+fn answer_all(batch: Vec<WriteRequest>, error: impl Fn() -> StoreError) {
+    batch.into_iter().for_each(|request| request.answer(Err(error())));
 }

@@ -7,67 +7,63 @@ use std::path::Path;
 use rusqlite::Connection;
 
 use super::file::{beside, lock, sync_folder};
-use super::readers::reading;
-use super::schema::{self, APPLICATION, NEWEST};
+use super::readers::open_reader;
+use super::schema::{self, APPLICATION};
 
 /// A connection that only reads, to a store that this program knows.
-pub(super) fn look(path: &Path) -> Result<Connection, String> {
+pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     // SQLite would say no more than that it cannot open it.
     fs::metadata(path).map_err(|error| error.to_string())?;
-    let said = |error: rusqlite::Error| error.to_string();
-    let database = reading(path).map_err(said)?;
-    let application: i32 = database.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(said)?;
+    let describe = |error: rusqlite::Error| error.to_string();
+    let database = open_reader(path).map_err(describe)?;
+    let application: i32 = database.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(describe)?;
     if application != APPLICATION {
         return Err("it is an SQLite database of another application".to_owned());
     }
-    match schema::version(&database).map_err(said)? {
-        NEWEST => Ok(database),
-        found if found < NEWEST => {
-            Err(format!("its tables are of version {found}: `stickslip serve` brings them to version {NEWEST}"))
-        }
-        found => Err(format!("its tables are of version {found}, and this program knows them up to version {NEWEST}")),
-    }
+    schema::check(&database).map_err(|error| error.to_string())?;
+    Ok(database)
 }
 
-/// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy gets
-/// its name when it is whole and on the disk. Says how many bytes it has.
+/// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy
+/// gets its name when it is complete and on the disk. Returns its bytes.
 pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
-    let said = |error: io::Error| format!("{}: {error}", copy.display());
+    let describe = |error: io::Error| format!("{}: {error}", copy.display());
     if fs::symlink_metadata(copy).is_ok() {
-        return Err(format!("{} is there already, and is left as it is", copy.display()));
+        return Err(format!("{} is there already, and is not overwritten", copy.display()));
     }
-    let database = look(path)?;
-    let young = beside(copy, ".new");
+    let database = open_read_only(path)?;
+    let partial = beside(copy, ".new");
     // What a copy that was cut off has left is written over; the lock tells it from one under way.
-    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&young).map_err(said)?;
-    lock(&file).map_err(|why| format!("{}: {why}", young.display()))?;
-    let copied = copied(&database, &file, &young).and_then(|bytes| {
-        publish(&young, copy).map_err(said)?;
+    let file =
+        OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&partial).map_err(describe)?;
+    lock(&file).map_err(|why| format!("{}: {why}", partial.display()))?;
+    let copied = copied(&database, &file, &partial).and_then(|bytes| {
+        publish(&partial, copy).map_err(describe)?;
         Ok(bytes)
     });
     if copied.is_err() {
         // Best effort: what stays is written over by the next attempt.
-        let _ = fs::remove_file(&young);
+        let _ = fs::remove_file(&partial);
     }
     copied
 }
 
-fn copied(database: &Connection, file: &File, young: &Path) -> Result<u64, String> {
-    let said = |error: io::Error| format!("{}: {error}", young.display());
-    file.set_len(0).map_err(said)?;
-    let name = young.to_str().ok_or("the name of the copy must be UTF-8")?;
+fn copied(database: &Connection, file: &File, partial: &Path) -> Result<u64, String> {
+    let describe = |error: io::Error| format!("{}: {error}", partial.display());
+    file.set_len(0).map_err(describe)?;
+    let name = partial.to_str().ok_or("the name of the copy must be UTF-8")?;
     database.execute("VACUUM INTO ?1", [name]).map_err(|error| error.to_string())?;
-    file.sync_all().map_err(said)?;
-    Ok(file.metadata().map_err(said)?.len())
+    file.sync_all().map_err(describe)?;
+    Ok(file.metadata().map_err(describe)?.len())
 }
 
-/// Gives the copy its name, which nobody else must have taken meanwhile.
-fn publish(young: &Path, copy: &Path) -> io::Result<()> {
-    match fs::hard_link(young, copy) {
-        Ok(()) => fs::remove_file(young)?,
+/// Gives the copy its name, unless a file of that name has been made meanwhile.
+fn publish(partial: &Path, copy: &Path) -> io::Result<()> {
+    match fs::hard_link(partial, copy) {
+        Ok(()) => fs::remove_file(partial)?,
         Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(error),
         // Not every file system has a second name for a file.
-        Err(_) if fs::symlink_metadata(copy).is_err() => fs::rename(young, copy)?,
+        Err(_) if fs::symlink_metadata(copy).is_err() => fs::rename(partial, copy)?,
         Err(error) => return Err(error),
     }
     sync_folder(copy)

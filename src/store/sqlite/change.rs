@@ -1,147 +1,164 @@
 //! The changes that the writer makes, each checked before its first write: a refusal has written nothing.
 
+use std::sync::Arc;
+
 use jiff::{SignedDuration, Timestamp};
 use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
 
+use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
-use super::fork;
-use super::jobs::JobChange;
-use super::known::Known;
-use super::rows::{MOVE_COLUMNS, bound, insert_move, integer, nanoseconds, natural, tenant};
+use super::columns::{CONTACTS, MOVE_COLUMNS, clamped_nanoseconds, insert_move, reader, to_integer, to_nanoseconds};
+use super::fork::{Copying, Fork};
+use super::sequence_cache::SequenceCache;
 
-/// Receipts that one sweep of the writer passes.
+/// Receipts that one change looks at.
 const RECEIPTS_AT_ONCE: i64 = 256;
 /// Bytes of their replies that it deletes, roughly.
 const RECEIPT_BYTES_AT_ONCE: i64 = 4 * 1024 * 1024;
 
+/// Makes a change within the transaction under way.
+type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send;
+
 /// A change to the database.
-pub(super) enum Change {
-    Create { session: Session, receipt: Option<Receipt> },
-    Append { id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt> },
-    Fork(Box<Fork>),
-    Delete { id: Uuid, expected: u64 },
-    KeepSnapshot { id: Uuid, snapshot: Snapshot },
-    SweepReceipts,
-    Expire { ids: Vec<Uuid>, since: Timestamp },
-    Job(JobChange),
+pub(super) struct Change {
+    /// Makes it; called again if its transaction fails.
+    pub(super) apply: Box<Apply>,
+    /// How many rows it writes, roughly.
+    pub(super) weight: usize,
+    /// The sessions and jobs whose listeners are to be woken when it is made.
+    pub(super) touched: Vec<Uuid>,
 }
 
-/// A session to be copied with its past.
-pub(super) struct Fork {
-    pub(super) id: Uuid,
-    pub(super) copy: Session,
-    pub(super) receipt: Option<Receipt>,
+/// The transaction under way.
+pub(super) struct Transaction<'a> {
+    pub(super) database: &'a Connection,
+    pub(super) cache: &'a mut SequenceCache,
+    /// A number that is free for a new contact.
+    pub(super) number: i64,
 }
 
 /// What a change came to.
 pub(super) enum Done {
-    /// It is made, and counts so much: sessions expired, or whether there are more receipts to sweep.
+    /// It is made, and counts so much.
     Made(u64),
+    /// So many contacts are deleted; their moves are removed later.
+    Removed(u64),
     /// The fork has begun; copying goes on in small steps.
-    Copying(fork::Copying),
+    Copying(Arc<Fork>, Copying),
 }
 
 /// Why a change was not made.
-pub(super) enum Undone {
+pub(super) enum ChangeError {
     /// It was refused; nothing was written.
     Refused(StoreError),
-    /// SQLite failed half-way: the transaction must be taken back.
+    /// SQLite failed half-way: the transaction must be rolled back.
     Failed(rusqlite::Error),
 }
 
-impl From<rusqlite::Error> for Undone {
+impl From<rusqlite::Error> for ChangeError {
     fn from(error: rusqlite::Error) -> Self {
-        Undone::Failed(error)
+        ChangeError::Failed(error)
     }
 }
 
-impl Change {
-    /// How many rows it writes, roughly.
-    pub(super) fn weight(&self) -> usize {
-        match self {
-            Change::Append { records, .. } => records.len().max(1),
-            Change::Expire { ids, .. } => ids.len(),
-            _ => 1,
-        }
+impl Transaction<'_> {
+    /// [`crate::store::Store::create`]
+    pub(super) fn create(&self, session: &Session, receipt: Option<&Receipt>) -> Result<Done, ChangeError> {
+        check_key(self.database, receipt)?;
+        insert_session(self.database, self.number, session, 0)?;
+        insert_receipt(self.database, receipt)?;
+        Ok(Done::Made(0))
     }
 
-    /// The sessions whose watchers are to be woken when it is made.
-    pub(super) fn touched(&self) -> &[Uuid] {
-        match self {
-            Change::Append { id, .. } | Change::Delete { id, .. } => std::slice::from_ref(id),
-            Change::Expire { ids, .. } => ids,
-            Change::Job(change) => change.touched(),
-            Change::Create { .. } | Change::Fork(_) | Change::KeepSnapshot { .. } | Change::SweepReceipts => &[],
-        }
-    }
-
-    /// Makes the change within the transaction under way. `number` is free for a new session.
-    pub(super) fn make(&self, database: &Connection, known: &mut Known, number: i64) -> Result<Done, Undone> {
-        match self {
-            Change::Create { session, receipt } => {
-                free(database, receipt.as_ref())?;
-                insert_session(database, number, session, 0)?;
-                keep(database, receipt.as_ref())?;
-            }
-            Change::Append { id, expected, records, receipt } => {
-                free(database, receipt.as_ref())?;
-                let number = match known.number(*id, *expected) {
-                    Some(number) => number,
-                    None => at(database, *id, *expected)?,
-                };
-                let mut insert = database.prepare_cached(&format!(
-                    "INSERT INTO moves (contact, {MOVE_COLUMNS})
-                     VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20)"
-                ))?;
-                records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
-                keep(database, receipt.as_ref())?;
-                if let Some(last) = records.last() {
-                    known.moved(*id, number, last.sequence);
-                }
-            }
-            Change::Fork(fork) => return fork.begin(database, number),
-            Change::Delete { id, expected } => {
-                let number = at(database, *id, *expected)?;
-                known.forget(*id);
-                disown(database, number)?;
-            }
-            Change::KeepSnapshot { id, snapshot } => {
-                let sql = "INSERT INTO snapshots (contact, sequence, state)
-                           SELECT number, ?2, ?3 FROM contacts WHERE id = ?1
-                           ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
-                           WHERE excluded.sequence > snapshots.sequence";
-                let sequence = integer(snapshot.sequence)?;
-                database.prepare_cached(sql)?.execute(params![id.to_string(), sequence, snapshot.state])?;
-            }
-            Change::Job(change) => return change.make(database),
-            Change::SweepReceipts => return Ok(Done::Made(sweep_receipts(database)?)),
-            Change::Expire { ids, since } => {
-                let mut gone = 0;
-                for id in ids {
-                    known.forget(*id);
-                    gone += u64::from(expire(database, *id, *since)?);
-                }
-                return Ok(Done::Made(gone));
-            }
+    /// [`crate::store::Store::append`]
+    pub(super) fn append(
+        &mut self,
+        id: Uuid,
+        expected: u64,
+        records: &[Record],
+        receipt: Option<&Receipt>,
+    ) -> Result<Done, ChangeError> {
+        check_key(self.database, receipt)?;
+        let number = match self.cache.number(id, expected) {
+            Some(number) => number,
+            None => number_at(self.database, id, expected)?,
+        };
+        let mut insert = self.database.prepare_cached(&format!(
+            "INSERT INTO moves (contact, {MOVE_COLUMNS})
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20)"
+        ))?;
+        records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
+        insert_receipt(self.database, receipt)?;
+        if let Some(last) = records.last() {
+            self.cache.insert(id, number, last.sequence);
         }
         Ok(Done::Made(0))
+    }
+
+    /// [`crate::store::Store::delete`]
+    pub(super) fn delete(&mut self, id: Uuid, expected: u64) -> Result<Done, ChangeError> {
+        let number = number_at(self.database, id, expected)?;
+        self.cache.remove(id);
+        delete_contact(self.database, number)?;
+        Ok(Done::Removed(0))
+    }
+
+    /// [`crate::store::Store::save_snapshot`]
+    pub(super) fn save_snapshot(&self, id: Uuid, snapshot: &Snapshot) -> Result<Done, ChangeError> {
+        let sql = "INSERT INTO snapshots (contact, sequence, state)
+                   SELECT number, ?2, ?3 FROM contacts WHERE id = ?1
+                   ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
+                   WHERE excluded.sequence > snapshots.sequence";
+        let sequence = to_integer(snapshot.sequence)?;
+        self.database.prepare_cached(sql)?.execute(params![id.to_string(), sequence, snapshot.state])?;
+        Ok(Done::Made(0))
+    }
+
+    /// Deletes receipts past their time; counts 1 if there may be more of them.
+    pub(super) fn purge_receipts(&self) -> Result<Done, ChangeError> {
+        let cutoff = clamped_nanoseconds(receipt_cutoff());
+        let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
+        let mut statement = self.database.prepare_cached(sql)?;
+        let mut rows = statement.query([RECEIPTS_AT_ONCE])?;
+        let (mut last, mut count, mut bytes) = (None, 0, 0);
+        while let Some(row) = rows.next()? {
+            if row.get::<_, i64>(1)? > cutoff || bytes > RECEIPT_BYTES_AT_ONCE {
+                break;
+            }
+            (last, count, bytes) = (Some(row.get::<_, i64>(0)?), count + 1, bytes + row.get::<_, i64>(2)?);
+        }
+        drop(rows);
+        if let Some(last) = last {
+            self.database.prepare_cached("DELETE FROM receipts WHERE number <= ?1")?.execute([last])?;
+        }
+        Ok(Done::Made(u64::from(count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE)))
+    }
+
+    /// Lets those of the sessions expire that are still there and have not moved since; counts them.
+    pub(super) fn expire(&mut self, ids: &[Uuid], since: Timestamp) -> Result<Done, ChangeError> {
+        let mut expired = 0;
+        for id in ids {
+            self.cache.remove(*id);
+            expired += u64::from(expire(self.database, *id, since)?);
+        }
+        Ok(Done::Removed(expired))
     }
 }
 
 /// Refuses a receipt whose key is in use.
-pub(super) fn free(database: &Connection, receipt: Option<&Receipt>) -> Result<(), Undone> {
+pub(super) fn check_key(database: &Connection, receipt: Option<&Receipt>) -> Result<(), ChangeError> {
     let Some(receipt) = receipt else { return Ok(()) };
     let mut statement = database.prepare_cached("SELECT number FROM receipts WHERE key = ?1 AND at > ?2")?;
-    if statement.exists(params![receipt.request.key, bound(receipts_from())])? {
-        return Err(Undone::Refused(StoreError::KeyTaken));
+    if statement.exists(params![receipt.request.key, clamped_nanoseconds(receipt_cutoff())])? {
+        return Err(ChangeError::Refused(StoreError::KeyTaken));
     }
     Ok(())
 }
 
-/// Keeps a receipt, in place of one past its time.
-pub(super) fn keep(database: &Connection, receipt: Option<&Receipt>) -> rusqlite::Result<()> {
+/// Stores a receipt, in place of one past its time.
+pub(super) fn insert_receipt(database: &Connection, receipt: Option<&Receipt>) -> rusqlite::Result<()> {
     let Some(Receipt { request, reply }) = receipt else { return Ok(()) };
     let sql = "INSERT OR REPLACE INTO receipts (key, fingerprint, created, sequence, body, at)
                VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
@@ -149,46 +166,26 @@ pub(super) fn keep(database: &Connection, receipt: Option<&Receipt>) -> rusqlite
         request.key,
         request.fingerprint,
         reply.created.map(|id| id.to_string()),
-        integer(reply.sequence)?,
+        to_integer(reply.sequence)?,
         reply.body,
-        nanoseconds(Timestamp::now())?,
+        to_nanoseconds(Timestamp::now())?,
     ])?;
     Ok(())
 }
 
 /// The time since which receipts count.
-pub(super) fn receipts_from() -> Timestamp {
+pub(super) fn receipt_cutoff() -> Timestamp {
     let lifetime = SignedDuration::try_from(RECEIPT_LIFETIME).unwrap_or(SignedDuration::MAX);
     Timestamp::now().checked_sub(lifetime).unwrap_or(Timestamp::MIN)
 }
 
-/// Deletes receipts past their time; one if there may be more of them.
-fn sweep_receipts(database: &Connection) -> rusqlite::Result<u64> {
-    let from = bound(receipts_from());
-    let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
-    let mut statement = database.prepare_cached(sql)?;
-    let mut rows = statement.query([RECEIPTS_AT_ONCE])?;
-    let (mut last, mut count, mut bytes) = (None, 0, 0);
-    while let Some(row) = rows.next()? {
-        if row.get::<_, i64>(1)? > from || bytes > RECEIPT_BYTES_AT_ONCE {
-            break;
-        }
-        (last, count, bytes) = (Some(row.get::<_, i64>(0)?), count + 1, bytes + row.get::<_, i64>(2)?);
-    }
-    drop(rows);
-    if let Some(last) = last {
-        database.prepare_cached("DELETE FROM receipts WHERE number <= ?1")?.execute([last])?;
-    }
-    Ok(u64::from(count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE))
-}
-
-/// Writes a session that has taken over so many moves.
+/// Writes a session that has inherited so many moves.
 pub(super) fn insert_session(
     database: &Connection,
     number: i64,
     session: &Session,
     inherited: u64,
-) -> Result<(), rusqlite::Error> {
+) -> rusqlite::Result<()> {
     let definition = serde_json::to_string(&*session.definition);
     let definition = definition.map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
     let sql = "INSERT INTO contacts (number, id, label, definition, created_at, initial_updated_at, inherited, tenant)
@@ -198,36 +195,39 @@ pub(super) fn insert_session(
         session.id.to_string(),
         session.label,
         definition,
-        nanoseconds(session.created_at)?,
-        nanoseconds(session.updated_at)?,
-        integer(inherited)?,
+        to_nanoseconds(session.created_at)?,
+        to_nanoseconds(session.updated_at)?,
+        to_integer(inherited)?,
         session.tenant.name(),
     ])?;
     Ok(())
 }
 
 /// The number of a session that must be at a sequence.
-pub(super) fn at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, Undone> {
+pub(super) fn number_at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, ChangeError> {
     let sql = "SELECT number, (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number) FROM contacts
                WHERE id = ?1";
     let mut statement = database.prepare_cached(sql)?;
-    let found = statement.query_row([id.to_string()], |row| Ok((row.get(0)?, natural(row, 1)?))).optional()?;
-    match found {
+    let found = statement.query_row([id.to_string()], |row| {
+        let mut row = reader(row);
+        Ok((row.next()?, row.count()?))
+    });
+    match found.optional()? {
         Some((number, found)) if found == expected => Ok(number),
-        Some((_, found)) => Err(Undone::Refused(StoreError::Stale { found })),
-        None => Err(Undone::Refused(missing(database, id)?)),
+        Some((_, found)) => Err(ChangeError::Refused(StoreError::Stale { found })),
+        None => Err(ChangeError::Refused(missing(database, id)?)),
     }
 }
 
 /// Why there is no such session.
 pub(super) fn missing(database: &Connection, id: Uuid) -> rusqlite::Result<StoreError> {
     let mut statement = database.prepare_cached("SELECT tenant FROM expired WHERE id = ?1")?;
-    let expired = statement.query_row([id.to_string()], |row| tenant(row, 0)).optional()?;
+    let expired = statement.query_row([id.to_string()], |row| tenant(&mut reader(row))).optional()?;
     Ok(expired.map_or(StoreError::NotFound, StoreError::Expired))
 }
 
-/// Deletes a session and leaves its moves to be removed bit by bit.
-fn disown(database: &Connection, number: i64) -> rusqlite::Result<()> {
+/// Deletes a contact and leaves its moves to be removed some at a time.
+fn delete_contact(database: &Connection, number: i64) -> rusqlite::Result<()> {
     database.prepare_cached("DELETE FROM contacts WHERE number = ?1")?.execute([number])?;
     database.prepare_cached("INSERT INTO unowned (contact, forming) VALUES (?1, 0)")?.execute([number])?;
     Ok(())
@@ -236,14 +236,17 @@ fn disown(database: &Connection, number: i64) -> rusqlite::Result<()> {
 /// Lets a session expire, unless it is gone or has moved meanwhile.
 fn expire(database: &Connection, id: Uuid, since: Timestamp) -> rusqlite::Result<bool> {
     let sql = format!(
-        "SELECT c.number, c.tenant FROM {} WHERE c.id = ?1 AND iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?2",
-        super::rows::SESSIONS
+        "SELECT c.number, c.tenant FROM {CONTACTS}
+         WHERE c.id = ?1 AND iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?2"
     );
     let mut statement = database.prepare_cached(&sql)?;
-    let idle = statement.query_row(params![id.to_string(), bound(since)], |row| Ok((row.get(0)?, tenant(row, 1)?)));
+    let idle = statement.query_row(params![id.to_string(), clamped_nanoseconds(since)], |row| {
+        let mut row = reader(row);
+        Ok((row.next()?, tenant(&mut row)?))
+    });
     let Some((number, tenant)) = idle.optional()? else { return Ok(false) };
-    disown(database, number)?;
-    let now = nanoseconds(Timestamp::now())?;
+    delete_contact(database, number)?;
+    let now = to_nanoseconds(Timestamp::now())?;
     let mut mark = database.prepare_cached("INSERT INTO expired (id, at, tenant) VALUES (?1, ?2, ?3)")?;
     mark.execute(params![id.to_string(), now, tenant.name()])?;
     Ok(true)

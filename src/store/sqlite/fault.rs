@@ -23,7 +23,7 @@ pub(super) fn worth_splitting(error: &Error) -> bool {
     ) && !is_sync(error)
 }
 
-/// What a failure of SQLite means to whoever asked for a change or a look.
+/// What a failure of SQLite means for a change or a read.
 pub(super) fn store_error(error: &Error, stage: Stage) -> StoreError {
     let why = error.to_string();
     match error.sqlite_error_code() {

@@ -10,8 +10,8 @@ use std::sync::Arc;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
-use super::schema::{self, APPLICATION, NEWEST};
-use super::{BUSY, torn};
+use super::schema::{self, APPLICATION, MIGRATIONS};
+use super::{BUSY, wal_check};
 
 /// What every SQLite file begins with.
 const MAGIC: &[u8] = b"SQLite format 3\0";
@@ -21,13 +21,13 @@ const SMALL: u64 = 32 * 1024 * 1024;
 const CHECKPOINT_PAGES: i32 = 4_000;
 /// Bytes of the write-ahead log that are kept on the disk to be written over.
 const LOG_BYTES: i64 = 64 * 1024 * 1024;
-/// KiB of pages that the writer keeps at hand, as SQLite wants it: negative.
+/// KiB of pages that the writer caches; SQLite wants the number negative.
 const CACHE: i32 = -65_536;
 /// Statements that the writer keeps prepared.
 const STATEMENTS: usize = 64;
 
-/// A database at the newest version, and the lock that keeps other processes of ours away. The lock is to outlive the
-/// connection: closing any handle of the file ends the locks that SQLite holds on it.
+/// A database at the newest version of the tables, and the lock that keeps other processes of ours away. The lock is to
+/// outlive the connection: closing any handle of the file ends the locks that SQLite holds on it.
 pub(super) struct Opened {
     pub(super) database: Connection,
     pub(super) lock: Arc<File>,
@@ -72,28 +72,28 @@ fn create(path: &Path) -> Result<File, String> {
     if std::fs::metadata(&log).is_ok_and(|log| log.len() > 0) {
         return Err(format!("the file is missing, yet {} is there: put it back beside its log", log.display()));
     }
-    let young = beside(path, ".new");
-    let made = make(path, &young);
+    let partial = beside(path, ".new");
+    let made = make(path, &partial);
     if made.is_err() && length_at(path) == 0 {
         // Best effort: what stays is written over by the next start.
-        let _ = std::fs::remove_file(&young);
+        let _ = std::fs::remove_file(&partial);
     }
     made
 }
 
-fn make(path: &Path, young: &Path) -> Result<File, String> {
-    let said = |error: &dyn std::fmt::Display| format!("it cannot be created: {error}");
-    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(young);
-    let file = file.map_err(|error| said(&error))?;
+fn make(path: &Path, partial: &Path) -> Result<File, String> {
+    let describe = |error: &dyn std::fmt::Display| format!("it cannot be created: {error}");
+    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(partial);
+    let file = file.map_err(|error| describe(&error))?;
     lock(&file)?;
     if length_at(path) > 0 {
         return Err("another process has just created it".to_owned());
     }
-    file.set_len(0).map_err(|error| said(&error))?;
-    let mut database = Connection::open_with_flags(young, writing()).map_err(|error| said(&error))?;
-    schema::migrate(&mut database).map_err(|error| said(&error))?;
-    database.close().map_err(|(_, error)| said(&error))?;
-    std::fs::rename(young, path).and_then(|()| sync_folder(path)).map_err(|error| said(&error))?;
+    file.set_len(0).map_err(|error| describe(&error))?;
+    let mut database = Connection::open_with_flags(partial, write_flags()).map_err(|error| describe(&error))?;
+    schema::migrate(&mut database, MIGRATIONS).map_err(|error| describe(&error))?;
+    database.close().map_err(|(_, error)| describe(&error))?;
+    std::fs::rename(partial, path).and_then(|()| sync_folder(path)).map_err(|error| describe(&error))?;
     Ok(file)
 }
 
@@ -108,54 +108,44 @@ fn inspect(path: &Path, file: &File) -> Result<(), String> {
     if field(&header, 68) != APPLICATION.cast_unsigned() {
         return Err("it is an SQLite database of another application".to_owned());
     }
-    supported(field(&header, 60).cast_signed())?;
-    torn::check(&header, length, &beside(path, "-wal"))
+    schema::known(field(&header, 60).cast_signed())?;
+    wal_check::check(&header, length, &beside(path, "-wal"))
 }
 
 /// Connects the writer, and brings the tables up to date.
 fn connect(path: &Path) -> Result<Connection, String> {
-    let said = |error: rusqlite::Error| match error.sqlite_error_code() {
+    let describe = |error: rusqlite::Error| match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DatabaseCorrupt | rusqlite::ErrorCode::NotADatabase) => {
             format!("it is damaged: {error}")
         }
         _ => error.to_string(),
     };
-    let mut database = Connection::open_with_flags(path, writing()).map_err(said)?;
+    let mut database = Connection::open_with_flags(path, write_flags()).map_err(describe)?;
     // Until it is accepted, nothing moves from the log to the file, not even when the connection is closed.
-    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).map_err(said)?;
-    database.busy_timeout(BUSY).map_err(said)?;
-    supported(schema::version(&database).map_err(said)?)?;
+    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).map_err(describe)?;
+    database.busy_timeout(BUSY).map_err(describe)?;
+    schema::known(schema::version(&database).map_err(describe)?)?;
     if length_at(path) + length_at(&beside(path, "-wal")) <= SMALL {
-        let verdict: String = database.query_row("PRAGMA quick_check(1)", [], |row| row.get(0)).map_err(said)?;
+        let verdict: String = database.query_row("PRAGMA quick_check(1)", [], |row| row.get(0)).map_err(describe)?;
         if verdict != "ok" {
             return Err(format!("it is damaged: {}", verdict.replace('\n', " ")));
         }
     }
-    let mode: String = database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0)).map_err(said)?;
+    let mode: String = database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0)).map_err(describe)?;
     if mode != "wal" {
-        return Err(format!("write-ahead logging is not to be had there, but {mode}"));
+        return Err(format!("write-ahead logging is not available there, only {mode}"));
     }
-    database.pragma_update(None, "synchronous", "FULL").map_err(said)?;
-    database.pragma_update(None, "foreign_keys", true).map_err(said)?;
-    database.pragma_update(None, "cache_size", CACHE).map_err(said)?;
-    database.query_row(&format!("PRAGMA wal_autocheckpoint = {CHECKPOINT_PAGES}"), [], |_| Ok(())).map_err(said)?;
-    database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(said)?;
+    database.pragma_update(None, "synchronous", "FULL").map_err(describe)?;
+    database.pragma_update(None, "foreign_keys", true).map_err(describe)?;
+    database.pragma_update(None, "cache_size", CACHE).map_err(describe)?;
+    database.query_row(&format!("PRAGMA wal_autocheckpoint = {CHECKPOINT_PAGES}"), [], |_| Ok(())).map_err(describe)?;
+    database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(describe)?;
     database.set_prepared_statement_cache_capacity(STATEMENTS);
-    schema::migrate(&mut database).map_err(said)?;
+    schema::migrate(&mut database, MIGRATIONS).map_err(|error| error.to_string())?;
     // The version is to stand in the file itself, where the next start looks for it first.
-    database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(said)?;
-    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(said)?;
+    database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(describe)?;
+    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(describe)?;
     Ok(database)
-}
-
-fn supported(version: i32) -> Result<(), String> {
-    match version {
-        found if found > NEWEST => {
-            Err(format!("its tables are of version {found}, and this program knows them up to version {NEWEST}"))
-        }
-        found if found < 1 => Err("it is not whole: its tables have no version".to_owned()),
-        _ => Ok(()),
-    }
 }
 
 pub(super) fn lock(file: &File) -> Result<(), String> {
@@ -166,7 +156,7 @@ pub(super) fn lock(file: &File) -> Result<(), String> {
     }
 }
 
-fn writing() -> OpenFlags {
+fn write_flags() -> OpenFlags {
     OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX
 }
 

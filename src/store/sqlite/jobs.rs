@@ -1,163 +1,120 @@
-//! Jobs in the file. Which chunks are worked on is known to the process alone: its end is the end of all claims.
+//! Jobs in the file. Only the process knows which chunks are worked on: all claims end with it.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use futures::FutureExt as _;
+use async_trait::async_trait;
 use jiff::{SignedDuration, Timestamp};
-use rusqlite::{Connection, OptionalExtension as _, Row, params};
+use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
 
-use crate::store::jobs::{Board, ChunkResult, Claim, JOB_LIFETIME, JOB_PATIENCE, Job, JobLimits, JobStore};
-use crate::store::{Answer, Receipt, StoreError};
+use crate::store::jobs::{ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
+use crate::store::rows::{self, RowReader as _};
+use crate::store::{Receipt, Result, StoreError};
 
 use super::SqliteStore;
-use super::change::{Change, Done, Undone, free, keep};
+use super::change::{ChangeError, Done, Transaction, check_key, insert_receipt};
+use super::columns::{clamped_nanoseconds, reader, to_integer, to_nanoseconds};
 use super::readers::ReadError;
-use super::rows::{bound, identifier, integer, nanoseconds, natural, tenant, timestamp};
 
-/// A change to the jobs.
-pub(super) enum JobChange {
-    Create(Box<NewJob>),
-    Keep { claim: Claim, result: ChunkResult },
-    Fail { id: Uuid, error: String },
-    Delete { id: Uuid },
-    Sweep,
-}
-
-/// A job to be stored.
-pub(super) struct NewJob {
-    job: Job,
-    request: String,
-    limits: JobLimits,
-    receipt: Option<Receipt>,
-}
-
-impl JobChange {
-    /// The job whose watchers are to be woken when the change is made.
-    pub(super) fn touched(&self) -> &[Uuid] {
-        match self {
-            JobChange::Keep { claim, .. } => std::slice::from_ref(&claim.job),
-            JobChange::Fail { id, .. } | JobChange::Delete { id } => std::slice::from_ref(id),
-            JobChange::Create(_) | JobChange::Sweep => &[],
-        }
-    }
-
-    /// Makes the change within the transaction under way.
-    pub(super) fn make(&self, database: &Connection) -> Result<Done, Undone> {
-        match self {
-            JobChange::Create(new) => new.make(database)?,
-            JobChange::Keep { claim, result } => keep_chunk(database, *claim, result)?,
-            JobChange::Fail { id, error } => {
-                let sql = "UPDATE jobs SET finished_at = ?2, error = ?3 WHERE id = ?1 AND finished_at IS NULL";
-                let now = nanoseconds(Timestamp::now())?;
-                database.prepare_cached(sql)?.execute(params![id.to_string(), now, error])?;
-            }
-            JobChange::Delete { id } => {
-                if database.prepare_cached("DELETE FROM jobs WHERE id = ?1")?.execute([id.to_string()])? == 0 {
-                    return Err(Undone::Refused(StoreError::NotFound));
-                }
-            }
-            JobChange::Sweep => {
-                let sql = "DELETE FROM jobs WHERE number =
-                               (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)";
-                let gone = database.prepare_cached(sql)?.execute([since(JOB_LIFETIME), since(JOB_PATIENCE)])?;
-                return Ok(Done::Made(gone as u64));
-            }
-        }
-        Ok(Done::Made(0))
-    }
-}
-
-fn since(time: Duration) -> i64 {
-    let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
-    bound(Timestamp::now().checked_sub(time).unwrap_or(Timestamp::MIN))
-}
-
-impl NewJob {
-    fn make(&self, database: &Connection) -> Result<(), Undone> {
-        let NewJob { job, request, limits, receipt } = self;
-        free(database, receipt.as_ref())?;
+impl Transaction<'_> {
+    fn create_job(
+        &self,
+        job: &Job,
+        request: &str,
+        limits: JobLimits,
+        receipt: Option<&Receipt>,
+    ) -> Result<Done, ChangeError> {
+        let database = self.database;
+        check_key(database, receipt)?;
         let sql = "SELECT count(*), coalesce(sum(bytes), 0), coalesce(sum(iif(finished_at IS NULL, cost, 0)), 0)
                    FROM jobs WHERE tenant = ?1";
-        let (jobs, bytes, cost) = database
-            .prepare_cached(sql)?
-            .query_row([job.tenant.name()], |row| Ok((natural(row, 0)?, natural(row, 1)?, natural(row, 2)?)))?;
-        limits.admit(jobs, bytes, cost, job).map_err(Undone::Refused)?;
+        let (jobs, bytes, cost) = database.prepare_cached(sql)?.query_row([job.tenant.name()], |row| {
+            let mut row = reader(row);
+            Ok((row.count()?, row.count()?, row.count()?))
+        })?;
+        limits.check(jobs, bytes, cost, job).map_err(ChangeError::Refused)?;
         let sql = "INSERT INTO jobs (id, tenant, created_at, points, chunk, done, failed, bytes, cost, request)
                    VALUES (?1, ?2, ?3, ?4, ?5, 0, 0, ?6, ?7, ?8)";
         database.prepare_cached(sql)?.execute(params![
             job.id.to_string(),
             job.tenant.name(),
-            nanoseconds(job.created_at)?,
-            integer(job.points)?,
-            integer(job.chunk)?,
-            integer(job.bytes)?,
-            integer(job.cost)?,
+            to_nanoseconds(job.created_at)?,
+            to_integer(job.points)?,
+            to_integer(job.chunk)?,
+            to_integer(job.bytes)?,
+            to_integer(job.cost)?,
             request,
         ])?;
-        keep(database, receipt.as_ref())?;
-        Ok(())
+        insert_receipt(database, receipt)?;
+        Ok(Done::Made(0))
+    }
+
+    fn save_chunk(&self, claim: Claim, result: &ChunkResult) -> Result<Done, ChangeError> {
+        let sql = "SELECT number FROM jobs WHERE id = ?1 AND finished_at IS NULL";
+        let mut statement = self.database.prepare_cached(sql)?;
+        let number: Option<i64> = statement.query_row([claim.job.to_string()], |row| row.get(0)).optional()?;
+        let number = number.ok_or(ChangeError::Refused(StoreError::NotFound))?;
+        let sql = "INSERT OR IGNORE INTO job_chunks (job, chunk, content) VALUES (?1, ?2, ?3)";
+        let chunk = params![number, to_integer(claim.chunk)?, result.content];
+        if self.database.prepare_cached(sql)?.execute(chunk)? > 0 {
+            let sql = "UPDATE jobs SET done = done + ?2, failed = failed + ?3,
+                           finished_at = iif(done + ?2 = points, ?4, NULL)
+                       WHERE number = ?1";
+            let (points, failed) = (to_integer(result.points)?, to_integer(result.failed)?);
+            let now = to_nanoseconds(Timestamp::now())?;
+            self.database.prepare_cached(sql)?.execute(params![number, points, failed, now])?;
+        }
+        Ok(Done::Made(0))
+    }
+
+    fn fail_job(&self, id: Uuid, error: &str) -> Result<Done, ChangeError> {
+        let sql = "UPDATE jobs SET finished_at = ?2, error = ?3 WHERE id = ?1 AND finished_at IS NULL";
+        let now = to_nanoseconds(Timestamp::now())?;
+        self.database.prepare_cached(sql)?.execute(params![id.to_string(), now, error])?;
+        Ok(Done::Made(0))
+    }
+
+    fn delete_job(&self, id: Uuid) -> Result<Done, ChangeError> {
+        match self.database.prepare_cached("DELETE FROM jobs WHERE id = ?1")?.execute([id.to_string()])? {
+            0 => Err(ChangeError::Refused(StoreError::NotFound)),
+            _ => Ok(Done::Made(0)),
+        }
+    }
+
+    /// Deletes a job past its time, if there is one; counts it. One at a time: their results are large.
+    fn purge_job(&self) -> Result<Done, ChangeError> {
+        let before = |time| {
+            let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
+            clamped_nanoseconds(Timestamp::now().checked_sub(time).unwrap_or(Timestamp::MIN))
+        };
+        let sql = "DELETE FROM jobs WHERE number =
+                       (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)";
+        let deleted = self.database.prepare_cached(sql)?.execute([before(JOB_LIFETIME), before(JOB_TIME_LIMIT)])?;
+        Ok(Done::Made(deleted as u64))
     }
 }
 
-fn keep_chunk(database: &Connection, claim: Claim, result: &ChunkResult) -> Result<(), Undone> {
-    let sql = "SELECT number FROM jobs WHERE id = ?1 AND finished_at IS NULL";
-    let number: Option<i64> =
-        database.prepare_cached(sql)?.query_row([claim.job.to_string()], |row| row.get(0)).optional()?;
-    let number = number.ok_or(Undone::Refused(StoreError::NotFound))?;
-    let sql = "INSERT OR IGNORE INTO job_chunks (job, chunk, content) VALUES (?1, ?2, ?3)";
-    let new = database.prepare_cached(sql)?.execute(params![number, integer(claim.chunk)?, result.content])?;
-    if new > 0 {
-        let sql =
-            "UPDATE jobs SET done = done + ?2, failed = failed + ?3, finished_at = iif(done + ?2 = points, ?4, NULL)
-                   WHERE number = ?1";
-        let now = nanoseconds(Timestamp::now())?;
-        database.prepare_cached(sql)?.execute(params![
-            number,
-            integer(result.points)?,
-            integer(result.failed)?,
-            now
-        ])?;
-    }
-    Ok(())
-}
-
-/// Puts up the jobs that have not ended.
-pub(super) fn unfinished(database: &Connection, board: &Board) -> rusqlite::Result<()> {
+/// Queues the chunks that are still to be done of the jobs that have not ended.
+pub(super) fn restore_queue(database: &Connection, queue: &ChunkQueue) -> rusqlite::Result<()> {
     let mut statement = database
         .prepare("SELECT id, (points + chunk - 1) / chunk, number FROM jobs WHERE finished_at IS NULL ORDER BY id")?;
     let mut chunks = database.prepare("SELECT chunk FROM job_chunks WHERE job = ?1")?;
     let mut rows = statement.query([])?;
     while let Some(row) = rows.next()? {
-        let number: i64 = row.get(2)?;
-        let done: BTreeSet<u64> = chunks.query_map([number], |row| natural(row, 0))?.collect::<Result<_, _>>()?;
-        board.open(identifier(row, 0)?, (0..natural(row, 1)?).filter(|chunk| !done.contains(chunk)));
+        let mut row = reader(row);
+        let (id, count, number): (_, _, i64) = (row.uuid()?, row.count()?, row.next()?);
+        let done = chunks.query_map([number], |row| reader(row).count())?.collect::<Result<BTreeSet<u64>, _>>()?;
+        queue.add_job(id, (0..count).filter(|chunk| !done.contains(chunk)));
     }
     Ok(())
-}
-
-fn job(row: &Row<'_>) -> rusqlite::Result<Job> {
-    let finished: Option<i64> = row.get(3)?;
-    Ok(Job {
-        id: identifier(row, 0)?,
-        tenant: tenant(row, 1)?,
-        created_at: timestamp(row, 2)?,
-        finished_at: finished.map(|_| timestamp(row, 3)).transpose()?,
-        error: row.get(4)?,
-        points: natural(row, 5)?,
-        chunk: natural(row, 6)?,
-        done: natural(row, 7)?,
-        failed: natural(row, 8)?,
-        bytes: natural(row, 9)?,
-        cost: natural(row, 10)?,
-    })
 }
 
 fn find(database: &Connection, id: Uuid) -> Result<Job, ReadError> {
     let sql = "SELECT id, tenant, created_at, finished_at, error, points, chunk, done, failed, bytes, cost FROM jobs
                WHERE id = ?1";
-    let found = database.prepare_cached(sql)?.query_row([id.to_string()], job).optional()?;
+    let found =
+        database.prepare_cached(sql)?.query_row([id.to_string()], |row| rows::job(&mut reader(row))).optional()?;
     found.ok_or(ReadError::Store(StoreError::NotFound))
 }
 
@@ -171,87 +128,73 @@ fn chunks(database: &Connection, id: Uuid, first: u64, limit: usize) -> Result<V
     let sql = "SELECT c.content FROM job_chunks AS c INNER JOIN jobs AS j ON j.number = c.job
                WHERE j.id = ?1 AND c.chunk >= ?2 ORDER BY c.chunk LIMIT ?3";
     let mut statement = database.prepare_cached(sql)?;
-    let found =
-        statement.query_map(params![id.to_string(), integer(first)?, integer(limit as u64)?], |row| row.get(0))?;
+    let found = statement
+        .query_map(params![id.to_string(), to_integer(first)?, to_integer(limit as u64)?], |row| row.get(0))?;
     Ok(found.collect::<Result<_, _>>()?)
 }
 
 impl SqliteStore {
-    async fn change_jobs(&self, change: JobChange) -> Result<(), StoreError> {
-        self.change(Change::Job(change)).await.map(drop)
-    }
-
-    /// Deletes the jobs whose time is over, one at a time: their results are large.
-    pub(super) async fn sweep_jobs(&self) -> Result<(), StoreError> {
-        while self.change(Change::Job(JobChange::Sweep)).await? > 0 {}
+    /// Deletes the jobs past their time.
+    pub(super) async fn purge_jobs(&self) -> Result<()> {
+        while self.change(1, [], |transaction| transaction.purge_job()).await? > 0 {}
         Ok(())
     }
 }
 
+#[async_trait]
 impl JobStore for SqliteStore {
-    fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        async move {
-            let (id, chunks) = (job.id, job.chunks());
-            self.change_jobs(JobChange::Create(Box::new(NewJob { job, request, limits, receipt }))).await?;
-            self.board.open(id, 0..chunks);
-            Ok(())
+    async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
+        let (id, chunks) = (job.id, job.chunks());
+        self.change(1, [], move |transaction| transaction.create_job(&job, &request, limits, receipt.as_ref())).await?;
+        self.queue.add_job(id, 0..chunks);
+        Ok(())
+    }
+
+    async fn job(&self, id: Uuid) -> Result<Job> {
+        self.readers.read(move |database| find(database, id)).await
+    }
+
+    async fn job_request(&self, id: Uuid) -> Result<String> {
+        self.readers.read(move |database| request(database, id)).await
+    }
+
+    async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>> {
+        Ok(self.queue.claim(owner, after))
+    }
+
+    async fn renew(&self, claim: Claim, _: Duration) -> Result<bool> {
+        Ok(self.queue.is_claimed(claim))
+    }
+
+    async fn release(&self, claim: Claim) -> Result<()> {
+        self.queue.release(claim);
+        Ok(())
+    }
+
+    async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
+        let saved =
+            self.change(1, [claim.job], move |transaction| transaction.save_chunk(claim, &result)).await.map(drop);
+        if matches!(saved, Ok(()) | Err(StoreError::NotFound)) {
+            self.queue.finish(claim);
         }
-        .boxed()
+        saved
     }
 
-    fn job(&self, id: Uuid) -> Answer<'_, Job> {
-        self.look(move |database| find(database, id))
+    async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
+        self.change(1, [id], move |transaction| transaction.fail_job(id, &error)).await?;
+        self.queue.remove_job(id);
+        Ok(())
     }
 
-    fn job_request(&self, id: Uuid) -> Answer<'_, String> {
-        self.look(move |database| request(database, id))
+    async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
+        self.readers.read(move |database| chunks(database, id, first, limit)).await
     }
 
-    fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Answer<'_, Option<Claim>> {
-        std::future::ready(Ok(self.board.claim(owner, after))).boxed()
-    }
-
-    fn renew(&self, claim: Claim, _: Duration) -> Answer<'_, bool> {
-        std::future::ready(Ok(self.board.holds(claim))).boxed()
-    }
-
-    fn release(&self, claim: Claim) -> Answer<'_, ()> {
-        self.board.release(claim);
-        std::future::ready(Ok(())).boxed()
-    }
-
-    fn keep_chunk(&self, claim: Claim, result: ChunkResult) -> Answer<'_, ()> {
-        async move {
-            let kept = self.change_jobs(JobChange::Keep { claim, result }).await;
-            if matches!(kept, Ok(()) | Err(StoreError::NotFound)) {
-                self.board.done(claim);
-            }
-            kept
-        }
-        .boxed()
-    }
-
-    fn fail_job(&self, id: Uuid, error: String) -> Answer<'_, ()> {
-        async move {
-            self.change_jobs(JobChange::Fail { id, error }).await?;
-            self.board.close(id);
-            Ok(())
-        }
-        .boxed()
-    }
-
-    fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Answer<'_, Vec<Vec<u8>>> {
-        self.look(move |database| chunks(database, id, first, limit))
-    }
-
-    fn delete_job(&self, id: Uuid) -> Answer<'_, ()> {
-        async move {
-            self.change_jobs(JobChange::Delete { id }).await?;
-            self.board.close(id);
-            // The writer has woken those who watch before the claims were gone.
-            self.changes.wake(id);
-            Ok(())
-        }
-        .boxed()
+    async fn delete_job(&self, id: Uuid) -> Result<()> {
+        self.change(1, [id], move |transaction| transaction.delete_job(id)).await?;
+        self.queue.remove_job(id);
+        // The writer has woken the listeners before the claims were gone.
+        self.changes.wake(id);
+        Ok(())
     }
 }

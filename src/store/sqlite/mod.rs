@@ -1,22 +1,22 @@
 //! Everything in one SQLite file: durable when it is acknowledged, for one process at a time.
 //!
-//! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have connections
-//! of their own (`readers.rs`) and wait for nobody. Long work, such as the copy of a million moves, is done in small steps
-//! between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in `docs/storage.md`. What may
-//! fail, and what it means then, is in `fault.rs`.
+//! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have
+//! connections of their own (`readers.rs`) and do not wait. Long work, such as the copy of a million moves, is done in
+//! small steps between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in
+//! `docs/storage.md`. What may fail, and what it means then, is in `fault.rs`.
 
 mod backup;
 mod change;
+mod columns;
 mod fault;
 mod file;
 mod fork;
 mod jobs;
-mod known;
 mod read;
 mod readers;
-mod rows;
-mod schema;
-mod torn;
+pub mod schema;
+mod sequence_cache;
+mod wal_check;
 mod writer;
 
 use std::path::Path;
@@ -24,17 +24,17 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use futures::FutureExt as _;
+use async_trait::async_trait;
 use jiff::Timestamp;
 use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
-use super::jobs::Board;
-use super::{Answer, Changes, Commits, Receipt, Record, Session, Snapshot, Store, StoreError, Tenant};
+use super::jobs::ChunkQueue;
+use super::{Changes, Commits, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 use crate::metrics::Counted;
-use change::{Change, Fork};
-use readers::{ReadError, Readers};
-use rusqlite::Connection;
+use change::{Change, ChangeError, Done, Transaction};
+use fork::Fork;
+use readers::Readers;
 use stickslip_wire::SessionSummary;
 use writer::{Request, Writer};
 
@@ -47,13 +47,13 @@ const EXPIRE_AT_ONCE: usize = 200;
 
 /// Sessions in an SQLite file.
 pub struct SqliteStore {
-    // Gone once the store is being dropped, which is what ends the writer.
-    queue: Option<mpsc::Sender<Request>>,
+    // None once the store is being dropped, which ends the writer.
+    requests: Option<mpsc::Sender<Request>>,
     writer: Option<JoinHandle<()>>,
     readers: Readers,
     changes: Arc<Changes>,
     commits: Arc<Commits>,
-    board: Board,
+    queue: ChunkQueue,
 }
 
 impl SqliteStore {
@@ -63,13 +63,13 @@ impl SqliteStore {
     /// Why it cannot be used, in one line. The file is as it was then.
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
         let file::Opened { database, lock } = file::open(path)?;
-        let board = Board::default();
-        jobs::unfinished(&database, &board).map_err(|error| error.to_string())?;
+        let queue = ChunkQueue::default();
+        jobs::restore_queue(&database, &queue).map_err(|error| error.to_string())?;
         let changes = Arc::new(Changes::default());
         let commits = Arc::new(Commits::new("sqlite"));
         let writer =
             Writer::new(database, Arc::clone(&changes), Arc::clone(&commits)).map_err(|error| error.to_string())?;
-        let (queue, requests) = mpsc::channel(QUEUE);
+        let (sender, requests) = mpsc::channel(QUEUE);
         let held = Arc::clone(&lock);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
             writer.run(requests);
@@ -77,7 +77,7 @@ impl SqliteStore {
         });
         let thread = thread.map_err(|error| error.to_string())?;
         let readers = Readers::new(path.to_owned(), Some(lock));
-        Ok(SqliteStore { queue: Some(queue), writer: Some(thread), readers, changes, commits, board })
+        Ok(SqliteStore { requests: Some(sender), writer: Some(thread), readers, changes, commits, queue })
     }
 
     /// Opens a file to look at, beside the process that serves it or alone. Changes fail.
@@ -85,13 +85,13 @@ impl SqliteStore {
     /// # Errors
     /// Why it cannot be read, in one line.
     pub fn open_to_read(path: &Path) -> Result<SqliteStore, String> {
-        backup::look(path)?;
+        backup::open_read_only(path)?;
         let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-        let (readers, board) = (Readers::new(path.to_owned(), None), Board::default());
-        Ok(SqliteStore { queue: None, writer: None, readers, changes, commits, board })
+        let (readers, queue) = (Readers::new(path.to_owned(), None), ChunkQueue::default());
+        Ok(SqliteStore { requests: None, writer: None, readers, changes, commits, queue })
     }
 
-    /// Copies the store in a file to another that is not there yet, while it is in use or not; says how many bytes that has.
+    /// Copies the store in a file to another that is not there yet, while it is in use or not; returns its bytes.
     ///
     /// # Errors
     /// Why there is no copy, in one line.
@@ -99,39 +99,21 @@ impl SqliteStore {
         backup::backup(path, copy)
     }
 
-    async fn change(&self, change: Change) -> Result<u64, StoreError> {
-        let gone = || StoreError::Failed("the writer of the database has ended".to_owned());
+    /// Has the writer make a change of so many rows, and returns its count when it is durable. The listeners of
+    /// `touched` are woken then.
+    async fn change(
+        &self,
+        weight: usize,
+        touched: impl Into<Vec<Uuid>>,
+        apply: impl Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send + 'static,
+    ) -> Result<u64> {
+        let ended = || StoreError::Failed("the writer of the database has ended".to_owned());
         let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
-        let queue = self.queue.as_ref().ok_or_else(gone)?;
-        queue.send(Request { change, reply }).await.map_err(|_| gone())?;
-        outcome.await.map_err(|_| gone())?
-    }
-
-    fn changing(&self, change: Change) -> Answer<'_, ()> {
-        self.change(change).map(|made| made.map(drop)).boxed()
-    }
-
-    fn look<T: Send + 'static>(
-        &self,
-        look: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,
-    ) -> Answer<'_, T> {
-        self.readers.run(look).boxed()
-    }
-
-    async fn sweep_all(&self, idle_since: Option<Timestamp>) -> Result<u64, StoreError> {
-        while self.change(Change::SweepReceipts).await? > 0 {}
-        self.sweep_jobs().await?;
-        let Some(since) = idle_since else { return Ok(0) };
-        let (mut gone, mut next) = (0, Some(0));
-        while let Some(after) = next {
-            let idle;
-            (idle, next) = self.readers.run(move |database| read::idle(database, since, after)).await?;
-            for ids in idle.chunks(EXPIRE_AT_ONCE) {
-                gone += self.change(Change::Expire { ids: ids.to_vec(), since }).await?;
-            }
-        }
-        Ok(gone)
+        let requests = self.requests.as_ref().ok_or_else(ended)?;
+        let change = Change { apply: Box::new(apply), weight, touched: touched.into() };
+        requests.send(Request { change, reply }).await.map_err(|_| ended())?;
+        outcome.await.map_err(|_| ended())?
     }
 }
 
@@ -139,69 +121,85 @@ impl Drop for SqliteStore {
     /// Ends the writer, which does what it has accepted and merges the log into the file.
     fn drop(&mut self) {
         self.readers.close();
-        self.queue = None;
+        self.requests = None;
         if self.writer.take().is_some_and(|writer| writer.join().is_err()) {
             tracing::error!("the writer of the database panicked");
         }
     }
 }
 
+#[async_trait]
 impl Store for SqliteStore {
-    fn ready(&self) -> Answer<'_, ()> {
-        let writes = self.queue.as_ref().is_some_and(|queue| !queue.is_closed());
-        if !writes {
-            return std::future::ready(Err(StoreError::Failed("the writer has ended".to_owned()))).boxed();
+    async fn ready(&self) -> Result<()> {
+        if self.requests.as_ref().is_none_or(mpsc::Sender::is_closed) {
+            return Err(StoreError::Failed("the writer of the database has ended".to_owned()));
         }
-        self.look(read::alive)
+        self.readers.read(read::alive).await
     }
 
-    fn create(&self, session: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.changing(Change::Create { session, receipt })
+    async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
+        self.change(1, [], move |transaction| transaction.create(&session, receipt.as_ref())).await.map(drop)
     }
 
-    fn find(&self, id: Uuid) -> Answer<'_, Session> {
-        self.look(move |database| read::find(database, id))
+    async fn find(&self, id: Uuid) -> Result<Session> {
+        self.readers.read(move |database| read::find(database, id)).await
     }
 
-    fn sequence(&self, id: Uuid) -> Answer<'_, u64> {
-        self.look(move |database| read::sequence(database, id))
+    async fn sequence(&self, id: Uuid) -> Result<u64> {
+        self.readers.read(move |database| read::sequence(database, id)).await
     }
 
-    fn list(&self, of: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Answer<'_, Vec<SessionSummary>> {
-        self.look(move |database| read::list(database, of.as_ref(), after, limit))
+    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
+        self.readers.read(move |database| read::list(database, tenant.as_ref(), after, limit)).await
     }
 
-    fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.changing(Change::Append { id, expected, records, receipt })
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
+        let weight = records.len().max(1);
+        let append =
+            move |transaction: &mut Transaction<'_>| transaction.append(id, expected, &records, receipt.as_ref());
+        self.change(weight, [id], append).await.map(drop)
     }
 
-    fn history(&self, id: Uuid, after: u64, limit: usize) -> Answer<'_, Vec<Record>> {
-        self.look(move |database| read::history(database, id, after, limit))
+    async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
+        self.readers.read(move |database| read::history(database, id, after, limit)).await
     }
 
-    fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Answer<'_, ()> {
-        self.changing(Change::Fork(Box::new(Fork { id, copy, receipt })))
+    async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
+        let fork = Arc::new(Fork { id, copy, receipt });
+        self.change(1, [], move |transaction| transaction.fork(&fork)).await.map(drop)
     }
 
-    fn delete(&self, id: Uuid, expected: u64) -> Answer<'_, ()> {
-        self.changing(Change::Delete { id, expected })
+    async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
+        self.change(1, [id], move |transaction| transaction.delete(id, expected)).await.map(drop)
     }
 
-    fn receipt<'a>(&'a self, key: &'a str) -> Answer<'a, Option<Receipt>> {
+    async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
         let key = key.to_owned();
-        self.look(move |database| read::kept(database, &key, change::receipts_from()))
+        self.readers.read(move |database| read::receipt(database, &key, change::receipt_cutoff())).await
     }
 
-    fn snapshot(&self, id: Uuid) -> Answer<'_, Option<Snapshot>> {
-        self.look(move |database| read::snapshot(database, id))
+    async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
+        self.readers.read(move |database| read::snapshot(database, id)).await
     }
 
-    fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Answer<'_, ()> {
-        self.changing(Change::KeepSnapshot { id, snapshot })
+    async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
+        self.change(1, [], move |transaction| transaction.save_snapshot(id, &snapshot)).await.map(drop)
     }
 
-    fn sweep(&self, idle_since: Option<Timestamp>) -> Answer<'_, u64> {
-        self.sweep_all(idle_since).boxed()
+    async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
+        while self.change(1, [], |transaction| transaction.purge_receipts()).await? > 0 {}
+        self.purge_jobs().await?;
+        let Some(since) = idle_since else { return Ok(0) };
+        let (mut expired, mut next) = (0, Some(0));
+        while let Some(after) = next {
+            let idle;
+            (idle, next) = self.readers.read(move |database| read::idle(database, since, after)).await?;
+            for ids in idle.chunks(EXPIRE_AT_ONCE) {
+                let idle = ids.to_vec();
+                expired += self.change(ids.len(), ids, move |transaction| transaction.expire(&idle, since)).await?;
+            }
+        }
+        Ok(expired)
     }
 
     fn changes(&self) -> &Changes {
@@ -212,7 +210,7 @@ impl Store for SqliteStore {
         Some(&self.commits)
     }
 
-    fn examine(&self) -> Answer<'_, Vec<String>> {
-        self.look(read::examine)
+    async fn check_integrity(&self) -> Result<Vec<String>> {
+        self.readers.read(read::check_integrity).await
     }
 }

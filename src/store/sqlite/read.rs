@@ -1,17 +1,16 @@
 //! The questions that readers ask. Each is asked within one transaction, and so sees one state of the database.
 
 use jiff::Timestamp;
-use rusqlite::{Connection, OptionalExtension as _, params};
+use rusqlite::{Connection, OptionalExtension as _, Row, params};
 use uuid::Uuid;
 
+use crate::store::rows::{self, RowReader as _};
 use crate::store::{Receipt, Record, Session, Snapshot, Tenant};
 use stickslip_wire::SessionSummary;
 
 use super::change::missing;
+use super::columns::{CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, clamped_nanoseconds, reader, record, to_integer};
 use super::readers::ReadError;
-use super::rows::{
-    MOVE_COLUMNS, SESSION_COLUMNS, SESSIONS, bound, identifier, integer, natural, receipt, record, session, summary,
-};
 
 /// Sessions that one look for idle ones passes.
 const IDLE_PAGE: i64 = 1_000;
@@ -23,28 +22,29 @@ pub(super) fn alive(database: &Connection) -> Result<(), ReadError> {
 
 pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, ReadError> {
     let mut statement = database
-        .prepare_cached(&format!("SELECT {SESSION_COLUMNS}, c.definition, c.tenant FROM {SESSIONS} WHERE c.id = ?1"))?;
-    let found = statement.query_row([id.to_string()], session).optional()?;
+        .prepare_cached(&format!("SELECT {SUMMARY_COLUMNS}, c.definition, c.tenant FROM {CONTACTS} WHERE c.id = ?1"))?;
+    let found = statement.query_row([id.to_string()], |row| rows::session(&mut reader(row))).optional()?;
     found.map_or_else(|| Err(ReadError::Store(missing(database, id)?)), Ok)
 }
 
 pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, ReadError> {
     let number = number(database, id)?;
     let mut statement = database.prepare_cached("SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = ?1")?;
-    Ok(statement.query_row([number], |row| natural(row, 0))?)
+    Ok(statement.query_row([number], |row| reader(row).count())?)
 }
 
 pub(super) fn list(
     database: &Connection,
-    of: Option<&Tenant>,
+    tenant: Option<&Tenant>,
     after: Option<Uuid>,
     limit: usize,
 ) -> Result<Vec<SessionSummary>, ReadError> {
     // Every identifier comes after the empty text.
     let after = after.map_or_else(String::new, |id| id.to_string());
-    let limit = integer(limit as u64)?;
-    let page = |which: &str| format!("SELECT {SESSION_COLUMNS} FROM {SESSIONS} WHERE {which} ORDER BY c.id LIMIT ?2");
-    let found: rusqlite::Result<_> = match of {
+    let limit = to_integer(limit as u64)?;
+    let page = |which: &str| format!("SELECT {SUMMARY_COLUMNS} FROM {CONTACTS} WHERE {which} ORDER BY c.id LIMIT ?2");
+    let summary = |row: &Row<'_>| rows::summary(&mut reader(row));
+    let found: rusqlite::Result<_> = match tenant {
         None => database.prepare_cached(&page("c.id > ?1"))?.query_map(params![after, limit], summary)?.collect(),
         Some(tenant) => {
             let mut statement = database.prepare_cached(&page("c.id > ?1 AND c.tenant = ?3"))?;
@@ -56,54 +56,58 @@ pub(super) fn list(
 
 pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, ReadError> {
     let number = number(database, id)?;
-    let Ok(after) = integer(after) else { return Ok(Vec::new()) };
+    let Ok(after) = to_integer(after) else { return Ok(Vec::new()) };
     let sql =
         format!("SELECT {MOVE_COLUMNS} FROM moves WHERE contact = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3");
     let mut statement = database.prepare_cached(&sql)?;
-    let found = statement.query_map(params![number, after, integer(limit as u64)?], record)?;
+    let found = statement.query_map(params![number, after, to_integer(limit as u64)?], record)?;
     Ok(found.collect::<Result<_, _>>()?)
 }
 
-pub(super) fn kept(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, ReadError> {
-    let sql = "SELECT key, fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
+pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, ReadError> {
+    let sql = "SELECT fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
     let mut statement = database.prepare_cached(sql)?;
-    Ok(statement.query_row(params![key, bound(not_before)], receipt).optional()?)
+    Ok(statement
+        .query_row(params![key, clamped_nanoseconds(not_before)], |row| rows::receipt(key, &mut reader(row)))
+        .optional()?)
 }
 
 pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, ReadError> {
     let number = number(database, id)?;
     let mut statement = database.prepare_cached("SELECT sequence, state FROM snapshots WHERE contact = ?1")?;
-    let found = statement.query_row([number], |row| Ok(Snapshot { sequence: natural(row, 0)?, state: row.get(1)? }));
+    let found = statement.query_row([number], |row| rows::snapshot(&mut reader(row)));
     Ok(found.optional()?)
 }
 
 /// The sessions of a page that have not moved since a time, and where the next page begins, if there is one.
 pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Result<(Vec<Uuid>, Option<i64>), ReadError> {
     let sql = format!(
-        "SELECT c.number, c.id, iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?1 FROM {SESSIONS}
+        "SELECT c.number, c.id, iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?1 FROM {CONTACTS}
          WHERE c.number > ?2 ORDER BY c.number LIMIT ?3"
     );
     let mut statement = database.prepare_cached(&sql)?;
-    let mut rows = statement.query(params![bound(since), after, IDLE_PAGE])?;
+    let mut rows = statement.query(params![clamped_nanoseconds(since), after, IDLE_PAGE])?;
     let (mut idle, mut passed, mut last) = (Vec::new(), 0, after);
     while let Some(row) = rows.next()? {
         passed += 1;
-        last = row.get(0)?;
-        if row.get(2)? {
-            idle.push(identifier(row, 1)?);
+        let mut row = reader(row);
+        last = row.next()?;
+        let id = row.uuid()?;
+        if row.next()? {
+            idle.push(id);
         }
     }
     Ok((idle, (passed == IDLE_PAGE).then_some(last)))
 }
 
 /// What is wrong with the file, or with what belongs to no session alone.
-pub(super) fn examine(database: &Connection) -> Result<Vec<String>, ReadError> {
+pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, ReadError> {
     let texts = |sql: &str| -> rusqlite::Result<Vec<String>> {
         database.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
     };
     let mut found = texts("PRAGMA integrity_check(100)")?;
     found.retain(|line| line != "ok");
-    // From owner to owner by the index, past their moves.
+    // A recursive query that reads one row of the index for each contact.
     found.extend(texts(
         "WITH RECURSIVE owners (contact) AS (
              SELECT min(contact) FROM moves

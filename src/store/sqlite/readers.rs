@@ -1,4 +1,4 @@
-//! Looking at the database beside the writer. In write-ahead mode neither waits for the other.
+//! Reading the database beside the writer. In write-ahead mode neither waits for the other.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -8,11 +8,11 @@ use rusqlite::{Connection, OpenFlags};
 use tokio::sync::Semaphore;
 use tokio::task::spawn_blocking;
 
-use crate::store::StoreError;
+use crate::store::{Result, StoreError};
 
 use super::fault::{Stage, store_error};
 
-/// Looks at a time; more would only crowd each other out.
+/// Reads at a time; more would only slow each other down.
 const READERS: usize = 4;
 /// Statements that a connection keeps prepared.
 const STATEMENTS: usize = 32;
@@ -23,7 +23,7 @@ pub(super) struct Readers {
     idle: Arc<Idle>,
 }
 
-/// The connections that nobody uses, and what they need to be made.
+/// The idle connections, and what is needed to open more.
 struct Idle {
     // A std mutex: held for a push or a pop.
     connections: Mutex<Vec<Connection>>,
@@ -32,7 +32,7 @@ struct Idle {
     _lock: Option<Arc<File>>,
 }
 
-/// Why a look came to nothing.
+/// Why a read came to nothing.
 pub(super) enum ReadError {
     /// The answer is a refusal.
     Store(StoreError),
@@ -61,27 +61,30 @@ impl Readers {
         Readers { permits: Arc::new(Semaphore::new(READERS)), idle: Arc::new(idle) }
     }
 
-    /// Looks at one state of the database, on the blocking pool.
-    pub(super) async fn run<T: Send + 'static>(
+    /// Asks one state of the database, on the blocking pool.
+    pub(super) async fn read<T: Send + 'static>(
         &self,
-        look: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,
-    ) -> Result<T, StoreError> {
+        question: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,
+    ) -> Result<T> {
         let permit = Arc::clone(&self.permits).acquire_owned().await;
         let idle = Arc::clone(&self.idle);
         let task = spawn_blocking(move || {
             let connection = idle.take()?;
-            let found = connection.unchecked_transaction().map_err(ReadError::from).and_then(|one| look(&one));
+            let found = connection
+                .unchecked_transaction()
+                .map_err(ReadError::from)
+                .and_then(|transaction| question(&transaction));
             idle.put(connection);
             drop(permit);
             found
         });
         match task.await {
             Ok(found) => found.map_err(StoreError::from),
-            Err(_) => Err(StoreError::Failed("a look at the database panicked".to_owned())),
+            Err(_) => Err(StoreError::Failed("a read of the database panicked".to_owned())),
         }
     }
 
-    /// Closes what nobody uses.
+    /// Closes the idle connections.
     pub(super) fn close(&self) {
         self.idle.lock().clear();
     }
@@ -92,7 +95,7 @@ impl Idle {
         if let Some(connection) = self.lock().pop() {
             return Ok(connection);
         }
-        let connection = reading(&self.path)?;
+        let connection = open_reader(&self.path)?;
         connection.set_prepared_statement_cache_capacity(STATEMENTS);
         Ok(connection)
     }
@@ -107,7 +110,7 @@ impl Idle {
 }
 
 /// A connection that can only read.
-pub(super) fn reading(path: &Path) -> rusqlite::Result<Connection> {
+pub(super) fn open_reader(path: &Path) -> rusqlite::Result<Connection> {
     let connection =
         Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
     connection.busy_timeout(super::BUSY)?;

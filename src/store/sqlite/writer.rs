@@ -1,5 +1,5 @@
-//! The one thread that writes. Requests that wait share a transaction, and so the wait for the disk; nobody is answered
-//! before it is durable.
+//! The one thread that writes. Requests that wait share a transaction, and so the wait for the disk; no request is
+//! answered before it is durable.
 //!
 //! Each request is checked before it writes, so that a refusal spoils nothing for its neighbours. When SQLite itself
 //! fails, the transaction is taken back and its requests are tried one by one.
@@ -12,12 +12,12 @@ use rusqlite::Connection;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
-use crate::store::{Changes, Commits, StoreError};
+use crate::store::{Changes, Commits, Result, StoreError};
 
-use super::change::{Change, Done, Fork, Undone};
+use super::change::{Change, ChangeError, Done, Transaction};
 use super::fault::{Stage, store_error, worth_splitting};
-use super::fork::{self, Copying};
-use super::known::Known;
+use super::fork::{self, Copying, Fork};
+use super::sequence_cache::SequenceCache;
 
 /// Requests that share a transaction.
 const BATCH: usize = 512;
@@ -31,21 +31,21 @@ pub(super) struct Request {
 }
 
 /// Where the outcome of a change goes.
-type Reply = oneshot::Sender<Result<u64, StoreError>>;
+type Reply = oneshot::Sender<Result<u64>>;
 
 /// The state of the writing thread.
 pub(super) struct Writer {
     database: Connection,
     changes: Arc<Changes>,
-    known: Known,
+    cache: SequenceCache,
     commits: Arc<Commits>,
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
-    forks: VecDeque<(Fork, Copying, Reply)>,
-    /// Whether there may be moves without an owner.
+    forks: VecDeque<(Arc<Fork>, Copying, Reply)>,
+    /// Whether there may be moves without a contact.
     unowned: bool,
-    /// Whether the last transaction succeeded: work that nobody waits for rests where it cannot.
+    /// Whether the last transaction succeeded: if not, background work rests.
     healthy: bool,
 }
 
@@ -66,7 +66,7 @@ impl Writer {
         Ok(Writer {
             database,
             changes,
-            known: Known::nothing(),
+            cache: SequenceCache::new(),
             commits,
             next_number: highest + 1,
             forks,
@@ -75,11 +75,11 @@ impl Writer {
         })
     }
 
-    /// Serves until nobody can ask any more, then leaves the database file whole.
+    /// Serves until the store is dropped, then merges the log into the file.
     pub(super) fn run(mut self, mut requests: mpsc::Receiver<Request>) {
         loop {
-            let chores = !self.forks.is_empty() || (self.healthy && self.unowned);
-            let first = if chores {
+            let background = !self.forks.is_empty() || (self.healthy && self.unowned);
+            let first = if background {
                 match requests.try_recv() {
                     Ok(request) => Some(request),
                     Err(TryRecvError::Empty) => None,
@@ -92,9 +92,9 @@ impl Writer {
                 }
             };
             if let Some(first) = first {
-                self.serve(gather(first, &mut requests));
+                self.commit(collect_batch(first, &mut requests));
             }
-            self.chore();
+            self.background_step();
         }
         for (_, _, reply) in self.forks.drain(..) {
             answer(reply, Err(StoreError::Unavailable("the store is closing".to_owned())));
@@ -105,7 +105,7 @@ impl Writer {
     }
 
     /// Makes changes durable together, then answers; or, where that fails, each alone.
-    fn serve(&mut self, batch: Vec<Request>) {
+    fn commit(&mut self, batch: Vec<Request>) {
         match self.attempt(&batch) {
             Ok(outcomes) => {
                 for (request, outcome) in batch.into_iter().zip(outcomes) {
@@ -114,7 +114,7 @@ impl Writer {
             }
             Err(failure) if batch.len() > 1 && worth_splitting(&failure.error) => {
                 for request in batch {
-                    self.serve(vec![request]);
+                    self.commit(vec![request]);
                 }
             }
             Err(Failure { error, stage }) => {
@@ -125,15 +125,15 @@ impl Writer {
         }
     }
 
-    fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done, StoreError>>, Failure> {
+    fn attempt(&mut self, batch: &[Request]) -> Result<Vec<Result<Done>>, Failure> {
         let (mut number, begin) = (self.next_number, Instant::now());
-        let outcomes = self.transaction(|database, known| {
+        let outcomes = self.transaction(|database, cache| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
-                outcomes.push(match request.change.make(database, known, number) {
+                outcomes.push(match (request.change.apply)(&mut Transaction { database, cache, number }) {
                     Ok(done) => Ok(done),
-                    Err(Undone::Refused(error)) => Err(error),
-                    Err(Undone::Failed(error)) => return Err(error),
+                    Err(ChangeError::Refused(error)) => Err(error),
+                    Err(ChangeError::Failed(error)) => return Err(error),
                 });
                 number += 1;
             }
@@ -144,33 +144,31 @@ impl Writer {
         Ok(outcomes)
     }
 
-    fn finish(&mut self, request: Request, outcome: Result<Done, StoreError>) {
+    fn finish(&mut self, request: Request, outcome: Result<Done>) {
         let Request { change, reply } = request;
-        let made = match outcome {
+        let count = match outcome {
             Err(error) => return answer(reply, Err(error)),
             Ok(Done::Made(count)) => count,
-            Ok(Done::Copying(copying)) => {
-                if let Change::Fork(fork) = change {
-                    self.forks.push_back((*fork, copying, reply));
-                }
-                return;
+            Ok(Done::Removed(count)) => {
+                self.unowned = true;
+                count
             }
+            Ok(Done::Copying(fork, copying)) => return self.forks.push_back((fork, copying, reply)),
         };
-        self.unowned |= matches!(change, Change::Delete { .. } | Change::Expire { .. });
-        // Answered first: whoever waits for the reply is in more of a hurry than whoever watches.
-        answer(reply, Ok(made));
-        change.touched().iter().for_each(|id| self.changes.wake(*id));
+        // The reply goes first: its client waits longer than the listeners have.
+        answer(reply, Ok(count));
+        change.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
     /// One step of what takes long.
-    fn chore(&mut self) {
+    fn background_step(&mut self) {
         if let Some((fork, copying, reply)) = self.forks.pop_front() {
             let mut proceeded = copying;
             // A refusal has written a part of the copy and nothing else, and that part is removed later.
             let step = self.transaction(|database, _| match fork.proceed(database, &mut proceeded) {
                 Ok(complete) => Ok(Ok(complete)),
-                Err(Undone::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
-                Err(Undone::Failed(error)) => Err(error),
+                Err(ChangeError::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
+                Err(ChangeError::Failed(error)) => Err(error),
             });
             match step {
                 Ok(Ok(false)) => self.forks.push_front((fork, proceeded, reply)),
@@ -195,16 +193,16 @@ impl Writer {
     /// Runs a transaction to its durable end, or takes it back.
     fn transaction<T>(
         &mut self,
-        work: impl FnOnce(&Connection, &mut Known) -> rusqlite::Result<T>,
+        work: impl FnOnce(&Connection, &mut SequenceCache) -> rusqlite::Result<T>,
     ) -> Result<T, Failure> {
-        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database, &mut self.known));
+        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database, &mut self.cache));
         let outcome = match done {
             Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
             Err(error) => Err((error, Stage::Before)),
         };
-        self.note(outcome.as_ref().err().map(|(error, _)| error));
+        self.record_health(outcome.as_ref().err().map(|(error, _)| error));
         outcome.map_err(|(error, stage)| {
-            self.known.clear();
+            self.cache.clear();
             // Some failures end the transaction by themselves.
             if !self.database.is_autocommit()
                 && let Err(error) = self.run_statement("ROLLBACK")
@@ -216,7 +214,7 @@ impl Writer {
     }
 
     /// Notes how a transaction ended, and logs it where the one before ended otherwise.
-    fn note(&mut self, failure: Option<&rusqlite::Error>) {
+    fn record_health(&mut self, failure: Option<&rusqlite::Error>) {
         match failure {
             Some(error) => {
                 self.commits.failed.inc();
@@ -236,20 +234,20 @@ impl Writer {
 }
 
 /// A request with those that wait behind it.
-fn gather(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<Request> {
-    let mut weight = first.change.weight();
+fn collect_batch(first: Request, requests: &mut mpsc::Receiver<Request>) -> Vec<Request> {
+    let mut weight = first.change.weight;
     let mut batch = vec![first];
     while batch.len() < BATCH
         && weight < BATCH_WEIGHT
         && let Ok(request) = requests.try_recv()
     {
-        weight += request.change.weight();
+        weight += request.change.weight;
         batch.push(request);
     }
     batch
 }
 
-fn answer(reply: Reply, outcome: Result<u64, StoreError>) {
-    // Whoever has left does not want to know.
+fn answer(reply: Reply, outcome: Result<u64>) {
+    // The client may have hung up.
     let _ = reply.send(outcome);
 }

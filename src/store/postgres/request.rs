@@ -5,7 +5,7 @@ use std::collections::{HashSet, VecDeque};
 use tokio::sync::oneshot;
 use uuid::Uuid;
 
-use crate::store::{Receipt, Record, Session, StoreError};
+use crate::store::{Receipt, Record, Result, Session};
 
 /// Requests in one transaction.
 const REQUESTS: usize = 512;
@@ -21,15 +21,15 @@ pub(super) enum Change {
 }
 
 /// A change, and who waits for it.
-pub(super) struct Job {
+pub(super) struct WriteRequest {
     pub(super) change: Change,
     pub(super) receipt: Option<Receipt>,
     /// A number that no other request has: tells, after a lost connection, whose moves were stored.
     pub(super) stamp: i64,
-    pub(super) answer: oneshot::Sender<Result<(), StoreError>>,
+    pub(super) answer: oneshot::Sender<Result<()>>,
 }
 
-impl Job {
+impl WriteRequest {
     pub(super) fn id(&self) -> Uuid {
         match &self.change {
             Change::Create(session, _) => session.id,
@@ -48,13 +48,13 @@ impl Job {
         }
     }
 
-    pub(super) fn answer(self, answer: Result<(), StoreError>) {
-        // Whoever hung up has missed the answer, and the change stays made.
+    pub(super) fn answer(self, answer: Result<()>) {
+        // The client may have hung up; the change stays made.
         let _ = self.answer.send(answer);
     }
 }
 
-/// A number that is used once.
+/// A random number that no other request has.
 pub(super) fn stamp() -> i64 {
     let (_, random) = Uuid::now_v7().as_u64_pair();
     i64::from_ne_bytes(random.to_ne_bytes())
@@ -62,18 +62,18 @@ pub(super) fn stamp() -> i64 {
 
 /// Takes from the backlog what one transaction can hold: of each session and each key one request at most, as the order
 /// of those decides who wins.
-pub(super) fn gather(backlog: &mut VecDeque<Job>) -> Vec<Job> {
+pub(super) fn collect_batch(backlog: &mut VecDeque<WriteRequest>) -> Vec<WriteRequest> {
     let (mut ids, mut keys, mut moves) = (HashSet::new(), HashSet::new(), 0);
     let (mut batch, mut rest) = (Vec::new(), VecDeque::new());
-    while let Some(job) = backlog.pop_front() {
-        let fits = batch.is_empty() || (batch.len() < REQUESTS && moves + job.moves() <= MOVES);
-        let new_id = ids.insert(job.id());
-        let new_key = job.key().is_none_or(|key| keys.insert(key.to_owned()));
+    while let Some(request) = backlog.pop_front() {
+        let fits = batch.is_empty() || (batch.len() < REQUESTS && moves + request.moves() <= MOVES);
+        let new_id = ids.insert(request.id());
+        let new_key = request.key().is_none_or(|key| keys.insert(key.to_owned()));
         if fits && new_id && new_key {
-            moves += job.moves();
-            batch.push(job);
+            moves += request.moves();
+            batch.push(request);
         } else {
-            rest.push_back(job);
+            rest.push_back(request);
         }
     }
     *backlog = rest;
@@ -82,30 +82,36 @@ pub(super) fn gather(backlog: &mut VecDeque<Job>) -> Vec<Job> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Change, Job, gather, stamp};
+    use super::{Change, WriteRequest, collect_batch, stamp};
     use crate::store::{Receipt, Reply, RequestKey};
     use std::collections::VecDeque;
     use tokio::sync::oneshot;
     use uuid::Uuid;
 
-    fn job(id: Uuid, expected: u64, key: Option<&str>) -> Job {
+    fn request(id: Uuid, expected: u64, key: Option<&str>) -> WriteRequest {
         let receipt = key.map(|key| Receipt {
             request: RequestKey { key: key.to_owned(), fingerprint: [0; 32] },
             reply: Reply { created: None, sequence: 1, body: Vec::new() },
         });
         let change = Change::Append { id, expected, records: Vec::new() };
-        Job { change, receipt, stamp: stamp(), answer: oneshot::channel().0 }
+        WriteRequest { change, receipt, stamp: stamp(), answer: oneshot::channel().0 }
     }
 
     #[test]
     fn a_batch_has_each_session_and_each_key_once_and_keeps_their_order() {
         let (a, b, c) = (Uuid::now_v7(), Uuid::now_v7(), Uuid::now_v7());
-        let jobs = [job(a, 0, None), job(a, 1, None), job(b, 0, Some("k")), job(c, 0, Some("k")), job(c, 1, None)];
-        let mut backlog = VecDeque::from(jobs);
+        let requests = [
+            request(a, 0, None),
+            request(a, 1, None),
+            request(b, 0, Some("k")),
+            request(c, 0, Some("k")),
+            request(c, 1, None),
+        ];
+        let mut backlog = VecDeque::from(requests);
         let mut batches = Vec::new();
         while !backlog.is_empty() {
-            let batch = gather(&mut backlog);
-            batches.push(batch.iter().map(Job::id).collect::<Vec<_>>());
+            let batch = collect_batch(&mut backlog);
+            batches.push(batch.iter().map(WriteRequest::id).collect::<Vec<_>>());
         }
         assert_eq!(batches, [vec![a, b], vec![a, c], vec![c]]);
     }

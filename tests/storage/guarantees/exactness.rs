@@ -4,8 +4,9 @@ use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Record, Session, Store};
 use stickslip_wire::{Move, State};
 
-use super::{exact, record, session, stored};
 use crate::common::kill::Random;
+use crate::common::kill::exact;
+use crate::fixtures::{record, session, stored};
 
 /// The ends of what a double can say, and what databases like to change.
 const AWKWARD: [f64; 18] = [

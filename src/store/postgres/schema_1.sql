@@ -1,13 +1,10 @@
--- A database as version 1 of the tables was; frozen. One session with a move, one that has expired, and a reply kept for
--- retries.
-CREATE TABLE stickslip_schema (
-    version integer PRIMARY KEY,
-    applied_at timestamptz NOT NULL DEFAULT now()
-);
-INSERT INTO stickslip_schema (version) VALUES (1);
+-- Version 1 of the tables; `docs/postgres.md` explains the columns. Once released it is frozen: what comes later is a script
+-- of its own. Quantities are in SI units. A column `..._ns` has the nanoseconds beyond the microseconds of its timestamp.
+
 CREATE TABLE contacts (
     id uuid PRIMARY KEY,
     label text,
+    tenant text NOT NULL,
     definition text NOT NULL,
     sequence bigint NOT NULL,
     created_at timestamptz NOT NULL,
@@ -15,6 +12,9 @@ CREATE TABLE contacts (
     updated_at timestamptz NOT NULL,
     updated_ns smallint NOT NULL
 );
+CREATE INDEX contacts_by_tenant ON contacts (tenant, id);
+
+-- There is no foreign key to `contacts`: moves are only inserted with an update of their contact that has succeeded.
 CREATE TABLE moves (
     contact uuid NOT NULL,
     sequence bigint NOT NULL,
@@ -39,6 +39,8 @@ CREATE TABLE moves (
     stamp bigint NOT NULL,
     PRIMARY KEY (contact, sequence)
 );
+
+-- Replies that retries get again.
 CREATE TABLE receipts (
     key text PRIMARY KEY,
     fingerprint bytea NOT NULL,
@@ -48,19 +50,44 @@ CREATE TABLE receipts (
     created_at timestamptz NOT NULL DEFAULT now()
 );
 CREATE INDEX receipts_created_at ON receipts (created_at);
+
+-- Packed states for a replay to begin at.
 CREATE TABLE snapshots (
     contact uuid PRIMARY KEY REFERENCES contacts (id) ON DELETE CASCADE,
     sequence bigint NOT NULL,
     state bytea NOT NULL
 );
+
+-- Contacts that have expired.
 CREATE TABLE expired (
     id uuid PRIMARY KEY,
+    tenant text NOT NULL,
     at timestamptz NOT NULL DEFAULT now()
 );
-INSERT INTO contacts VALUES
-('0199c0de-0000-7000-8000-000000000001', 'old', '{"profile":{"type":"sphere","radius":0.01},"material":{"bodies":[{"youngs_modulus":210000000000.0,"poisson_ratio":0.3},"rigid"]},"friction":0.3,"preload":{"normal_force":10.0}}', 1, '2025-10-09T08:53:20Z', 1, '2025-10-09T08:53:23Z', 7);
-INSERT INTO moves VALUES
-('0199c0de-0000-7000-8000-000000000001', 1, 1e-7, NULL, NULL, NULL, false, 1e-10, 1e-7, 0.5, 4.7e-7, 10.0, 6.8e-5, 5e-5, 'partial_slip', 1e-9, 2e-8, 2, '2025-10-09T08:53:23Z', 7, 11);
-INSERT INTO receipts (key, fingerprint, created, sequence, body) VALUES
-('kept', '\x0707070707070707070707070707070707070707070707070707070707070707', NULL, 1, '\x7b7d');
-INSERT INTO expired (id) VALUES ('0199c0de-0000-7000-8000-000000000002');
+
+-- Jobs, and the chunks that they are done in.
+CREATE TABLE jobs (
+    id uuid PRIMARY KEY,
+    tenant text NOT NULL,
+    created_at timestamptz NOT NULL,
+    created_ns smallint NOT NULL,
+    finished_at timestamptz,
+    error text,
+    points bigint NOT NULL,
+    chunk bigint NOT NULL,
+    done bigint NOT NULL,
+    failed bigint NOT NULL,
+    bytes bigint NOT NULL,
+    cost bigint NOT NULL,
+    request text NOT NULL
+);
+CREATE INDEX jobs_by_tenant ON jobs (tenant);
+CREATE TABLE job_chunks (
+    job uuid NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+    chunk bigint NOT NULL,
+    owner uuid,
+    leased_until timestamptz,
+    content bytea,
+    PRIMARY KEY (job, chunk)
+);
+CREATE INDEX job_chunks_open ON job_chunks (job, chunk) WHERE content IS NULL;

@@ -1,7 +1,7 @@
 //! Changes that take a transaction of their own: they are rare, or they are long.
 //!
-//! Each may be done twice where a connection is lost during its commit, and says so to nobody: what is gone already counts
-//! as deleted, and what is there already as made, once a first attempt has come that far.
+//! A change whose connection is lost during its commit is repeated. Once a commit has been sent, what is gone already
+//! counts as deleted and what is there already as made.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,22 +11,22 @@ use tokio_postgres::IsolationLevel;
 use tokio_postgres::error::SqlState;
 use uuid::Uuid;
 
-use crate::store::{RECEIPT_LIFETIME, Receipt, Session, Snapshot, StoreError, Tenant};
+use crate::store::{RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
 
+use super::batch_tx::announcements;
+use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
+use super::columns::{Receipts, Sessions, split_time, to_bigint};
 use super::fault::Fault;
-use super::flight::announcements;
-use super::link::{ANSWER, LONG_ANSWER, Link, Parameter, call, once};
-use super::rows::{Receipts, Sessions, counted, split};
 use super::sql;
 
-/// Receipts that one statement sweeps.
+/// Receipts that one statement deletes.
 const RECEIPTS: i64 = 1_000;
-/// Sessions that one transaction sweeps; each may have a long past.
+/// Sessions that one transaction deletes; each may have many moves.
 const IDLE: usize = 50;
 /// Identifiers of idle sessions that are looked up at a time.
 const IDLE_PAGE: i64 = 10_000;
 
-impl Link {
+impl ClientPool {
     /// Why there is no such session.
     pub(super) async fn missing(&self, id: Uuid) -> StoreError {
         match self.row(sql::EXPIRED, &[&id]).await {
@@ -39,20 +39,20 @@ impl Link {
     /// Why a session is not at a sequence where it was a moment ago.
     async fn not_at(&self, id: Uuid) -> StoreError {
         match self.row(sql::SEQUENCE, &[&id]).await {
-            Ok(Some(row)) => StoreError::Stale { found: super::rows::count(row.get(0)) },
+            Ok(Some(row)) => StoreError::Stale { found: super::columns::from_bigint(row.get(0)) },
             Ok(None) => self.missing(id).await,
             Err(error) => error,
         }
     }
 
     /// [`crate::store::Store::delete`]
-    pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<(), StoreError> {
-        let sent = AtomicBool::new(false);
-        if call!(self, LONG_ANSWER, connection => self.delete_on(connection, id, expected, &sent))? {
+    pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
+        let commit_sent = AtomicBool::new(false);
+        if with_retries!(self, LONG_ANSWER, connection => self.delete_on(connection, id, expected, &commit_sent))? {
             return Ok(());
         }
         match self.not_at(id).await {
-            StoreError::NotFound if sent.into_inner() => Ok(()),
+            StoreError::NotFound if commit_sent.into_inner() => Ok(()),
             error => Err(error),
         }
     }
@@ -62,35 +62,35 @@ impl Link {
         connection: &mut Object,
         id: Uuid,
         expected: u64,
-        sent: &AtomicBool,
+        commit_sent: &AtomicBool,
     ) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
-        if execute(&transaction, sql::DELETE, &[&id, &counted(expected)]).await? == 0 {
+        if execute(&transaction, sql::DELETE, &[&id, &to_bigint(expected)]).await? == 0 {
             return Ok(false);
         }
         execute(&transaction, sql::DELETE_PAST, &[&id]).await?;
         self.announce(&transaction, &[id]).await?;
-        sent.store(true, Ordering::Relaxed);
+        commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(true)
     }
 
     /// [`crate::store::Store::fork`]
-    pub(super) async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<(), StoreError> {
+    pub(super) async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = super::definition(&copy)?;
         let (mut sessions, mut receipts) = (Sessions::default(), Receipts::default());
         sessions.push((&copy, definition));
         if let Some(receipt) = &receipt {
             receipts.push((copy.id, receipt));
         }
-        let fork = Fork { id, copy: copy.id, sequence: counted(copy.sequence), sessions, receipts };
-        let sent = AtomicBool::new(false);
-        let forked = call!(self, LONG_ANSWER, connection => fork.make(connection, &sent));
+        let fork = Fork { id, copy: copy.id, sequence: to_bigint(copy.sequence), sessions, receipts };
+        let commit_sent = AtomicBool::new(false);
+        let forked = with_retries!(self, LONG_ANSWER, connection => fork.make(connection, &commit_sent));
         match forked {
             Ok(true) => Ok(()),
             Ok(false) => Err(self.not_at(id).await),
             Err(error) => match self.row(sql::SEQUENCE, &[&copy.id]).await? {
-                Some(_) if sent.into_inner() => Ok(()),
+                Some(_) if commit_sent.into_inner() => Ok(()),
                 _ => match receipt {
                     Some(receipt) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
                     _ => Err(error),
@@ -99,23 +99,23 @@ impl Link {
         }
     }
 
-    /// [`crate::store::Store::keep_snapshot`]
-    pub(super) async fn keep_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<(), StoreError> {
+    /// [`crate::store::Store::save_snapshot`]
+    pub(super) async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot) -> Result<()> {
         let keep = async |connection: &Object| {
-            let statement = connection.prepare_cached(sql::KEEP_SNAPSHOT).await?;
-            match connection.execute(&statement, &[&id, &counted(snapshot.sequence), &snapshot.state]).await {
+            let statement = connection.prepare_cached(sql::SAVE_SNAPSHOT).await?;
+            match connection.execute(&statement, &[&id, &to_bigint(snapshot.sequence), &snapshot.state]).await {
                 // The session went at this very moment.
                 Err(error) if error.code() == Some(&SqlState::FOREIGN_KEY_VIOLATION) => Ok(()),
                 other => Ok(other.map(drop)?),
             }
         };
-        call!(self, ANSWER, connection => keep(connection))
+        with_retries!(self, ANSWER, connection => keep(connection))
     }
 
-    /// [`crate::store::Store::sweep`]
-    pub(super) async fn sweep(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>, StoreError> {
-        while counted(call!(self, ANSWER, connection => sweep_receipts(connection))?) == RECEIPTS {}
-        let Some((since, since_ns)) = idle_since.map(split) else {
+    /// [`crate::store::Store::purge_expired`]
+    pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>> {
+        while to_bigint(with_retries!(self, ANSWER, connection => purge_receipts(connection))?) == RECEIPTS {}
+        let Some((since, since_ns)) = idle_since.map(split_time) else {
             return Ok(Vec::new());
         };
         let mut gone = Vec::new();
@@ -124,19 +124,19 @@ impl Link {
             let ids: Vec<Uuid> = idle.iter().map(|row| row.get(0)).collect();
             let before = gone.len();
             for some in ids.chunks(IDLE) {
-                gone.extend(call!(self, LONG_ANSWER, connection =>
-                    self.sweep_idle(connection, &[&some, &since, &since_ns]))?);
+                gone.extend(with_retries!(self, LONG_ANSWER, connection =>
+                    self.purge_idle(connection, &[&some, &since, &since_ns]))?);
             }
             // A page of which nothing went is in the hands of another replica.
-            if counted(ids.len() as u64) < IDLE_PAGE || gone.len() == before {
+            if to_bigint(ids.len() as u64) < IDLE_PAGE || gone.len() == before {
                 return Ok(gone);
             }
         }
     }
 
-    async fn sweep_idle(&self, connection: &mut Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
+    async fn purge_idle(&self, connection: &mut Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
         let transaction = begin(connection).await?;
-        let statement = transaction.prepare_cached(sql::SWEEP_IDLE).await?;
+        let statement = transaction.prepare_cached(sql::PURGE_IDLE).await?;
         let gone = transaction.query(&statement, which).await?;
         let gone: Vec<Uuid> = gone.iter().map(|row| row.get(0)).collect();
         self.announce(&transaction, &gone).await?;
@@ -164,10 +164,10 @@ struct Fork {
 
 impl Fork {
     /// Makes it, unless the session is at another sequence or gone.
-    async fn make(&self, connection: &mut Object, sent: &AtomicBool) -> Result<bool, Fault> {
+    async fn make(&self, connection: &mut Object, commit_sent: &AtomicBool) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         let lifetime = RECEIPT_LIFETIME.as_secs_f64();
-        execute(&transaction, sql::FREE_KEYS, &[&self.receipts.key, &lifetime]).await?;
+        execute(&transaction, sql::DELETE_OLD_KEYS, &[&self.receipts.key, &lifetime]).await?;
         let first_receipts = self.receipts.parameters().into_iter().skip(1);
         let created: Vec<Parameter<'_>> = self.sessions.parameters().into_iter().chain(first_receipts).collect();
         execute(&transaction, sql::CREATE, &created).await?;
@@ -179,17 +179,17 @@ impl Fork {
         let copied = execute(&transaction, sql::COPY_PAST, &[&self.copy, &self.id, &self.sequence]).await?;
         execute(&transaction, sql::COPY_SNAPSHOT, &[&self.copy, &self.id, &self.sequence]).await?;
         // Fewer if the session was deleted in between.
-        if counted(copied) != self.sequence {
+        if to_bigint(copied) != self.sequence {
             return Ok(false);
         }
-        sent.store(true, Ordering::Relaxed);
+        commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(true)
     }
 }
 
-async fn sweep_receipts(connection: &Object) -> Result<u64, Fault> {
-    let statement = connection.prepare_cached(sql::SWEEP_RECEIPTS).await?;
+async fn purge_receipts(connection: &Object) -> Result<u64, Fault> {
+    let statement = connection.prepare_cached(sql::PURGE_RECEIPTS).await?;
     Ok(connection.execute(&statement, &[&RECEIPT_LIFETIME.as_secs_f64(), &RECEIPTS]).await?)
 }
 

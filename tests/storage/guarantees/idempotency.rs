@@ -6,7 +6,8 @@ use futures::future::join_all;
 use stickslip::store::{Receipt, RequestKey, Session, Store, StoreError};
 use uuid::Uuid;
 
-use super::{exact, receipt, record, records, session, stored};
+use crate::common::kill::exact;
+use crate::fixtures::{receipt, record, records, session, stored};
 
 pub async fn a_receipt_comes_back_as_it_was_given(store: &dyn Store) {
     let made = session(None);

@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use stickslip::store::{ChunkResult, Claim, Job, JobLimits, Store, StoreError, Tenant};
 use uuid::Uuid;
 
-use super::receipt;
+use crate::fixtures::receipt;
 
 const LEASE: Duration = Duration::from_secs(600);
 const LIMITS: JobLimits = JobLimits { jobs: 3, bytes: 1_000, cost: 1_000 };
@@ -59,9 +59,9 @@ pub async fn each_chunk_is_given_once_and_heard_once(store: &dyn Store) {
     for claim in claims.iter().rev().filter(|claim| claim.job == first.id) {
         let points = if claim.chunk == 2 { 1 } else { 3 };
         let result = ChunkResult { points, failed: 1, content: content(*claim) };
-        store.keep_chunk(*claim, result.clone()).await.unwrap();
+        store.save_chunk(*claim, result.clone()).await.unwrap();
         if claim.chunk > 0 {
-            store.keep_chunk(*claim, ChunkResult { content: vec![9], ..result }).await.unwrap();
+            store.save_chunk(*claim, ChunkResult { content: vec![9], ..result }).await.unwrap();
             assert_eq!(store.job(first.id).await.unwrap().finished_at, None);
         }
     }
@@ -77,14 +77,14 @@ pub async fn each_chunk_is_given_once_and_heard_once(store: &dyn Store) {
     assert!(failed.finished_at.is_some() && failed.error.as_deref() == Some("no use"));
     assert!(!store.renew(claims[1], LEASE).await.unwrap());
     assert_eq!(store.claim(owner, None, LEASE).await.unwrap(), None);
-    store.sweep(None).await.unwrap();
+    store.purge_expired(None).await.unwrap();
     for id in [first.id, second.id] {
         store.delete_job(id).await.unwrap();
         assert!(matches!(store.job(id).await, Err(StoreError::NotFound)));
         assert!(matches!(store.delete_job(id).await, Err(StoreError::NotFound)));
     }
     let late = ChunkResult { points: 3, failed: 0, content: Vec::new() };
-    assert!(matches!(store.keep_chunk(claims[1], late).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.save_chunk(claims[1], late).await, Err(StoreError::NotFound)));
 }
 
 pub async fn a_taken_key_or_a_full_tenant_takes_no_job(store: &dyn Store) {

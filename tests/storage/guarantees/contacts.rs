@@ -7,7 +7,8 @@ use stickslip::store::{Session, Store, StoreError};
 use stickslip_wire::SessionSummary;
 use uuid::Uuid;
 
-use super::{exact, record, records, session, snapshot, stored};
+use crate::common::kill::exact;
+use crate::fixtures::{record, records, session, snapshot, stored};
 
 pub async fn what_is_stored_is_found(store: &dyn Store) {
     store.ready().await.unwrap();
@@ -69,7 +70,7 @@ pub async fn moves_are_appended_at_the_expected_sequence_alone(store: &dyn Store
 
 pub async fn a_fork_shares_the_past_and_nothing_else(store: &dyn Store) {
     let (original, past) = stored(store, 5).await;
-    store.keep_snapshot(original.id, snapshot(4)).await.unwrap();
+    store.save_snapshot(original.id, snapshot(4)).await.unwrap();
     let copy = Session { sequence: 5, label: None, ..session(None) };
     let early = Session { sequence: 4, ..session(None) };
     let refused = store.fork(original.id, early.clone(), None).await;
@@ -122,7 +123,7 @@ pub async fn a_long_past_is_forked_and_deleted_while_others_move(store: Arc<dyn 
 
 pub async fn what_is_deleted_is_gone(store: &dyn Store) {
     let (session, _) = stored(store, 2).await;
-    store.keep_snapshot(session.id, snapshot(2)).await.unwrap();
+    store.save_snapshot(session.id, snapshot(2)).await.unwrap();
     assert!(matches!(store.delete(session.id, 1).await, Err(StoreError::Stale { found: 2 })));
     assert_eq!(store.history(session.id, 0, 10).await.unwrap().len(), 2);
     store.delete(session.id, 2).await.unwrap();
@@ -138,8 +139,8 @@ pub async fn what_is_deleted_is_gone(store: &dyn Store) {
 pub async fn the_newest_snapshot_is_kept(store: &dyn Store) {
     let (session, _) = stored(store, 9).await;
     for (given, kept) in [(3, 3), (7, 7), (5, 7), (9, 9)] {
-        store.keep_snapshot(session.id, snapshot(given)).await.unwrap();
+        store.save_snapshot(session.id, snapshot(given)).await.unwrap();
         assert_eq!(store.snapshot(session.id).await.unwrap(), Some(snapshot(kept)));
     }
-    store.keep_snapshot(Uuid::now_v7(), snapshot(1)).await.unwrap();
+    store.save_snapshot(Uuid::now_v7(), snapshot(1)).await.unwrap();
 }

@@ -1,5 +1,4 @@
-//! The way to the database for all that does not go through the writer: a pool of connections, and another try where a
-//! connection is lost.
+//! A pool of connections for all that does not go through the writer, with retries where a connection is lost.
 
 use std::time::Duration;
 
@@ -7,39 +6,39 @@ use deadpool_postgres::{Hook, HookError, Manager, ManagerConfig, Object, Pool, R
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
 
-use crate::store::StoreError;
+use crate::store::{Result, StoreError};
 
-use super::fault::{Fault, Outage, Pauses};
+use super::connect::ConnectTarget;
+use super::fault::{Backoff, Fault, Outage};
 use super::sql;
-use super::target::Target;
 
 /// Connections of the pool. Reads are short; more would only make the database switch between them.
 const CONNECTIONS: usize = 8;
 /// How long a call waits for a free connection, or for a new one.
 const PATIENCE_FOR_CONNECTION: Duration = Duration::from_secs(5);
-/// How long an answer may take: longer than the engine itself allows a statement, so that it is the engine that gives up
+/// How long an answer may take: longer than the database itself allows a statement, so that the database gives up first
 /// unless it cannot be reached.
 pub(super) const ANSWER: Duration = Duration::from_secs(15);
 /// The same for statements that copy or delete whole pasts.
 pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
-/// How often work is begun anew on the whole, and because two transactions got in each other's way.
+/// How often work is tried in all, and how often because two transactions conflicted.
 const TRIES: usize = 12;
 const COLLISIONS: usize = 5;
 
-/// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use any
-/// more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
-macro_rules! call {
-    ($link:expr, $limit:expr, $connection:ident => $work:expr) => {{
-        let mut tries = $crate::store::postgres::link::Tries::default();
+/// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use
+/// any more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
+macro_rules! with_retries {
+    ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {{
+        let mut tries = $crate::store::postgres::client_pool::Tries::default();
         loop {
-            let fault = match once!($link, $limit, $connection => $work) {
+            let fault = match try_once!($pool, $limit, $connection => $work) {
                 Ok(done) => {
-                    $link.outage.end();
+                    $pool.outage.end();
                     break Ok(done);
                 }
                 Err(fault) => fault,
             };
-            if let Err(error) = tries.bear(&$link.outage, fault).await {
+            if let Err(error) = tries.retry_or_fail(&$pool.outage, fault).await {
                 break Err(error);
             }
         }
@@ -47,14 +46,14 @@ macro_rules! call {
 }
 
 /// Does work on a connection of the pool. A connection that failed or did not answer in time is not given back.
-macro_rules! once {
-    ($link:expr, $limit:expr, $connection:ident => $work:expr) => {
-        match $link.connection().await {
+macro_rules! try_once {
+    ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {
+        match $pool.connection().await {
             Err(fault) => Err(fault),
             Ok(mut object) => {
                 let $connection = &mut object;
                 let done = tokio::time::timeout($limit, $work).await;
-                let done = done.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())));
+                let done = done.unwrap_or_else(|_| Err(Fault::no_answer()));
                 if matches!(done, Err(Fault::Lost(_))) {
                     drop(deadpool_postgres::Object::take(object));
                 }
@@ -64,23 +63,23 @@ macro_rules! once {
     };
 }
 
-pub(super) use {call, once};
+pub(super) use {try_once, with_retries};
 
 /// A parameter of a statement.
 pub(super) type Parameter<'a> = &'a (dyn ToSql + Sync);
 
-/// The way to the database.
-pub(super) struct Link {
-    pub(super) target: Target,
+/// A pool of connections to the database.
+pub(super) struct ClientPool {
+    pub(super) target: ConnectTarget,
     pub(super) outage: Outage,
-    /// Whether the engine knows announcements.
+    /// Whether the database has notifications.
     pub(super) announces: bool,
     pool: Pool,
 }
 
-impl Link {
+impl ClientPool {
     /// A pool that connects when it is first used.
-    pub(super) fn new(target: Target, announces: bool) -> Result<Link, StoreError> {
+    pub(super) fn new(target: ConnectTarget, announces: bool) -> Result<ClientPool> {
         let config = ManagerConfig { recycling_method: RecyclingMethod::Fast };
         let manager = Manager::from_config(target.config.clone(), target.tls.clone(), config);
         let prepare = Hook::async_fn(|client, _| {
@@ -95,7 +94,7 @@ impl Link {
             .post_create(prepare)
             .build();
         let pool = pool.map_err(|error| StoreError::Failed(format!("no pool of connections: {error}")))?;
-        Ok(Link { target, outage: Outage::default(), announces, pool })
+        Ok(ClientPool { target, outage: Outage::default(), announces, pool })
     }
 
     /// A connection of the pool.
@@ -104,12 +103,12 @@ impl Link {
     }
 
     /// The rows of a statement that only reads, or that may be repeated.
-    pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>, StoreError> {
-        call!(self, ANSWER, connection => rows(connection, statement, parameters))
+    pub(super) async fn rows(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Vec<Row>> {
+        with_retries!(self, ANSWER, connection => rows(connection, statement, parameters))
     }
 
     /// The first of these rows.
-    pub(super) async fn row(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Option<Row>, StoreError> {
+    pub(super) async fn row(&self, statement: &str, parameters: &[Parameter<'_>]) -> Result<Option<Row>> {
         Ok(self.rows(statement, parameters).await?.into_iter().next())
     }
 }
@@ -117,21 +116,21 @@ impl Link {
 /// How often work has been tried.
 #[derive(Default)]
 pub(super) struct Tries {
-    pauses: Pauses,
+    backoff: Backoff,
     collisions: usize,
     count: usize,
 }
 
 impl Tries {
     /// Waits before another try, or says that there is to be none.
-    pub(super) async fn bear(&mut self, outage: &Outage, fault: Fault) -> Result<(), StoreError> {
+    pub(super) async fn retry_or_fail(&mut self, outage: &Outage, fault: Fault) -> Result<()> {
         self.count += 1;
         match &fault {
-            Fault::Lost(text) if outage.bearable(text) && self.count < TRIES => {}
-            Fault::Again(_) if self.collisions < COLLISIONS => self.collisions += 1,
-            _ => return Err(fault.finally()),
+            Fault::Lost(text) if outage.worth_waiting(text) && self.count < TRIES => {}
+            Fault::Conflict(_) if self.collisions < COLLISIONS => self.collisions += 1,
+            _ => return Err(fault.into_store_error()),
         }
-        self.pauses.pause().await;
+        self.backoff.pause().await;
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
-//! Where the database is, and how the way there is protected.
+//! Where the database is, and how connections to it are protected.
 //!
-//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`Target::place`] says host, database
-//! and user.
+//! The URL may hold a password, so that neither it nor a part of it is ever shown: [`ConnectTarget::address`] has host
+//! and database alone.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,8 +21,8 @@ use super::sql;
 
 /// How long a connection may take to come about, unless the URL says otherwise.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
-/// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before it
-/// is tested.
+/// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before
+/// it is tested.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// A connection whose messages have yet to be driven.
@@ -30,16 +30,16 @@ pub(super) type Driver = Connection<Socket, <MakeRustlsConnect as MakeTlsConnect
 
 /// A database to connect to.
 #[derive(Clone)]
-pub(super) struct Target {
+pub(super) struct ConnectTarget {
     pub(super) config: Config,
     pub(super) tls: MakeRustlsConnect,
 }
 
-impl Target {
+impl ConnectTarget {
     /// Reads a URL.
-    pub(super) fn parse(url: &str) -> Result<Target, String> {
-        let (url, verification) = split(url)?;
-        let mut config: Config = url.parse().map_err(|error| told(&error))?;
+    pub(super) fn parse(url: &str) -> Result<ConnectTarget, String> {
+        let (url, verification) = split_tls_options(url)?;
+        let mut config: Config = url.parse().map_err(|error| error_chain(&error))?;
         if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
             return Err("the URL names no host".to_owned());
         }
@@ -55,11 +55,11 @@ impl Target {
         if config.get_application_name().is_none() {
             config.application_name("stickslip");
         }
-        Ok(Target { config, tls: MakeRustlsConnect::new(verification.config()?) })
+        Ok(ConnectTarget { config, tls: MakeRustlsConnect::new(verification.config()?) })
     }
 
     /// The database in words, without the password.
-    pub(super) fn place(&self) -> String {
+    pub(super) fn address(&self) -> String {
         let hosts = self.config.get_hosts().iter().map(|host| match host {
             Host::Tcp(name) => name.clone(),
             Host::Unix(path) => path.display().to_string(),
@@ -84,8 +84,8 @@ impl Target {
     }
 }
 
-/// An error of the driver with what lies under it: alone it says little.
-pub(super) fn told(error: &Error) -> String {
+/// An error of the driver with its causes: alone it says little.
+pub(super) fn error_chain(error: &Error) -> String {
     let mut text = error.to_string();
     let mut source = std::error::Error::source(error);
     while let Some(inner) = source {
@@ -95,10 +95,10 @@ pub(super) fn told(error: &Error) -> String {
     text
 }
 
-/// Whom to believe that the server is the right one.
+/// Which certificate authorities vouch for the server.
 enum Verification {
-    /// Anybody: the connection is encrypted, as libpq does for `prefer` and `require`.
-    Nobody,
+    /// None is asked: the connection is encrypted, as libpq does for `prefer` and `require`.
+    None,
     /// The certificate authorities of the system.
     System,
     /// The certificate authorities in a PEM file.
@@ -106,9 +106,9 @@ enum Verification {
 }
 
 /// Takes those TLS options out of a URL that the driver does not know.
-fn split(url: &str) -> Result<(String, Verification), String> {
+fn split_tls_options(url: &str) -> Result<(String, Verification), String> {
     let Some((base, query)) = url.split_once('?') else {
-        return Ok((url.to_owned(), Verification::Nobody));
+        return Ok((url.to_owned(), Verification::None));
     };
     let (mut rest, mut root, mut full) = (Vec::new(), None, false);
     for option in query.split('&').filter(|option| !option.is_empty()) {
@@ -128,7 +128,7 @@ fn split(url: &str) -> Result<(String, Verification), String> {
         Some(_) if !full => return Err("sslrootcert needs sslmode=verify-full".to_owned()),
         Some(path) if path != "system" => Verification::File(path),
         _ if full => Verification::System,
-        _ => Verification::Nobody,
+        _ => Verification::None,
     };
     Ok((format!("{base}?{}", rest.join("&")), verification))
 }
@@ -139,15 +139,15 @@ impl Verification {
         let builder = ClientConfig::builder_with_provider(Arc::clone(&provider));
         let builder = builder.with_safe_default_protocol_versions().map_err(|error| format!("TLS: {error}"))?;
         let Some(roots) = self.roots()? else {
-            let anybody = Arc::new(Anybody(provider));
-            return Ok(builder.dangerous().with_custom_certificate_verifier(anybody).with_no_client_auth());
+            let verifier = Arc::new(NoCertVerification(provider));
+            return Ok(builder.dangerous().with_custom_certificate_verifier(verifier).with_no_client_auth());
         };
         Ok(builder.with_root_certificates(roots).with_no_client_auth())
     }
 
     fn roots(&self) -> Result<Option<RootCertStore>, String> {
         let certificates = match self {
-            Verification::Nobody => return Ok(None),
+            Verification::None => return Ok(None),
             Verification::System => rustls_native_certs::load_native_certs().certs,
             Verification::File(path) => {
                 let read = CertificateDer::pem_file_iter(path).and_then(Iterator::collect);
@@ -163,11 +163,11 @@ impl Verification {
     }
 }
 
-/// Believes every certificate, but checks that the server holds its key.
+/// Accepts every certificate, but checks that the server holds its key.
 #[derive(Debug)]
-struct Anybody(Arc<CryptoProvider>);
+struct NoCertVerification(Arc<CryptoProvider>);
 
-impl ServerCertVerifier for Anybody {
+impl ServerCertVerifier for NoCertVerification {
     fn verify_server_cert(
         &self,
         _: &CertificateDer<'_>,

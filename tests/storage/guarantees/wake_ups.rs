@@ -6,7 +6,7 @@ use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Session, Store};
 use tokio::time::timeout;
 
-use super::{records, session, stored};
+use crate::fixtures::{records, session, stored};
 
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -25,6 +25,6 @@ pub async fn whoever_waits_is_woken_by_a_change(store: &dyn Store) {
     let idle = Session { created_at: long_ago, updated_at: long_ago, ..session(None) };
     store.create(idle.clone(), None).await.unwrap();
     let mut waits = store.changes().subscribe(idle.id);
-    assert!(store.sweep(Some(long_ago + SignedDuration::from_hours(1))).await.unwrap() >= 1);
+    assert!(store.purge_expired(Some(long_ago + SignedDuration::from_hours(1))).await.unwrap() >= 1);
     timeout(PATIENCE, waits.changed()).await.expect("expiry wakes").unwrap();
 }

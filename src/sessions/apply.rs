@@ -1,4 +1,4 @@
-//! Moving a session on: the one place where it changes.
+//! Applying moves to a session: the one place where it changes.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -16,9 +16,9 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
 
 use super::cache::Guard;
-use super::live::Live;
-use super::relax::{found, of_the_whole};
-use super::{ATTEMPTS, SessionError, Sessions, idempotency, written};
+use super::loaded::LoadedSession;
+use super::relax::{find_protocol, without_step};
+use super::{ATTEMPTS, SessionError, Sessions, written};
 
 /// Why the exact solver answers for a session.
 const REASON: &str = "a session keeps its exact memory";
@@ -37,67 +37,66 @@ impl Sessions {
     ///
     /// # Errors
     /// [`SessionError`]; nothing has changed then.
-    pub async fn advance(
+    pub async fn apply_moves(
         &self,
         id: Uuid,
         advance: Advance,
         expected: Option<u64>,
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
-        let key = key.map(|key| key.of(&self.tenant));
+        let request = self.request(key);
         // Before anything else: a retry is owed its reply even when the session is gone or has moved on.
-        if let Some(reply) = self.earlier(key.as_ref()).await? {
+        if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        // Whoever hangs up in the queue has left it.
+        // A client that hangs up in the queue leaves it.
         let mut guard = self.lock(id).await?;
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
-        // A state at hand may be behind the store. To be refused by it counts for nothing until it has caught up.
-        let mut certain = guard.live.is_none();
+        // A cached state may be behind the store. A refusal counts only once the state has caught up.
+        let mut caught_up = guard.live.is_none();
         let mut found = 0;
         for _ in 0..ATTEMPTS {
-            // Again, now that a twin of this request that stood before it in the queue, here or elsewhere, is done.
-            if let Some(reply) = self.earlier(key.as_ref()).await? {
+            // Again, because the same request, sent twice, may have been done here or elsewhere while this one waited.
+            if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
-            let live = if certain { self.present(&mut guard).await? } else { self.at_hand(&mut guard).await? };
+            let live = if caught_up { self.current(&mut guard).await? } else { self.cached(&mut guard).await? };
             let sequence = live.session.sequence;
             if let Some(expected) = expected.filter(|expected| *expected != sequence) {
-                if !certain {
-                    certain = true;
+                if !caught_up {
+                    caught_up = true;
                     continue;
                 }
                 return Err(SessionError::Stale { expected, found: sequence });
             }
             let (mut live, Done { records, reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
-                Err(SessionError::Failure(_)) if !certain && self.catch_up(&mut guard).await? => {
-                    certain = true;
+                Err(SessionError::Failure(_)) if !caught_up && self.catch_up(&mut guard).await? => {
+                    caught_up = true;
                     continue;
                 }
                 Err(error) => return Err(error),
             };
-            // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state before, or
-            // nothing: whoever finds it so, because the store failed or the client hung up, asks the store what is true.
-            let receipt = idempotency::receipt(key.clone(), &reply);
+            // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
+            // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
-            let stored = self.common.store.append(guard.id(), sequence, records, receipt);
+            let stored = self.common.store.append(guard.id(), sequence, records, request.receipt(&reply));
             match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
-                    self.common.meters.moves.inc_by(moves);
+                    self.common.metrics.moves.inc_by(moves);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);
                 }
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.failed(&mut guard, error));
+                    return Err(self.store_failure(&mut guard, error));
                 }
                 Err(StoreError::Stale { found: moved }) => {
-                    (certain, found) = (true, moved);
-                    self.present(&mut guard).await?.shared = true;
+                    (caught_up, found) = (true, moved);
+                    self.current(&mut guard).await?.shared = true;
                 }
-                Err(other) => return self.lost(other, key).await,
+                Err(other) => return Ok(request.after_refusal(other).await?),
             }
         }
         Err(SessionError::Overtaken { found })
@@ -109,7 +108,7 @@ impl Sessions {
         advance: &Arc<Advance>,
         guard: &mut Guard,
         stop: &Stop,
-    ) -> Result<(Box<Live>, Done), SessionError> {
+    ) -> Result<(Box<LoadedSession>, Done), SessionError> {
         let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
         // copy costs as much as the memory is deep. A move that may come too late is another matter.
@@ -142,20 +141,24 @@ impl Sessions {
     }
 }
 
-fn attempt(mut live: Box<Live>, advance: &Advance, stop: &Stop) -> (Box<Live>, Result<Done, SessionError>) {
+fn attempt(
+    mut live: Box<LoadedSession>,
+    advance: &Advance,
+    stop: &Stop,
+) -> (Box<LoadedSession>, Result<Done, SessionError>) {
     let result = make(&mut live, advance, stop);
     (live, result)
 }
 
 /// Makes the moves, and writes the reply: all that needs a processor.
-fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, SessionError> {
+fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
     let timer = Timer::start();
     let now = Timestamp::now();
     let mut records: Vec<Record> = Vec::with_capacity(advance.plan.length());
     let mut sequence = live.session.sequence;
     let tolerance = advance.tolerance;
-    let relaxed = advance.relax.map(|relax| found(live, &relax.task, stop)).transpose()?;
+    let relaxed = advance.relax.map(|relax| find_protocol(live, &relax.task, stop)).transpose()?;
     let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
     let plan = plan.as_ref().unwrap_or(&advance.plan);
     let protocol = equal_peaks(plan, &live.contact)?;
@@ -168,8 +171,8 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
         error = error.max(contact.path_error() - error_before);
         records.push(Record { sequence, step, tolerance, state: contact.state().into(), at: now });
     });
-    followed.map_err(|failure| if advance.relax.is_some() { of_the_whole(failure) } else { failure })?;
-    live.beyond.add(records.len(), begin.elapsed());
+    followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
+    live.replay_cost.add(records.len(), begin.elapsed());
     live.session.sequence = sequence;
     live.session.updated_at = now;
     let stress = advance.stress.as_ref().map(|sampling| stresses(&live.contact, sampling, stop)).transpose()?;

@@ -8,37 +8,37 @@ use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
 use stickslip_wire::{ContactDefinition, ContactSummary, NewSession, Warning};
 
-use super::snapshot::Beyond;
+use super::snapshot::ReplayCost;
 use super::{SessionError, written};
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache.
 const FIXED: usize = 2 * 1024;
-/// Bytes of a point of a table: its two numbers, and the series that the mechanics makes between it and the next. The process
-/// grows by 800 to 950.
+/// Bytes of a point of a table: its two numbers, and the series that the mechanics makes between it and the next. The
+/// process grows by 800 to 950.
 const TABLE_POINT: usize = 1_280;
 
 /// A session with its state.
 #[derive(Clone)]
-pub(super) struct Live {
+pub(super) struct LoadedSession {
     pub(super) session: Session,
-    pub(super) about: Arc<About>,
+    pub(super) derived: Arc<Derived>,
     pub(super) contact: Contact,
     /// The way from the last snapshot.
-    pub(super) beyond: Beyond,
+    pub(super) replay_cost: ReplayCost,
     /// Whether other processes have been seen to move it, so that a move is likely to come too late.
     pub(super) shared: bool,
 }
 
 /// What follows from the definition and never changes.
-pub(super) struct About {
+pub(super) struct Derived {
     pub(super) figures: ContactSummary,
     pub(super) warnings: Vec<Warning>,
 }
 
-impl Live {
-    /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state is
-    /// that before the first move.
-    pub(super) fn start(session: Session, setup: Setup) -> Result<Live, simulation::Failure> {
+impl LoadedSession {
+    /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state
+    /// is that before the first move.
+    pub(super) fn start(session: Session, setup: Setup) -> Result<LoadedSession, simulation::Failure> {
         let elasticity = setup.elasticity;
         let contact = simulation::contact(setup, "")?;
         let figures: ContactSummary = contact.initial_summary().into();
@@ -46,27 +46,27 @@ impl Live {
         let noise = contact.profile().noise(contact_radius);
         let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
         let warnings = warnings(contact.profile(), &elasticity, &seen);
-        let about = Arc::new(About { figures, warnings });
-        Ok(Live { session, about, contact, beyond: Beyond::default(), shared: false })
+        let derived = Arc::new(Derived { figures, warnings });
+        Ok(LoadedSession { session, derived, contact, replay_cost: ReplayCost::default(), shared: false })
     }
 
     /// Bytes of memory, rather too many than too few: what forks share is counted for each.
     pub(super) fn bytes(&self) -> usize {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
-        let warnings: usize = self.about.warnings.iter().map(|warning| warning.message.capacity()).sum();
+        let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
         FIXED + self.contact.memory_bytes() + label + warnings + definition_bytes(&self.session.definition)
     }
 
     /// The reply that presents a session just made.
-    pub(super) fn introduce(&self) -> Result<Reply, SessionError> {
+    pub(super) fn created_reply(&self) -> Result<Reply, SessionError> {
         let Session { id, label, sequence, .. } = &self.session;
         let new = NewSession {
             id: *id,
             label: label.clone(),
             sequence: *sequence,
-            contact: self.about.figures.clone(),
+            contact: self.derived.figures.clone(),
             state: self.contact.state().into(),
-            warnings: self.about.warnings.clone(),
+            warnings: self.derived.warnings.clone(),
         };
         Ok(Reply { created: Some(*id), sequence: *sequence, body: written(&new)? })
     }

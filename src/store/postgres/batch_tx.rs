@@ -1,4 +1,4 @@
-//! One batch on its way: a whole transaction sent at once, so that it costs one round trip however many requests it has.
+//! One batch of requests: a whole transaction sent at once, which costs one round trip however many requests it has.
 
 use std::collections::HashMap;
 
@@ -7,22 +7,22 @@ use tokio::time::timeout;
 use tokio_postgres::{Client, Statement};
 use uuid::Uuid;
 
+use super::client_pool::{ANSWER, ClientPool, Parameter};
+use super::columns::{Moves, Receipts, Requests, Sessions, from_bigint};
 use super::fault::Fault;
-use super::job::{Change, Job};
-use super::link::{ANSWER, Link, Parameter};
-use super::rows::{Moves, Receipts, Requests, Sessions, count};
+use super::request::{Change, WriteRequest};
 use super::sql;
 
 /// Identifiers in one announcement: its payload must stay below 8000 bytes.
 const ANNOUNCED: usize = 200;
 
 /// The writer's connection.
-pub(super) struct Line {
+pub(super) struct WriterConnection {
     client: Client,
     lock: Statement,
     append: Statement,
     create: Statement,
-    /// None where the engine knows no announcements.
+    /// None where the database has no notifications.
     notify: Option<Statement>,
 }
 
@@ -37,19 +37,19 @@ struct Columns {
     announcements: Vec<String>,
 }
 
-impl Line {
+impl WriterConnection {
     /// Connects, and prepares what is sent again and again.
-    pub(super) async fn open(link: &Link) -> Result<Line, Fault> {
+    pub(super) async fn open(pool: &ClientPool) -> Result<WriterConnection, Fault> {
         let open = async {
-            let client = link.target.open().await?;
+            let client = pool.target.open().await?;
             let statements = [sql::LOCK, sql::APPEND, sql::CREATE].map(|statement| client.prepare(statement));
             let statements = try_join_all(statements).await?;
-            let notify = if link.announces { Some(client.prepare(sql::NOTIFY).await?) } else { None };
+            let notify = if pool.announces { Some(client.prepare(sql::NOTIFY).await?) } else { None };
             let [lock, append, create] = <[Statement; 3]>::try_from(statements)
                 .map_err(|_| Fault::Lost("a statement was not prepared".to_owned()))?;
-            Ok(Line { client, lock, append, create, notify })
+            Ok(WriterConnection { client, lock, append, create, notify })
         };
-        timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::Lost("no answer in time".to_owned())))
+        timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::no_answer()))
     }
 
     /// Whether it can still be used, as far as is known.
@@ -59,8 +59,8 @@ impl Line {
 
     /// Makes all changes whose sessions are where they were expected, in one transaction. Tells at which sequence the
     /// sessions to append to were found; those that were not are missing.
-    pub(super) async fn fly(&self, jobs: &[Job]) -> Result<HashMap<Uuid, u64>, Fault> {
-        let columns = Columns::of(jobs);
+    pub(super) async fn commit_batch(&self, requests: &[WriteRequest]) -> Result<HashMap<Uuid, u64>, Fault> {
+        let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
         let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
         // The first of the columns of a receipt names the session that has to win for it, and a new one always does.
@@ -71,7 +71,7 @@ impl Line {
         let announced: [Parameter<'_>; 2] = [&sql::CHANNEL, &columns.announcements];
 
         // Polled in this order, and sent as they are polled.
-        let flight = async {
+        let transaction = async {
             futures::join!(
                 self.client.batch_execute(sql::BEGIN),
                 self.client.query(&self.lock, &locked),
@@ -98,24 +98,24 @@ impl Line {
                 self.client.batch_execute(sql::COMMIT),
             )
         };
-        let landed = timeout(ANSWER, flight).await.map_err(|_| Fault::Lost("no answer in time".to_owned()))?;
+        let answers = timeout(ANSWER, transaction).await.map_err(|_| Fault::no_answer())?;
         // The first failure is the cause of the others, and of a commit that was none.
-        let (begun, found, appended, created, notified, committed) = landed;
+        let (begun, found, appended, created, notified, committed) = answers;
         begun?;
         let found = found?;
         appended?;
         created?;
         notified?;
         committed?;
-        Ok(found.iter().map(|row| (row.get(0), count(row.get(1)))).collect())
+        Ok(found.iter().map(|row| (row.get(0), from_bigint(row.get(1)))).collect())
     }
 }
 
 impl Columns {
-    fn of(jobs: &[Job]) -> Columns {
+    fn of(requests: &[WriteRequest]) -> Columns {
         let mut columns = Columns::default();
-        for job in jobs {
-            let receipts = match &job.change {
+        for request in requests {
+            let receipts = match &request.change {
                 Change::Create(session, definition) => {
                     columns.sessions.push((session, definition.clone()));
                     &mut columns.first_receipts
@@ -125,13 +125,13 @@ impl Columns {
                     let sequence = last.map_or(*expected, |record| record.sequence);
                     columns.requests.push((*id, *expected, sequence, last.map(|record| record.at)));
                     for record in records {
-                        columns.moves.push((*id, job.stamp, record));
+                        columns.moves.push((*id, request.stamp, record));
                     }
                     &mut columns.receipts
                 }
             };
-            if let Some(receipt) = &job.receipt {
-                receipts.push((job.id(), receipt));
+            if let Some(receipt) = &request.receipt {
+                receipts.push((request.id(), receipt));
             }
         }
         columns.announcements = announcements(&columns.requests.id);

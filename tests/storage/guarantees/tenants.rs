@@ -1,10 +1,11 @@
-//! Whose sessions are: told with each of them, and the lists kept apart.
+//! Tenants: a contact names its owner, and lists are separate.
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Session, Store, StoreError, Tenant};
 use uuid::Uuid;
 
-use super::{exact, records, session, stored};
+use crate::common::kill::exact;
+use crate::fixtures::{records, session, stored};
 
 pub async fn a_session_is_its_tenants_for_ever(store: &dyn Store) {
     let tenants = [Tenant::new("north"), Tenant::new("South-2"), Tenant::new("south-2"), Tenant::default()];
@@ -56,7 +57,7 @@ pub async fn who_asks_for_what_has_expired_is_told_whose_it_was(store: &dyn Stor
     for made in [&theirs, &nameless] {
         store.create(made.clone(), None).await.unwrap();
     }
-    assert_eq!(store.sweep(Some(long_ago + SignedDuration::from_hours(1))).await.unwrap(), 2);
+    assert_eq!(store.purge_expired(Some(long_ago + SignedDuration::from_hours(1))).await.unwrap(), 2);
     for gone in [theirs, nameless] {
         for refused in [
             store.find(gone.id).await.map(drop),

@@ -1,7 +1,7 @@
-//! Telling a file that has been cut off from one whose last pages still stand in the write-ahead log.
+//! Distinguishes a file that has been cut off from one whose last pages are still in the write-ahead log.
 //!
-//! A crash may come while pages move from the log to the file, so that a file shorter than its header says can be sound:
-//! as long as the log has the pages that are missing.
+//! A crash may come while pages move from the log to the file, so that a file shorter than its header says can be
+//! sound: as long as the log has the pages that are missing.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -16,7 +16,7 @@ const FRAME_HEADER: usize = 24;
 /// Where SQLite keeps its locks; the page there is never written.
 const LOCKS: u64 = 0x4000_0000;
 
-/// Refuses a file of `length` bytes with pages that are nowhere.
+/// Refuses a file of `length` bytes with pages that are neither in it nor in the log.
 pub(super) fn check(header: &[u8], length: u64, log: &Path) -> Result<(), String> {
     let page_size = match field(header, 16) >> 16 {
         1 => 65_536,
@@ -32,7 +32,7 @@ pub(super) fn check(header: &[u8], length: u64, log: &Path) -> Result<(), String
     let whole = length / page_size;
     let missing = (whole + 1..=size).find(|page| !logged.contains(page) && *page != LOCKS / page_size + 1);
     match missing {
-        Some(page) => Err(format!("it is cut off: it has {whole} of {size} pages, and page {page} is nowhere")),
+        Some(page) => Err(format!("it is cut off: it has {whole} of {size} pages, and page {page} is missing")),
         None => Ok(()),
     }
 }

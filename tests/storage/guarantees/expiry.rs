@@ -1,9 +1,9 @@
-//! Sweeping: what nobody has touched for long expires, and nothing else.
+//! Expiry: contacts that have not moved for long expire, and nothing else does.
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Record, Session, Store, StoreError};
 
-use super::{receipt, record, records, session, snapshot, stored};
+use crate::fixtures::{receipt, record, records, session, snapshot, stored};
 
 pub async fn idle_sessions_expire_and_the_others_stay(store: &dyn Store) {
     let limit = Timestamp::now() - SignedDuration::from_hours(1);
@@ -17,17 +17,17 @@ pub async fn idle_sessions_expire_and_the_others_stay(store: &dyn Store) {
     }
     store.append(moved_then.id, 0, vec![Record { at: old(1), ..record(1) }], None).await.unwrap();
     store.append(moved_since.id, 0, records(0, 1), None).await.unwrap();
-    store.keep_snapshot(moved_then.id, snapshot(1)).await.unwrap();
+    store.save_snapshot(moved_then.id, snapshot(1)).await.unwrap();
     let copy = Session { sequence: 1, ..session(None) };
     store.fork(moved_then.id, copy.clone(), None).await.unwrap();
     let (fresh, _) = stored(store, 0).await;
     let (deleted, _) = stored(store, 0).await;
     store.delete(deleted.id, 0).await.unwrap();
 
-    assert_eq!(store.sweep(None).await.unwrap(), 0);
+    assert_eq!(store.purge_expired(None).await.unwrap(), 0);
     store.find(idle.id).await.unwrap();
-    assert_eq!(store.sweep(Some(limit)).await.unwrap(), 2);
-    assert_eq!(store.sweep(Some(limit)).await.unwrap(), 0);
+    assert_eq!(store.purge_expired(Some(limit)).await.unwrap(), 2);
+    assert_eq!(store.purge_expired(Some(limit)).await.unwrap(), 0);
     for gone in [idle.id, moved_then.id] {
         assert!(matches!(store.find(gone).await, Err(StoreError::Expired(_))));
         assert!(matches!(store.history(gone, 0, 1).await, Err(StoreError::Expired(_))));
@@ -48,6 +48,6 @@ pub async fn idle_sessions_expire_and_the_others_stay(store: &dyn Store) {
 pub async fn receipts_in_their_time_survive_a_sweep(store: &dyn Store) {
     let (session, _) = stored(store, 0).await;
     store.append(session.id, 0, records(0, 1), Some(receipt("young", None, 1))).await.unwrap();
-    store.sweep(None).await.unwrap();
+    store.purge_expired(None).await.unwrap();
     assert!(store.receipt("young").await.unwrap().is_some());
 }

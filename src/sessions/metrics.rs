@@ -8,17 +8,17 @@ use crate::store::Commits;
 use super::Sessions;
 
 /// What happens as it happens.
-pub(super) struct Meters {
+pub(super) struct SessionMetrics {
     /// Moves that are stored.
     pub(super) moves: IntCounter,
-    /// How long it took to bring a session that was not at hand from the store, s.
+    /// How long it took to load a session that was not cached, s.
     pub(super) open: Histogram,
 }
 
-impl Default for Meters {
-    fn default() -> Meters {
+impl Default for SessionMetrics {
+    fn default() -> SessionMetrics {
         let help = "Time to bring a contact from the store: its snapshot, and the moves beyond it.";
-        Meters {
+        SessionMetrics {
             moves: counter(Opts::new("stickslip_moves_total", "Moves made and stored.")),
             open: histogram(Opts::new("stickslip_contact_open_seconds", help), SECONDS),
         }
@@ -29,12 +29,12 @@ impl Default for Meters {
 pub struct Readings<'a> {
     /// Moves that have been made and stored.
     pub moves: &'a IntCounter,
-    /// How often a session that was asked for was at hand.
+    /// How often a session that was asked for was cached.
     pub hits: &'a IntCounter,
-    /// How long it took to bring those that were not, s.
+    /// How long it took to load those that were not, s.
     pub open: &'a Histogram,
-    /// Sessions at hand that nobody works on.
-    pub at_hand: usize,
+    /// Cached sessions that no request uses.
+    pub cached: usize,
     /// Bytes of their states.
     pub bytes: usize,
     /// How many bytes there may be.
@@ -49,15 +49,15 @@ impl Sessions {
     /// How the sessions are doing.
     #[must_use]
     pub fn readings(&self) -> Readings<'_> {
-        let (bytes, at_hand) = self.common.cache.held();
+        let (bytes, cached) = self.common.cache.held();
         Readings {
-            moves: &self.common.meters.moves,
+            moves: &self.common.metrics.moves,
             hits: self.common.cache.hits(),
-            open: &self.common.meters.open,
-            at_hand,
+            open: &self.common.metrics.open,
+            cached,
             bytes,
             capacity: self.common.cache.capacity(),
-            streams: self.common.streams.open(),
+            streams: self.common.listeners.count(),
             commits: self.common.store.commits(),
         }
     }

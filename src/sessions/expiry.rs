@@ -1,0 +1,39 @@
+//! What is done from time to time: idle sessions expire, and old receipts are deleted.
+
+use std::time::Duration;
+
+use jiff::Timestamp;
+
+use super::{SessionError, Sessions};
+
+/// How often at least and at most.
+const PERIODS: (Duration, Duration) = (Duration::from_millis(100), Duration::from_secs(60));
+/// An idle session outlives its time by at most this fraction of it, within [`PERIODS`].
+const SHARE: u32 = 10;
+
+impl Sessions {
+    /// Deletes sessions that have not moved for `expire_after`, if it is given, and replies past the time of retries.
+    /// Returns how many sessions expired.
+    ///
+    /// # Errors
+    /// A failure of the store.
+    pub async fn purge_expired(&self, expire_after: Option<Duration>) -> Result<u64, SessionError> {
+        let now = Timestamp::now();
+        let idle_since = expire_after.map(|idle| now.checked_sub(idle).unwrap_or(Timestamp::MIN));
+        self.common.store.purge_expired(idle_since).await.map_err(SessionError::Store)
+    }
+
+    /// Deletes what has expired again and again, and never ends.
+    pub async fn run_expiry_loop(self, expire_after: Option<Duration>) {
+        let (least, most) = PERIODS;
+        let period = expire_after.map_or(most, |idle| (idle / SHARE).clamp(least, most));
+        loop {
+            match self.purge_expired(expire_after).await {
+                Ok(0) => {}
+                Ok(expired) => tracing::info!(expired, "idle contacts have expired"),
+                Err(error) => tracing::warn!(%error, "expired contacts could not be deleted; another attempt follows"),
+            }
+            tokio::time::sleep(period).await;
+        }
+    }
+}

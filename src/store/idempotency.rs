@@ -1,0 +1,57 @@
+//! Retries: a request with an idempotency key that has been answered gets the same reply again.
+//!
+//! Only replies to what succeeded are stored. A failed call has changed nothing, so that a retry may be computed anew.
+
+use super::{Receipt, Reply, RequestKey, Store, StoreError, Tenant};
+
+/// A request that may have been answered before.
+pub struct IdempotentRequest<'a> {
+    store: &'a dyn Store,
+    key: Option<RequestKey>,
+}
+
+/// Why there is no reply for a retry.
+#[derive(Debug)]
+pub enum RetryError {
+    /// The key belongs to another request.
+    KeyReused,
+    /// The store refused or failed.
+    Store(StoreError),
+}
+
+impl<'a> IdempotentRequest<'a> {
+    /// A request of a tenant, with the key that it has, if it has one.
+    #[must_use]
+    pub fn new(store: &'a dyn Store, tenant: &Tenant, key: Option<RequestKey>) -> IdempotentRequest<'a> {
+        IdempotentRequest { store, key: key.map(|key| key.for_tenant(tenant)) }
+    }
+
+    /// The reply that an earlier request with the same key got.
+    ///
+    /// # Errors
+    /// [`RetryError`]
+    pub async fn earlier_reply(&self) -> Result<Option<Reply>, RetryError> {
+        let Some(key) = &self.key else { return Ok(None) };
+        match self.store.receipt(&key.key).await.map_err(RetryError::Store)? {
+            None => Ok(None),
+            Some(receipt) if receipt.request.fingerprint == key.fingerprint => Ok(Some(receipt.reply)),
+            Some(_) => Err(RetryError::KeyReused),
+        }
+    }
+
+    /// The receipt to be stored with the change that a reply is about.
+    #[must_use]
+    pub fn receipt(&self, reply: &Reply) -> Option<Receipt> {
+        self.key.clone().map(|request| Receipt { request, reply: reply.clone() })
+    }
+
+    /// The reply to a request whose change the store refused: if the same request, sent twice, was faster elsewhere,
+    /// its reply.
+    ///
+    /// # Errors
+    /// [`RetryError`], with `error` itself if there is no such reply.
+    pub async fn after_refusal(&self, error: StoreError) -> Result<Reply, RetryError> {
+        let earlier = if matches!(error, StoreError::KeyTaken) { self.earlier_reply().await? } else { None };
+        earlier.ok_or(RetryError::Store(error))
+    }
+}

@@ -1,0 +1,97 @@
+//! Clients that listen to events: a bounded number of them, which all end when the process stops.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+use uuid::Uuid;
+
+use stickslip_wire::EndReason;
+
+use super::Changes;
+
+/// How long a listener waits that no change wakes.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// What a listener is told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StreamEvent<T> {
+    /// The state, now that it has changed.
+    State(T),
+    /// The last event.
+    End(EndReason),
+}
+
+/// The listeners of a kind.
+pub struct Listeners {
+    places: Arc<Semaphore>,
+    limit: usize,
+    ending: watch::Sender<bool>,
+}
+
+/// A listener to the changes of one contact or job.
+pub struct Listener {
+    changed: watch::Receiver<()>,
+    ending: watch::Receiver<bool>,
+    // Gives the place back when the listener goes, in whatever way.
+    _place: OwnedSemaphorePermit,
+}
+
+impl Listeners {
+    /// At most `limit` listeners at a time.
+    #[must_use]
+    pub fn new(limit: usize) -> Listeners {
+        Listeners { places: Arc::new(Semaphore::new(limit)), limit, ending: watch::Sender::new(false) }
+    }
+
+    /// How many listen.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.limit - self.places.available_permits()
+    }
+
+    /// Listens from now on; none if there are as many listeners as there may be.
+    #[must_use]
+    pub fn listen(&self, changes: &Changes, id: Uuid) -> Option<Listener> {
+        let place = Arc::clone(&self.places).try_acquire_owned().ok()?;
+        Some(Listener { changed: changes.subscribe(id), ending: self.ending(), _place: place })
+    }
+
+    /// Becomes true when the process is about to stop.
+    #[must_use]
+    pub fn ending(&self) -> watch::Receiver<bool> {
+        self.ending.subscribe()
+    }
+
+    /// Ends all listeners, present and future.
+    pub fn end(&self) {
+        self.ending.send_replace(true);
+    }
+}
+
+impl Listener {
+    /// Whether the process is about to stop.
+    #[must_use]
+    pub fn is_ending(&self) -> bool {
+        *self.ending.borrow()
+    }
+
+    /// Waits until something may have changed.
+    pub async fn wait(&mut self) {
+        let woken = tokio::select! {
+            changed = self.changed.changed() => changed.is_ok(),
+            _ = self.ending.wait_for(|ending| *ending) => true,
+        };
+        if !woken {
+            self.pause(PAUSE).await;
+        }
+    }
+
+    /// Waits for a time, or until the process is about to stop.
+    pub async fn pause(&mut self, time: Duration) {
+        tokio::select! {
+            () = tokio::time::sleep(time) => {}
+            _ = self.ending.wait_for(|ending| *ending) => {}
+        }
+    }
+}

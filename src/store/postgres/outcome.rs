@@ -1,0 +1,48 @@
+//! Why a change was not made, and whether it was after all: a connection may be lost between a commit and its answer.
+
+use crate::store::{RECEIPT_LIFETIME, StoreError, Tenant};
+
+use super::client_pool::ClientPool;
+use super::columns::{from_bigint, to_bigint};
+use super::request::{Change, WriteRequest};
+use super::sql;
+
+/// What became of a request.
+pub(super) enum Outcome {
+    /// It is stored.
+    Stored,
+    /// It is not, and this is why.
+    Refused(StoreError),
+    /// It is not, and nothing forbids it now.
+    NotStored,
+}
+
+/// Looks what became of a request; `in_doubt` if an earlier attempt at it may have been committed.
+pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest, in_doubt: bool) -> Outcome {
+    let (id, expected, last) = match &request.change {
+        Change::Create(session, _) => (session.id, None, 0),
+        Change::Append { id, expected, records } => {
+            (*id, Some(*expected), records.last().map_or(0, |record| record.sequence))
+        }
+    };
+    let lifetime = RECEIPT_LIFETIME.as_secs_f64();
+    let row = match pool.row(sql::OUTCOME, &[&id, &request.key(), &lifetime, &to_bigint(last)]).await {
+        Ok(Some(row)) => row,
+        Ok(None) => return Outcome::Refused(StoreError::Failed("a question without an answer".to_owned())),
+        Err(error) => return Outcome::Refused(error),
+    };
+    let (sequence, expired, taken): (Option<i64>, Option<&str>, bool) = (row.get(0), row.get(1), row.get(2));
+    let stored = match expected {
+        Some(_) => row.get::<_, Option<i64>>(3) == Some(request.stamp),
+        None => sequence.is_some(),
+    };
+    match (expected, sequence.map(from_bigint)) {
+        _ if in_doubt && stored => Outcome::Stored,
+        _ if taken => Outcome::Refused(StoreError::KeyTaken),
+        (None, None) => Outcome::NotStored,
+        (None, Some(_)) => Outcome::Refused(StoreError::Failed(format!("there is a contact {id} already"))),
+        (Some(_), None) => Outcome::Refused(expired.map(Tenant::new).map_or(StoreError::NotFound, StoreError::Expired)),
+        (Some(expected), Some(found)) if found == expected => Outcome::NotStored,
+        (Some(_), Some(found)) => Outcome::Refused(StoreError::Stale { found }),
+    }
+}

@@ -1,0 +1,130 @@
+//! Rows of the databases as values. In which order the columns of a value are selected is said here, for all databases.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use serde::Deserialize as _;
+use serde::de::IntoDeserializer;
+use serde::de::value::Error as NameError;
+use uuid::Uuid;
+
+use super::{Job, Receipt, Record, Reply, RequestKey, Session, Snapshot, Tenant};
+use stickslip_wire::{Move, Regime, SessionSummary, State};
+
+/// A type that every database reads by itself.
+pub(super) trait Scalar: rusqlite::types::FromSql + for<'a> tokio_postgres::types::FromSql<'a> {}
+
+impl<T: rusqlite::types::FromSql + for<'a> tokio_postgres::types::FromSql<'a>> Scalar for T {}
+
+/// Reads the columns of a row one after the other.
+pub(super) trait RowReader {
+    /// What a column that cannot be read is reported as.
+    type Error;
+
+    fn next<T: Scalar>(&mut self) -> Result<T, Self::Error>;
+
+    fn text<T, E: Error + Send + Sync + 'static>(
+        &mut self,
+        parse: impl FnOnce(&str) -> Result<T, E>,
+    ) -> Result<T, Self::Error>;
+
+    fn optional_uuid(&mut self) -> Result<Option<Uuid>, Self::Error>;
+
+    fn time(&mut self) -> Result<Timestamp, Self::Error>;
+
+    fn optional_time(&mut self) -> Result<Option<Timestamp>, Self::Error>;
+
+    /// The last column read has a value that this program does not write.
+    fn invalid(&self, error: impl Into<Box<dyn Error + Send + Sync>>) -> Self::Error;
+
+    fn uuid(&mut self) -> Result<Uuid, Self::Error> {
+        self.optional_uuid()?.ok_or_else(|| self.invalid("there is no identifier"))
+    }
+
+    fn count(&mut self) -> Result<u64, Self::Error> {
+        u64::try_from(self.next::<i64>()?).map_err(|error| self.invalid(error))
+    }
+}
+
+/// Identifier, label, sequence, and the times of creation and of the last move.
+pub(super) fn summary<R: RowReader>(row: &mut R) -> Result<SessionSummary, R::Error> {
+    Ok(SessionSummary {
+        id: row.uuid()?,
+        label: row.next()?,
+        sequence: row.count()?,
+        created_at: row.time()?,
+        updated_at: row.time()?,
+    })
+}
+
+/// The columns of [`summary`], definition and tenant.
+pub(super) fn session<R: RowReader>(row: &mut R) -> Result<Session, R::Error> {
+    let SessionSummary { id, label, sequence, created_at, updated_at } = summary(row)?;
+    let definition = Arc::new(row.text(|text| serde_json::from_str(text))?);
+    let tenant = tenant(row)?;
+    Ok(Session { id, tenant, label, definition, sequence, created_at, updated_at })
+}
+
+/// The name of a tenant.
+pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
+    row.text(|name| Ok::<_, std::convert::Infallible>(Tenant::new(name)))
+}
+
+/// Sequence, time, the four targets, whether they are relative, the tolerance, and the state in the order of [`State`].
+pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
+    Ok(Record {
+        sequence: row.count()?,
+        at: row.time()?,
+        step: Move {
+            displacement: row.next()?,
+            force: row.next()?,
+            indentation: row.next()?,
+            normal_force: row.next()?,
+            relative: row.next()?,
+        },
+        tolerance: row.next()?,
+        state: State {
+            displacement: row.next()?,
+            force: row.next()?,
+            indentation: row.next()?,
+            normal_force: row.next()?,
+            contact_radius: row.next()?,
+            stick_radius: row.next()?,
+            regime: row.text(|name| Regime::deserialize(IntoDeserializer::<NameError>::into_deserializer(name)))?,
+            dissipated_energy: row.next()?,
+            elastic_energy: row.next()?,
+            memory_depth: usize::try_from(row.count()?).map_err(|error| row.invalid(error))?,
+        },
+    })
+}
+
+/// Fingerprint, created session, sequence and body of the receipt for a key.
+pub(super) fn receipt<R: RowReader>(key: &str, row: &mut R) -> Result<Receipt, R::Error> {
+    let fingerprint = <[u8; 32]>::try_from(row.next::<Vec<u8>>()?);
+    let fingerprint = fingerprint.map_err(|_| row.invalid("a fingerprint has 32 bytes"))?;
+    let reply = Reply { created: row.optional_uuid()?, sequence: row.count()?, body: row.next()? };
+    Ok(Receipt { request: RequestKey { key: key.to_owned(), fingerprint }, reply })
+}
+
+/// Sequence and state.
+pub(super) fn snapshot<R: RowReader>(row: &mut R) -> Result<Snapshot, R::Error> {
+    Ok(Snapshot { sequence: row.count()?, state: row.next()? })
+}
+
+/// The columns of a job in the order of [`Job`].
+pub(super) fn job<R: RowReader>(row: &mut R) -> Result<Job, R::Error> {
+    Ok(Job {
+        id: row.uuid()?,
+        tenant: tenant(row)?,
+        created_at: row.time()?,
+        finished_at: row.optional_time()?,
+        error: row.next()?,
+        points: row.count()?,
+        chunk: row.count()?,
+        done: row.count()?,
+        failed: row.count()?,
+        bytes: row.count()?,
+        cost: row.count()?,
+    })
+}

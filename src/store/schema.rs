@@ -1,0 +1,57 @@
+//! Versions of the tables of a store.
+//!
+//! A store has an ordered list of migrations, each a script that leads from one version to the next; the first one
+//! makes the tables of version 1. The version of a store is the number of migrations it has seen. Those that it has not
+//! seen are applied at start, all of them in one transaction. A version that has been released is never edited.
+
+use std::cmp::Ordering;
+
+/// Why tables of a version cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum VersionError {
+    /// A later version of this program has been here.
+    #[error("it has schema version {found}, and this program knows versions up to {known}: start the newer program")]
+    Newer {
+        /// The version of the tables.
+        found: i32,
+        /// The newest version that this program knows.
+        known: i32,
+    },
+    /// An earlier version has been here, and this program may not change anything.
+    #[error("it has schema version {found}: `stickslip serve` migrates it to version {known}")]
+    Older {
+        /// The version of the tables.
+        found: i32,
+        /// The version that this program works with.
+        known: i32,
+    },
+}
+
+/// The migrations that tables of a version have not seen, each with the version that it leads to.
+///
+/// # Errors
+/// [`VersionError::Newer`] if they have seen more than there are.
+pub(super) fn pending<'a>(
+    found: i32,
+    migrations: &'a [&'a str],
+) -> Result<impl Iterator<Item = (i32, &'a str)>, VersionError> {
+    match check(found, migrations) {
+        Err(error @ VersionError::Newer { .. }) => Err(error),
+        _ => Ok((1..).zip(migrations.iter().copied()).filter(move |(version, _)| *version > found)),
+    }
+}
+
+/// Whether tables of a version have seen exactly these migrations.
+pub(super) fn check(found: i32, migrations: &[&str]) -> Result<(), VersionError> {
+    let known = newest(migrations);
+    match found.cmp(&known) {
+        Ordering::Less => Err(VersionError::Older { found, known }),
+        Ordering::Equal => Ok(()),
+        Ordering::Greater => Err(VersionError::Newer { found, known }),
+    }
+}
+
+/// The version that the last of the migrations leads to.
+pub(super) fn newest(migrations: &[&str]) -> i32 {
+    i32::try_from(migrations.len()).unwrap_or(i32::MAX)
+}

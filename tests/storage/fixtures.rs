@@ -1,0 +1,104 @@
+//! What the tests of storage make and look at.
+
+use std::future::Future;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use jiff::{SignedDuration, Timestamp};
+use stickslip::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant};
+use stickslip_wire::client::Options;
+use stickslip_wire::{CreateRequest, Document as _, Move, Path as Moves, PathRequest, Regime, State, Steps};
+use uuid::Uuid;
+
+use crate::common;
+
+/// How long a test waits for what should take no time.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The store in a file, as a URL.
+pub fn url(path: &Path) -> String {
+    format!("sqlite:{}", path.display())
+}
+
+/// What comes of a future, which must come without a wait of minutes.
+pub async fn soon<T>(future: impl Future<Output = T>) -> T {
+    tokio::time::timeout(PATIENCE, future).await.expect("nothing happened")
+}
+
+/// A path through moves, of whose states only the last is asked for.
+pub fn along(moves: Vec<Move>) -> PathRequest {
+    PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
+}
+
+/// The options of a request with an idempotency key.
+pub fn keyed(key: impl ToString) -> Options {
+    Options { idempotency_key: Some(key.to_string()), ..Options::default() }
+}
+
+/// A session that is not stored yet.
+pub fn session(label: Option<&str>) -> Session {
+    let definition = serde_json::from_value::<CreateRequest>(common::ball()).unwrap().check().unwrap().definition;
+    let now = Timestamp::now();
+    Session {
+        id: Uuid::now_v7(),
+        tenant: Tenant::default(),
+        label: label.map(str::to_owned),
+        definition: Arc::new(definition),
+        sequence: 0,
+        created_at: now,
+        updated_at: now,
+    }
+}
+
+/// A move whose numbers tell it from every other.
+pub fn record(sequence: u64) -> Record {
+    let number = sequence as f64 + 0.1;
+    Record {
+        sequence,
+        step: Move { displacement: Some(number * 1e-9), relative: sequence.is_multiple_of(2), ..Move::default() },
+        tolerance: 1e-10 / number,
+        state: State {
+            displacement: number * 1e-9,
+            force: number / 3.0,
+            indentation: 1.0 / number,
+            normal_force: number.sqrt(),
+            contact_radius: number.ln_1p(),
+            stick_radius: number.sin(),
+            regime: [Regime::Stick, Regime::PartialSlip, Regime::GrossSlip, Regime::Separated][sequence as usize % 4],
+            dissipated_energy: number.cos(),
+            elastic_energy: number.exp_m1(),
+            memory_depth: sequence as usize,
+        },
+        at: Timestamp::now() + SignedDuration::from_nanos(sequence as i64),
+    }
+}
+
+/// Moves `after + 1` to `upto`.
+pub fn records(after: u64, upto: u64) -> Vec<Record> {
+    (after + 1..=upto).map(record).collect()
+}
+
+pub fn receipt(key: &str, created: Option<Uuid>, sequence: u64) -> Receipt {
+    let body = format!(r#"{{"key":"{key}"}}"#).into_bytes();
+    Receipt {
+        request: RequestKey { key: key.to_owned(), fingerprint: [7; 32] },
+        reply: Reply { created, sequence, body },
+    }
+}
+
+pub fn snapshot(sequence: u64) -> Snapshot {
+    Snapshot { sequence, state: (0..=u8::MAX).rev().chain([0, sequence as u8]).collect() }
+}
+
+/// A session with so many moves, stored; as it is now, and its moves.
+pub async fn stored(store: &dyn Store, moves: u64) -> (Session, Vec<Record>) {
+    let mut session = session(Some("stored"));
+    store.create(session.clone(), None).await.unwrap();
+    let records = records(0, moves);
+    if let Some(last) = records.last() {
+        store.append(session.id, 0, records.clone(), None).await.unwrap();
+        (session.sequence, session.updated_at) = (last.sequence, last.at);
+    }
+    (session, records)
+}
