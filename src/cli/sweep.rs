@@ -6,9 +6,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use stickslip::admission::Stop;
 use stickslip::api::Problem;
-use stickslip::api::formats::Format;
-use stickslip::api::formats::sheet::Table;
-use stickslip::simulation::{Rows, Sweep as Plan, Workers};
+use stickslip::api::formats::{Format, tables};
+use stickslip::simulation::{Sweep as Plan, SweepResult, Workers};
 use stickslip_wire::{self as wire, SweepRequest};
 
 use super::simulate::{json, read};
@@ -49,15 +48,15 @@ impl Sweep {
         let threads = self.threads.unwrap_or(cores).max(1);
         let workers = Workers::new(threads).map_err(|why| format!("no threads for the sweep: {why}"))?;
         let (points, outputs) = (plan.points(), plan.numbers(1));
-        let (mut rows, mut done) = (Rows::default(), 0);
+        let (mut result, mut done) = (SweepResult::default(), 0);
         while done < points {
             let slice = plan.slice(done..points, &workers, threads, &Stop::default(), None);
-            rows.append(slice.map_err(|failure| refused(failure.into()))?);
-            done = rows.values.len() / outputs;
+            result.append(slice.map_err(|failure| refused(failure.into()))?);
+            done = result.values.len() / outputs;
             show(done, points);
         }
-        if rows.failed > 0 {
-            eprintln!("{} of {points} points have no answer; the first: {}", rows.failed, json(&rows.failures[0]));
+        if result.failed > 0 {
+            eprintln!("{} of {points} points have no answer; the first: {}", result.failed, json(&result.failures[0]));
         }
         let format = match self.format {
             Written::Columns => Format::Columns,
@@ -67,8 +66,8 @@ impl Sweep {
             Written::Arrow => Format::Arrow,
         };
         let mut out = io::BufWriter::new(io::stdout().lock());
-        let mut pieces = Table::new(plan.draft(), rows).pieces(format);
-        match pieces.try_for_each(|piece| out.write_all(&piece)).and_then(|()| out.flush()) {
+        let mut blocks = tables::sweep(plan.checked(), result).blocks(format);
+        match blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)).and_then(|()| out.flush()) {
             // A reader that has seen enough, such as `head`, is no failure.
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write: {error}")),
             _ => Ok(()),

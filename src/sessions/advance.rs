@@ -8,7 +8,7 @@ use uuid::Uuid;
 
 use crate::admission::Stop;
 use crate::simulation::cost::{self, Work};
-use crate::simulation::{Timer, accuracy, equal_peaks, follow, missed, news, stresses};
+use crate::simulation::{Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
 use crate::store::{Record, Reply, RequestKey, StoreError};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
@@ -170,8 +170,8 @@ fn make(live: &mut Live, advance: &Advance, stop: &Stop) -> Result<Done, Session
     live.session.updated_at = now;
     let stress = advance.stress.as_ref().map(|sampling| stresses(&live.contact, sampling, stop)).transpose()?;
     let accuracy = accuracy(&live.contact, timer, REASON);
-    let missed = missed(error, tolerance, advance.plan.curved());
-    let warnings = news(&live.session.definition.profile, &live.contact, before, largest, missed);
+    let excess = excess_error(error, tolerance, advance.plan.curved());
+    let warnings = new_warnings(&live.session.definition.profile, &live.contact, before, largest, excess);
     let id = live.session.id;
     let states = records.iter().map(|record| record.state);
     let body = match (&advance.plan, advance.steps) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::simulation::{self, Seen, warnings};
+use crate::simulation::{self, Observed, warnings};
 use crate::store::{Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
@@ -44,8 +44,8 @@ impl Live {
         let figures: Figures = contact.initial_figures().into();
         let Figures { contact_radius, e_star, indentation, .. } = figures;
         let noise = contact.profile().noise(contact_radius);
-        let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
-        let warnings = warnings(&session.definition.profile, &elasticity, &seen);
+        let observed = Observed { contact_radius, e_star, indentation, noise, excess_error: None };
+        let warnings = warnings(&session.definition.profile, &elasticity, &observed);
         let about = Arc::new(About { figures, warnings });
         Ok(Live { session, about, contact, beyond: Beyond::default(), shared: false })
     }

@@ -3,24 +3,22 @@
 //! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor storage.
 //! Long loops look at a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the work.
 
-mod compare;
+mod compare_solvers;
 pub mod cost;
 mod protocol;
+mod reply_template;
 mod robustness;
-mod rows;
 mod run;
-mod shape;
 mod solver;
 mod sweep;
 mod warnings;
 
-pub use compare::compare;
+pub use compare_solvers::compare_solvers;
 pub use protocol::{Subject, protocol, protocol_for};
-pub use rows::Rows;
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
-pub use sweep::{Sweep, SweepError, Workers};
-pub use warnings::{Seen, missed, news, warnings};
+pub use sweep::{Sweep, SweepError, SweepResult, Workers};
+pub use warnings::{Observed, excess_error, new_warnings, warnings};
 
 use std::time::Duration;
 

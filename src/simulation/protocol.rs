@@ -12,7 +12,7 @@ use stickslip_wire::{ContactDefinition, Warning};
 
 use super::robustness::robustness;
 use super::run::{Timer, accuracy, contact};
-use super::{Failure, Seen, warnings};
+use super::{Failure, Observed, warnings};
 use crate::admission::Stop;
 
 /// A contact for which a protocol is sought, and what the reversals begin from.
@@ -185,17 +185,22 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         comparison,
         accuracy: accuracy(&chosen.contact, timer, "protocols are sought on the exact memory"),
         path: DisplacementPath { displacement: chosen.displacements },
-        warnings: noted(subject),
+        warnings: warnings_of(subject),
     })
 }
 
-fn noted(subject: &Subject<'_>) -> Vec<Warning> {
+fn warnings_of(subject: &Subject<'_>) -> Vec<Warning> {
     let contact = subject.contact;
     let (contact_radius, elasticity) = (contact.contact_radius(), contact.elasticity());
     let noise = contact.profile().noise(contact_radius);
-    let seen =
-        Seen { contact_radius, e_star: elasticity.e_star(), indentation: contact.indentation(), noise, missed: None };
-    warnings(&subject.definition.profile, &elasticity, &seen)
+    let observed = Observed {
+        contact_radius,
+        e_star: elasticity.e_star(),
+        indentation: contact.indentation(),
+        noise,
+        excess_error: None,
+    };
+    warnings(&subject.definition.profile, &elasticity, &observed)
 }
 
 fn objective(judged: &Judged) -> String {

@@ -11,7 +11,7 @@ use stickslip_wire::{
 
 use super::{
     Failure, Solver, cost, quantity,
-    warnings::{Seen, missed, warnings},
+    warnings::{Observed, excess_error, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
@@ -83,13 +83,13 @@ fn run<S: Solver>(
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
     let accuracy = stated::<S>(&estimate, timer, reason);
-    let seen = Seen {
+    let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
         // The noise is a table's, and a table has no vertical edge.
         indentation: figures.indentation.max(simulation.setup.profile.level(largest)),
         noise: simulation.setup.profile.noise(largest),
-        missed: missed(path_error, simulation.tolerance, curved),
+        excess_error: excess_error(path_error, simulation.tolerance, curved),
     };
     Ok(SimulateReply {
         contact: figures.into(),
@@ -97,7 +97,7 @@ fn run<S: Solver>(
         stress,
         residual,
         protocol,
-        warnings: warnings(&simulation.definition.profile, &simulation.setup.elasticity, &seen),
+        warnings: warnings(&simulation.definition.profile, &simulation.setup.elasticity, &observed),
         accuracy,
     })
 }

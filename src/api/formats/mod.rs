@@ -1,31 +1,29 @@
 //! The formats that tables are given in, and how a client asks for one: by `?format=`, or else by `Accept`.
 
+mod accept;
 pub mod plots;
-pub mod sheet;
-pub mod table;
+mod table;
+pub mod tables;
 
-use axum::http::{HeaderMap, HeaderValue, header};
+use std::fmt::Display;
+
+use axum::body::Body;
+use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse as _, Response};
+use serde::Serialize;
 
-use crate::api::problem::{Kind, Problem};
-use crate::api::reply::tagged;
+use crate::admission::{INLINE, Nanoseconds};
+use stickslip_report::plot::Plot;
 
-/// The media type of rows: a JSON array of flat objects.
-pub const ROWS: &str = "application/vnd.stickslip.rows+json";
-/// The media type of comma-separated values.
-pub const CSV: &str = "text/csv; charset=utf-8";
-/// The media type of one flat object a line.
-pub const NDJSON: &str = "application/x-ndjson";
-/// The media type of Arrow's stream of record batches.
-pub const ARROW: &str = "application/vnd.apache.arrow.stream";
-/// The media type of a plot to scale at will.
-pub const SVG: &str = "image/svg+xml";
-/// The media type of a plot in pixels.
-pub const PNG: &str = "image/png";
+use super::problem::Problem;
+use super::reply;
+
+pub use table::Table;
+
 /// Bytes of a row of stresses in the longest of the formats.
 pub const STRESS_ROW: usize = 256;
 /// Bytes that a plot takes while it is drawn.
-pub const PLOT: usize = 16 * 1024 * 1024;
+const PLOT: usize = 16 * 1024 * 1024;
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,12 +71,12 @@ impl Format {
     pub fn media_type(self) -> &'static str {
         match self {
             Format::Columns => "application/json",
-            Format::Rows => ROWS,
-            Format::Csv => CSV,
-            Format::Ndjson => NDJSON,
-            Format::Arrow => ARROW,
-            Format::Svg => SVG,
-            Format::Png => PNG,
+            Format::Rows => "application/vnd.stickslip.rows+json",
+            Format::Csv => "text/csv; charset=utf-8",
+            Format::Ndjson => "application/x-ndjson",
+            Format::Arrow => "application/vnd.apache.arrow.stream",
+            Format::Svg => "image/svg+xml",
+            Format::Png => "image/png",
         }
     }
 
@@ -98,42 +96,6 @@ impl Format {
         }
     }
 
-    /// The format that the query names, or that `Accept` likes best.
-    ///
-    /// # Errors
-    /// [`Kind::NotAcceptable`] if `Accept` admits none.
-    pub fn chosen(named: Option<Format>, headers: &HeaderMap) -> Result<Format, Problem> {
-        Format::chosen_of(named, headers, &Format::ALL)
-    }
-
-    /// The same out of some formats.
-    ///
-    /// # Errors
-    /// [`Kind::NotAcceptable`] if `Accept` admits none of them.
-    pub fn chosen_of(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-        if let Some(format) = named {
-            return Ok(format);
-        }
-        let accepted: Vec<&str> =
-            headers.get_all(header::ACCEPT).iter().filter_map(|line| line.to_str().ok()).collect();
-        let accepted = accepted.join(",");
-        if accepted.trim().is_empty() {
-            return Ok(Format::Columns);
-        }
-        let mut best = (0.0, None);
-        for &format in formats {
-            let quality = quality(&accepted, format.media_type());
-            if quality > best.0 {
-                best = (quality, Some(format));
-            }
-        }
-        best.1.ok_or_else(|| {
-            let known: Vec<String> =
-                formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
-            Problem::new(Kind::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
-        })
-    }
-
     /// The tag of a reply in this format; that of columns is the version alone.
     #[must_use]
     pub fn tag(self, version: &str) -> String {
@@ -143,38 +105,41 @@ impl Format {
         }
     }
 
+    /// What it costs to write, beyond the numbers: a plot needs a thread of its own.
+    #[must_use]
+    pub fn cost(self) -> Nanoseconds {
+        if self.is_plot() { INLINE } else { 0 }
+    }
+
+    /// A page in this format; the plot and the table are made where they are needed.
+    ///
+    /// # Errors
+    /// [`Problem::internal`] if it cannot be written, which is a fault of the service.
+    pub fn write<'p>(
+        self,
+        page: &impl Serialize,
+        plot: impl FnOnce() -> Plot,
+        table: impl FnOnce() -> Table<'p>,
+    ) -> Result<Vec<u8>, Problem> {
+        match self {
+            Format::Columns => reply::written(page),
+            Format::Svg => plot().svg().map_err(unwritable),
+            Format::Png => plot().png().map_err(unwritable),
+            Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => table().write(self).map_err(unwritable),
+        }
+    }
+
     /// 200 with a body in this format.
     #[must_use]
-    pub fn reply(self, body: Vec<u8>, tag: &str) -> Response {
-        let mut response = ([(header::CONTENT_TYPE, self.media_type())], body).into_response();
-        response.headers_mut().insert(header::VARY, HeaderValue::from_static("accept"));
-        tagged(response, tag)
+    pub fn reply(self, body: impl Into<Body>) -> Response {
+        let headers = [
+            (header::CONTENT_TYPE, HeaderValue::from_static(self.media_type())),
+            (header::VARY, HeaderValue::from_static("accept")),
+        ];
+        (headers, body.into()).into_response()
     }
 }
 
-/// How much a media type is liked, 0 to 1: the most specific range that it falls in says so (RFC 9110, 12.5.1).
-fn quality(accepted: &str, media_type: &str) -> f64 {
-    let essence = media_type.split(';').next().unwrap_or_default();
-    let group = essence.split('/').next().unwrap_or_default();
-    let mut best = (0, 0.0);
-    for range in accepted.split(',') {
-        let mut parts = range.split(';').map(str::trim);
-        let name = parts.next().unwrap_or_default();
-        let rank = if name.eq_ignore_ascii_case(essence) {
-            3
-        } else if name.strip_suffix("/*").is_some_and(|named| named.eq_ignore_ascii_case(group)) {
-            2
-        } else if name == "*/*" {
-            1
-        } else {
-            continue;
-        };
-        let given = parts.find_map(|part| part.strip_prefix("q=").or_else(|| part.strip_prefix("Q=")));
-        let quality =
-            given.map_or(1.0, |text| text.trim().parse::<f64>().map_or(0.0, |quality| quality.clamp(0.0, 1.0)));
-        if rank > best.0 {
-            best = (rank, quality);
-        }
-    }
-    best.1
+fn unwritable(error: impl Display) -> Problem {
+    Problem::internal(format!("a reply cannot be written: {error}"))
 }

@@ -16,8 +16,8 @@ use crate::sessions::Readings;
 use crate::store::Commits;
 use stickslip_mechanics::ENGINE;
 
-use crate::api::App;
 use crate::api::middleware::request_metrics::RequestMetrics;
+use crate::api::state::App;
 
 /// Where the numbers are.
 pub const ROUTE: &str = "/metrics";
@@ -26,7 +26,7 @@ pub const ROUTE: &str = "/metrics";
 ///
 /// Counters, gauges and histograms since the start, for Prometheus.
 #[utoipa::path(
-    get, path = "/metrics", tag = "service",
+    get, path = "/metrics", operation_id = "get_metrics", tag = "service",
     responses((status = 200, description = "The text format of Prometheus, version 0.0.4", content_type = "text/plain",
         body = String))
 )]

@@ -1,0 +1,87 @@
+//! Many simulations that differ in a few numbers, over all threads that are free.
+//!
+//! A sweep is computed in slices of some milliseconds. Between two slices it has no thread, so that whoever else needs one
+//! waits for a slice and not for a sweep; and its threads have a lower priority than those that serve connections.
+
+mod compute;
+mod plan;
+mod result;
+
+use serde_json::Value;
+
+use super::Failure;
+use crate::admission::{Nanoseconds, PoolError};
+use stickslip_mechanics::Setup;
+use stickslip_wire::ContactDefinition;
+use stickslip_wire::sweep::Draft as CheckedSweep;
+
+pub use compute::Workers;
+pub use result::SweepResult;
+
+/// Work that is stored at a time: what a killed process loses.
+const CHUNK: Nanoseconds = 1_000_000_000;
+/// Numbers that are stored at a time, at the most.
+const CHUNK_NUMBERS: usize = 65_536;
+/// Pieces that a sweep is stored in, roughly, at the most.
+const CHUNKS: usize = 10_000;
+/// A sweep whose axes stay within the ranges of their fields and whose outputs exist.
+#[derive(Debug)]
+pub struct Sweep {
+    checked: CheckedSweep,
+    base: Value,
+    /// The contact, where no axis changes it: a table is not to be read anew for each point.
+    contact: Option<(ContactDefinition, Setup)>,
+    each: Nanoseconds,
+    bytes: usize,
+}
+
+/// Why a sweep was not computed to its end.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SweepError {
+    /// It was stopped, or took too long.
+    #[error(transparent)]
+    Failure(#[from] Failure),
+    /// No thread became free, or one panicked.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+}
+
+impl Sweep {
+    /// The sweep as it was asked for, with its axes.
+    #[must_use]
+    pub fn checked(&self) -> &CheckedSweep {
+        &self.checked
+    }
+
+    /// How many points.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.checked.points
+    }
+
+    /// What all of it costs, at the most.
+    #[must_use]
+    pub fn cost(&self) -> Nanoseconds {
+        self.each.saturating_mul(self.checked.points as u64)
+    }
+
+    /// Numbers that come out of so many points.
+    #[must_use]
+    pub fn numbers(&self, points: usize) -> usize {
+        points * self.checked.outputs.len()
+    }
+
+    /// Bytes that it takes to compute on so many threads, beside what comes out.
+    #[must_use]
+    pub fn bytes(&self, threads: usize) -> usize {
+        self.bytes.saturating_mul(threads + 1)
+    }
+
+    /// Points that are stored at a time.
+    #[must_use]
+    pub fn chunk(&self) -> usize {
+        let worth = usize::try_from(CHUNK / self.each.max(1)).unwrap_or(usize::MAX);
+        let most = CHUNK_NUMBERS / self.checked.outputs.len().max(1);
+        worth.max(self.checked.points.div_ceil(CHUNKS)).clamp(1, most)
+    }
+}
