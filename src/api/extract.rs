@@ -33,23 +33,23 @@ const EXPANSION: usize = 100;
 pub struct CheckedBody<T: Document> {
     /// The body.
     pub body: T::Checked,
-    /// The idempotency key, with what it stands for.
+    /// The idempotency key, with a fingerprint of the request.
     pub key: Option<RequestKey>,
-    /// What the request takes of the server.
+    /// The resources that the request holds.
     pub held: HeldResources,
 }
 
-/// What a request takes of the server: a place until it is answered, and memory until the client has the reply.
+/// The resources that a request holds: a place until it is answered, and memory until the client has the reply.
 pub struct HeldResources {
     memory: Reservation,
     _place: Place,
 }
 
 impl HeldResources {
-    /// Takes so much memory, from now on.
+    /// Holds so much memory from now on.
     ///
     /// # Errors
-    /// A [`Problem`] if there is not so much at present.
+    /// A [`Problem`] if so much is not available.
     pub async fn resize(&mut self, pool: &Pool, bytes: usize) -> Result<(), Problem> {
         Ok(pool.resize(&mut self.memory, bytes).await?)
     }
@@ -95,7 +95,7 @@ async fn checked_body<T: Document + 'static>(
         return Err(Problem::new(Kind::UnsupportedMediaType, detail));
     }
     let (mut bytes, mut memory) = read(body, &app.pool).await?;
-    // Not before the body is there: a slow client takes no place from others.
+    // Only once the body has arrived, so that a slow client takes no place from others.
     let place = app.pool.enter().await?;
     if optional && bytes.is_empty() {
         bytes.extend_from_slice(b"{}");
@@ -104,19 +104,19 @@ async fn checked_body<T: Document + 'static>(
     }
     let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
     let length = bytes.len();
-    let price = if length > cost::INLINE_BODY { INLINE } else { 0 };
-    if price > 0 {
+    let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
+    if cost > 0 {
         app.pool.resize(&mut memory, length.saturating_mul(EXPANSION)).await?;
     }
     let work = move || {
         let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
         wire::read::<T>(&bytes).map(|body| (body, key))
     };
-    let (body, key) = app.pool.run(price, work).await??;
+    let (body, key) = app.pool.run(cost, work).await??;
     Ok(CheckedBody { body, key, held: HeldResources { memory, _place: place } })
 }
 
-/// No coding at all, as it may be said too.
+/// Whether the header says that the body is not encoded.
 fn is_identity(coding: &[u8]) -> bool {
     coding.trim_ascii().is_empty() || coding.trim_ascii().eq_ignore_ascii_case(b"identity")
 }
@@ -136,7 +136,7 @@ async fn read(body: Body, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem
         let chunk = chunk.map_err(broken)?;
         length = length.saturating_add(chunk.len());
         if length <= BODY_LIMIT {
-            // As it comes: what a client declares and does not send takes nothing from others.
+            // Reserved as it arrives: a length that is declared but not sent takes no memory from others.
             if length > bytes.capacity() {
                 let room = (2 * length).min(declared).max(length);
                 pool.resize(&mut memory, room).await?;
@@ -162,7 +162,7 @@ fn broken(error: axum::Error) -> Problem {
     }
 }
 
-/// What a key stands for. The parts are set apart by a byte that none of the first two can hold.
+/// A hash of method, path and body. They are separated by a byte that the first two cannot contain.
 fn fingerprint(parts: &Parts, body: &[u8]) -> [u8; 32] {
     let mut hash = Sha256::new();
     for part in [parts.method.as_str().as_bytes(), parts.uri.path().as_bytes()] {

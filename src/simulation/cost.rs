@@ -1,6 +1,6 @@
-//! What work costs, and what is cheap enough to do where one stands.
+//! Estimates of the time and memory that a request takes.
 //!
-//! Handing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
+//! Passing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
 //! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection, where it delays others by no
 //! more than that; everything above goes to the [`Pool`](crate::admission::Pool). The estimates need only be right to a factor of a few:
 //! `cargo bench --bench request` and `--bench growth` show what they come from.
@@ -19,7 +19,7 @@ pub const INLINE_BODY: usize = 1024;
 const MOVE: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
 const CURVED: u64 = 3_000_000;
-/// One piece of memory seen from one radius.
+/// The contribution of one piece of memory to the stress at one radius.
 const PIECE: u64 = 15;
 /// The same on a sphere, where many radii are done side by side.
 const SIDE_BY_SIDE: u64 = 2;
@@ -27,14 +27,14 @@ const SIDE_BY_SIDE: u64 = 2;
 const RADIUS: u64 = 200;
 /// The search for extrema on a shape with knots, at the least.
 const SEARCH: u64 = 1_000_000;
-/// One spring in one move, or seen from one radius.
+/// One spring in one move, or its contribution at one radius.
 const SPRING: u64 = 3;
 
-/// One pair of kinks of a protocol, over all looks at it and all three laws.
+/// One pair of kinks of a protocol, over all evaluations and all three laws.
 const PAIR: u64 = 15_000;
 /// The least that a protocol costs.
 const PROTOCOL: u64 = 200_000;
-/// Reversals that a target is taken to need.
+/// Reversals that a target is assumed to need.
 const SOUGHT: usize = 100;
 
 /// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that grows by
@@ -48,7 +48,7 @@ const MOVE_BYTES: usize = 256;
 const STATE_BYTES: usize = 768;
 /// One move on its way to the store.
 const RECORD_BYTES: usize = 512;
-/// One radius with all that may be asked of it, likewise.
+/// One radius with all fields, likewise.
 const RADIUS_BYTES: usize = 320;
 /// One point of a table.
 const POINT_BYTES: usize = 1_280;
@@ -83,16 +83,16 @@ impl Work {
     #[must_use]
     pub fn cost(&self, profile: &Profile) -> Nanoseconds {
         match profile {
-            Profile::Sphere(_) => self.seen_at(SIDE_BY_SIDE),
-            _ => on(profile, self.seen_at(PIECE), self.residual),
+            Profile::Sphere(_) => self.with_piece_cost(SIDE_BY_SIDE),
+            _ => on(profile, self.with_piece_cost(PIECE), self.residual),
         }
     }
 
-    /// What it costs where a piece seen from one radius costs `piece`.
-    fn seen_at(&self, piece: Nanoseconds) -> Nanoseconds {
+    /// What it costs if a piece costs `piece` at each radius.
+    fn with_piece_cost(&self, piece: Nanoseconds) -> Nanoseconds {
         let (moves, radii) = (self.moves as u64, self.radii as u64);
         let pieces = (self.depth + self.moves) as u64 + 1;
-        // The search for extrema looks at each piece, and from there at all others.
+        // The search for extrema evaluates all pieces at each piece.
         let searched = if self.residual { pieces.saturating_mul(4) } else { 0 };
         (moves * MOVE)
             .saturating_add(self.curved as u64 * CURVED)
@@ -105,7 +105,7 @@ impl Work {
 /// What the search for the extrema under a memory of so many pieces costs on a sphere.
 #[must_use]
 pub fn of_search(depth: usize) -> Nanoseconds {
-    Work { depth, residual: true, ..Work::default() }.seen_at(SIDE_BY_SIDE)
+    Work { depth, residual: true, ..Work::default() }.with_piece_cost(SIDE_BY_SIDE)
 }
 
 /// What it costs to write a table of so many points as JSON.
@@ -121,7 +121,7 @@ fn on(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
     sphere.saturating_mul(factor(profile)).saturating_add(searched)
 }
 
-/// How many times dearer than a sphere a shape is: by closed forms, by a quadrature, part by part.
+/// The cost of a profile relative to a sphere: by closed forms, by quadrature, or by the sum of its parts.
 fn factor(profile: &Profile) -> u64 {
     match profile {
         Profile::Sphere(_) => 1,
@@ -198,7 +198,7 @@ fn reversals(task: &ProtocolTask, sought: usize) -> usize {
 pub fn of_protocol(profile: &Profile, task: &ProtocolTask, depth: usize) -> Nanoseconds {
     let reversals = reversals(task, SOUGHT);
     let tried = task.robustness.map_or(0, |robustness| robustness.samples as u64);
-    let once = Work { moves: reversals + 1, residual: true, ..Work::default() }.seen_at(SIDE_BY_SIDE);
+    let once = Work { moves: reversals + 1, residual: true, ..Work::default() }.with_piece_cost(SIDE_BY_SIDE);
     let pairs = (reversals * (reversals + depth.min(SOUGHT))) as u64;
     on(profile, PROTOCOL + pairs * PAIR + 3 * tried.saturating_mul(once), true)
 }

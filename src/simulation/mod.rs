@@ -1,7 +1,7 @@
-//! Running what has been parsed: a checked request against the mechanics.
+//! From a checked request to a reply, by way of the mechanics.
 //!
 //! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor storage.
-//! Long loops look at a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the work.
+//! Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the work.
 
 mod compare_solvers;
 pub mod cost;

@@ -1,4 +1,4 @@
-//! From a protocol asked for to the path, what it leaves, and what the others would.
+//! Protocols: the path of a law, the stress that it leaves, and what the other laws would leave.
 
 use stickslip_mechanics::protocol::{Design, End, Judged, Kind, Start, Way, design, lower_bound};
 use stickslip_mechanics::{Contact, Error, Setup};
@@ -32,7 +32,7 @@ impl Subject<'_> {
         self.first.map_or(Start::Here, Start::Displacement)
     }
 
-    /// A JSON pointer to what the mechanics finds fault with.
+    /// A JSON pointer to what the mechanics refuses.
     fn place(&self, error: &Error) -> &'static str {
         match error {
             Error::OutOfRange { quantity: "friction", .. } if self.setup.is_some() => "/contact/friction",
@@ -109,10 +109,10 @@ pub fn protocol_for(
 /// How many reversals fewer than those found by halving are looked at.
 const FEWER: usize = 3;
 
-/// The protocol asked for, with what it leaves and what the others would.
+/// The requested protocol, with the stress that it leaves and what the other laws would leave.
 ///
 /// # Errors
-/// [`Failure`] where there is nothing to move against, the target is out of reach, or the time is up.
+/// [`Failure`] if there is no friction to move against, the target is out of reach, or the time limit is reached.
 pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     let timer = Timer::start();
     let contact = subject.contact;

@@ -176,7 +176,7 @@ pub fn follow<S: Solver>(
     Ok(())
 }
 
-/// Radii between two looks at the flag.
+/// Radii between two checks of the flag.
 const AT_A_TIME: usize = 64;
 
 /// The stresses asked for, and no others.
@@ -189,7 +189,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
         let at = |radius: &f64| stop.check().map(|()| finite(field(*radius))).map_err(Failure::from);
         radius.iter().map(at).collect()
     };
-    // What is quick at one radius is done at many of them between two looks at the flag.
+    // Fields that are quick at one radius are computed at many radii between two checks.
     let together = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
         let mut all = Vec::with_capacity(radius.len());
         for radii in radius.chunks(AT_A_TIME) {
@@ -210,7 +210,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// The extrema of the shear stress.
 ///
 /// # Errors
-/// [`Failure`] if the memory is so deep that they would take longer than is allowed, or nobody waits for them.
+/// [`Failure`] if the memory is so deep that the search would exceed the time limit, or nobody waits for it.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     let cost = Duration::from_nanos(cost::of_search(solver.depth()));
     let allowed = stop.time_limit().unwrap_or(LONGEST_WORK);

@@ -66,7 +66,7 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
 }
 
-/// The warnings for a pair of bodies, and what is known of the run.
+/// The warnings for a pair of bodies and a run.
 #[must_use]
 pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed) -> Vec<Warning> {
     let mut warnings = Vec::new();

@@ -1,4 +1,4 @@
-//! The formats that tables are given in, and how a client asks for one: by `?format=`, or else by `Accept`.
+//! The formats of tables and plots.
 
 mod accept;
 pub mod plots;
@@ -38,9 +38,9 @@ pub enum Format {
     Ndjson,
     /// A stream of Arrow's record batches: typed columns, read without parsing.
     Arrow,
-    /// A plot to scale at will.
+    /// A vector plot.
     Svg,
-    /// A plot in pixels.
+    /// A bitmap plot.
     Png,
 }
 
@@ -49,7 +49,7 @@ impl Format {
     pub const ALL: [Format; 7] =
         [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow, Format::Svg, Format::Png];
 
-    /// Those of a table that nobody draws.
+    /// The formats of a table that has no plot.
     pub const TABLES: [Format; 5] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow];
 
     /// Its name in a query.
@@ -80,13 +80,13 @@ impl Format {
         }
     }
 
-    /// Whether it is a picture.
+    /// Whether it is a plot.
     #[must_use]
     pub fn is_plot(self) -> bool {
         matches!(self, Format::Svg | Format::Png)
     }
 
-    /// Bytes that it takes beyond the columns, for so many rows of so many bytes each.
+    /// Bytes that writing takes beyond the columns, for so many rows of so many bytes each.
     #[must_use]
     pub fn bytes(self, rows: usize, row: usize) -> usize {
         match self {

@@ -1,4 +1,4 @@
-//! The OpenAPI document: what the handlers and types say of themselves, and what is common to many of them.
+//! The OpenAPI document: what the attributes of handlers and types generate, completed by what attributes cannot express.
 
 mod base;
 mod keys;
@@ -15,7 +15,7 @@ use stickslip_wire::limits;
 
 pub use base::base;
 
-/// The text of the document, made from what the handlers say of themselves.
+/// The text of the document, from what the attributes generate.
 pub fn complete(described: &utoipa::openapi::OpenApi) -> String {
     let mut document = serde_json::to_value(described).unwrap_or_default();
     write_limits(&mut document);

@@ -22,7 +22,7 @@ pub fn write(document: &mut Value) {
     }
 }
 
-/// The limits, and the form of what is more than a number or a word.
+/// The limits, and the form of lists and of headers.
 fn write_parameter(parameter: &mut Value) {
     let name = parameter["name"].as_str().unwrap_or_default().to_owned();
     let schema = &mut parameter["schema"];

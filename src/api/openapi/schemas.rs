@@ -81,7 +81,7 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     schemas["SweepRequest"]["properties"]["base"]["additionalProperties"] = json!(true);
     let aims = ["reversals", "target"];
     let aims = json!([have(&aims), none(&aims)]);
-    // A contact may be left out only beside the name of one that lives.
+    // The contact may be left out only if `start` names a stored one.
     let named = json!({"required": ["start"], "properties": {"start": {"required": ["contact_id"],
         "description": "One that names a contact."}}});
     let nowhere = json!({"not": {"anyOf": [have(&["contact"]), named]}});

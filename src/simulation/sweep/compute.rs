@@ -20,7 +20,7 @@ use stickslip_wire::{Document as _, PointFailure, Rejection, SimulateReply, Simu
 const SLICE: Duration = Duration::from_millis(25);
 /// Work that a thread takes at a time.
 const BATCH: Nanoseconds = 1_000_000;
-/// The most points of it.
+/// The most points that a thread takes at a time.
 const BATCH_POINTS: u64 = 64;
 /// How much lower the priority of the threads is.
 const NICE: i32 = 10;
@@ -38,7 +38,7 @@ impl Workers {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.max(1))
             .thread_name(|index| format!("sweep-{index}"))
-            // A system that knows no priorities does without.
+            // Not every system has priorities.
             .start_handler(|_| {
                 let _ = rustix::process::nice(NICE);
             })
@@ -48,10 +48,10 @@ impl Workers {
 }
 
 impl Sweep {
-    /// Computes points, giving way to others between slices. A point may take as long as `allowed`, or as `stop` lets it.
+    /// Computes points slice by slice. A point may take as long as `allowed`, or as `stop` permits.
     ///
     /// # Errors
-    /// [`SweepError`]; what has been computed is lost then.
+    /// [`SweepError`]; the slices before are lost then.
     pub async fn compute(
         self: &Arc<Self>,
         points: Range<usize>,

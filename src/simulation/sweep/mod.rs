@@ -1,7 +1,7 @@
-//! Many simulations that differ in a few numbers, over all threads that are free.
+//! Sweeps: many simulations that differ in a few numbers.
 //!
-//! A sweep is computed in slices of some milliseconds. Between two slices it has no thread, so that whoever else needs one
-//! waits for a slice and not for a sweep; and its threads have a lower priority than those that serve connections.
+//! A sweep is computed in slices of some milliseconds. Between two slices it has no thread, so that other requests
+//! wait for a slice and not for a sweep; its threads have a lower priority than those that serve connections.
 
 mod compute;
 mod plan;
@@ -18,24 +18,24 @@ use stickslip_wire::sweep::Draft as CheckedSweep;
 pub use compute::Workers;
 pub use result::SweepResult;
 
-/// Work that is stored at a time: what a killed process loses.
+/// Work that is stored at a time, and that a killed process loses.
 const CHUNK: Nanoseconds = 1_000_000_000;
-/// Numbers that are stored at a time, at the most.
+/// The most numbers that are stored at a time.
 const CHUNK_NUMBERS: usize = 65_536;
-/// Pieces that a sweep is stored in, roughly, at the most.
+/// The most chunks that a sweep is stored in, roughly.
 const CHUNKS: usize = 10_000;
 /// A sweep whose axes stay within the ranges of their fields and whose outputs exist.
 #[derive(Debug)]
 pub struct Sweep {
     checked: CheckedSweep,
     base: Value,
-    /// The contact, where no axis changes it: a table is not to be read anew for each point.
+    /// The contact, if no axis changes it, so that a table is parsed once and not for each point.
     contact: Option<(ContactDefinition, Setup)>,
     each: Nanoseconds,
     bytes: usize,
 }
 
-/// Why a sweep was not computed to its end.
+/// Why a sweep was not completed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SweepError {
     /// It was stopped, or took too long.
@@ -59,19 +59,19 @@ impl Sweep {
         self.checked.points
     }
 
-    /// What all of it costs, at the most.
+    /// What all of it costs at most.
     #[must_use]
     pub fn cost(&self) -> Nanoseconds {
         self.each.saturating_mul(self.checked.points as u64)
     }
 
-    /// Numbers that come out of so many points.
+    /// Numbers in the result of so many points.
     #[must_use]
     pub fn numbers(&self, points: usize) -> usize {
         points * self.checked.outputs.len()
     }
 
-    /// Bytes that it takes to compute on so many threads, beside what comes out.
+    /// Bytes that computing takes on so many threads, without the result.
     #[must_use]
     pub fn bytes(&self, threads: usize) -> usize {
         self.bytes.saturating_mul(threads + 1)

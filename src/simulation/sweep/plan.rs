@@ -79,7 +79,7 @@ impl Sweep {
         }
     }
 
-    /// Refuses what is wrong whatever the point, and values out of the range of their field.
+    /// Refuses faults that every point has, and values out of the range of their field.
     fn refuse(&self, found: Vec<Fault>, accepted: usize, refused: Option<Rejection>) -> Result<(), Rejection> {
         let mut faults = Faults::default();
         let mut seen = Vec::new();
