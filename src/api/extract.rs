@@ -29,8 +29,8 @@ const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
 /// Bytes that a byte of a long body may become while it is parsed: a point of a table is a few digits, and then a series.
 const EXPANSION: usize = 100;
 
-/// A checked body, and the headers that make it safe to repeat.
-pub struct CheckedBody<T: Document> {
+/// A checked body, and the headers that make it safe to repeat. If it is `OPTIONAL`, no body at all counts as `{}`.
+pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
     /// The body.
     pub body: T::Checked,
     /// The idempotency key, with a fingerprint of the request.
@@ -60,60 +60,46 @@ impl HeldResources {
     }
 }
 
-/// As [`CheckedBody`], but no body at all counts as `{}`.
-pub struct OptionalBody<T: Document>(pub CheckedBody<T>);
+/// A body that may be left out.
+pub type OptionalBody<T> = CheckedBody<T, true>;
 
-impl<T: Document + 'static> FromRequest<App> for CheckedBody<T> {
+impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<App> for CheckedBody<T, OPTIONAL> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        checked_body(request, app, false).await
+        let (parts, body) = request.into_parts();
+        let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| is_json(value.as_bytes()));
+        if declared == Some(false) || (declared.is_none() && !OPTIONAL) {
+            return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
+        }
+        if let Some(coding) =
+            parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes()))
+        {
+            let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
+            let detail = format!("Content-Encoding `{coding}` is not taken: send the body as it is");
+            return Err(Problem::new(Kind::UnsupportedMediaType, detail));
+        }
+        let (mut bytes, mut memory) = read(body, &app.pool).await?;
+        // Only once the body has arrived, so that a slow client takes no place from others.
+        let place = app.pool.enter().await?;
+        if OPTIONAL && bytes.is_empty() {
+            bytes.extend_from_slice(b"{}");
+        } else if declared.is_none() {
+            return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
+        }
+        let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
+        let length = bytes.len();
+        let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
+        if cost > 0 {
+            app.pool.resize(&mut memory, length.saturating_mul(EXPANSION)).await?;
+        }
+        let work = move || {
+            let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
+            wire::read::<T>(&bytes).map(|body| (body, key))
+        };
+        let (body, key) = app.pool.run(cost, work).await??;
+        Ok(CheckedBody { body, key, held: HeldResources { memory, _place: place } })
     }
-}
-
-impl<T: Document + 'static> FromRequest<App> for OptionalBody<T> {
-    type Rejection = Problem;
-
-    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
-        checked_body(request, app, true).await.map(OptionalBody)
-    }
-}
-
-async fn checked_body<T: Document + 'static>(
-    request: Request,
-    app: &App,
-    optional: bool,
-) -> Result<CheckedBody<T>, Problem> {
-    let (parts, body) = request.into_parts();
-    let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| is_json(value.as_bytes()));
-    if declared == Some(false) || (declared.is_none() && !optional) {
-        return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
-    }
-    if let Some(coding) = parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes())) {
-        let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
-        let detail = format!("Content-Encoding `{coding}` is not taken: send the body as it is");
-        return Err(Problem::new(Kind::UnsupportedMediaType, detail));
-    }
-    let (mut bytes, mut memory) = read(body, &app.pool).await?;
-    // Only once the body has arrived, so that a slow client takes no place from others.
-    let place = app.pool.enter().await?;
-    if optional && bytes.is_empty() {
-        bytes.extend_from_slice(b"{}");
-    } else if declared.is_none() {
-        return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
-    }
-    let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
-    let length = bytes.len();
-    let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
-    if cost > 0 {
-        app.pool.resize(&mut memory, length.saturating_mul(EXPANSION)).await?;
-    }
-    let work = move || {
-        let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
-        wire::read::<T>(&bytes).map(|body| (body, key))
-    };
-    let (body, key) = app.pool.run(cost, work).await??;
-    Ok(CheckedBody { body, key, held: HeldResources { memory, _place: place } })
 }
 
 /// Whether the header says that the body is not encoded.

@@ -13,22 +13,22 @@ use stickslip_wire::{
     SolverKind, limits,
 };
 
-use super::run::{contact, equal_peaks, follow, foundation, stresses};
+use super::run::{contact, equal_peaks, follow, spring_foundation, stresses};
 use super::{Failure, Solver};
 use crate::admission::Stop;
 
 /// The reference is held to this part of the tolerance: four times the chords, with a sixteenth of their error.
-const REFINED: f64 = 1.0 / 16.0;
+const REFERENCE_TOLERANCE: f64 = 1.0 / 16.0;
 /// A solver runs again, for the median of the times, until its runs together have taken this long.
-const REPEATED: Duration = Duration::from_millis(5);
+const REPEAT_UNTIL: Duration = Duration::from_millis(5);
 /// The most runs of one solver.
-const RUNS: usize = 9;
+const MAX_RUNS: usize = 9;
 
 /// Why the reference is one.
-const STRAIGHT: &str =
+const REASON_EXACT: &str =
     "every move of this path has an exact solution: what is left is rounding, or the points of a table";
-const CURVED_AND_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
-const CURVED: &str =
+const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
+const REASON_UNREFINED: &str =
     "the exact solver, held to the tolerance where moves are curved: more would be too much to remember";
 
 /// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
@@ -67,12 +67,12 @@ pub fn compare_solvers(comparison: &Comparison, stop: &Stop) -> Result<AccuracyR
         Ok((truth, forces, setup.friction * load))
     };
     let (followed, reason) = if plan.curved() == 0 {
-        (follows(*tolerance), STRAIGHT)
+        (follows(*tolerance), REASON_EXACT)
     } else {
-        match follows((REFINED * tolerance).max(*limits::TOLERANCE.start())) {
+        match follows((REFERENCE_TOLERANCE * tolerance).max(*limits::TOLERANCE.start())) {
             // More chords leave more to remember.
-            Err(Failure::MemoryFull { .. }) => (follows(*tolerance), CURVED),
-            refined => (refined, CURVED_AND_REFINED),
+            Err(Failure::MemoryFull { .. }) => (follows(*tolerance), REASON_UNREFINED),
+            refined => (refined, REASON_REFINED),
         }
     };
     let (truth, forces, unit) = followed?;
@@ -106,7 +106,7 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
     let begin = Instant::now();
     let found = match solver {
         Named::Exact => answer(|| contact(setup.clone(), "/contact"), task),
-        Named::Springs(springs) => answer(|| foundation(setup, plan, springs.count), task),
+        Named::Springs(springs) => answer(|| spring_foundation(setup, plan, springs.count), task),
     };
     let found = match found {
         Ok(found) => found,
@@ -148,11 +148,11 @@ fn relative(differences: impl Iterator<Item = f64>, unit: f64) -> Option<f64> {
 }
 
 fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) -> Result<Answer, Failure> {
-    let (begin, mut times) = (Instant::now(), Vec::with_capacity(RUNS));
+    let (begin, mut times) = (Instant::now(), Vec::with_capacity(MAX_RUNS));
     loop {
         let mut found = once(&start, task)?;
         times.push(found.time);
-        if times.len() == RUNS || begin.elapsed() >= REPEATED {
+        if times.len() == MAX_RUNS || begin.elapsed() >= REPEAT_UNTIL {
             times.sort_by(f64::total_cmp);
             found.time = times[times.len() / 2];
             return Ok(found);

@@ -45,7 +45,7 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
             run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, "as asked for", stop)
         }
         Some(wire::Solver::Springs(wire::Springs { count })) => {
-            let springs = foundation(&simulation.setup, &simulation.plan, count)?;
+            let springs = spring_foundation(&simulation.setup, &simulation.plan, count)?;
             run(springs, simulation, timer, "as asked for", stop)
         }
     }
@@ -82,7 +82,7 @@ fn run<S: Solver>(
     let mut estimate = solver.accuracy();
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
-    let accuracy = stated::<S>(&estimate, timer, reason);
+    let accuracy = accuracy_of::<S>(&estimate, timer, reason);
     let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
@@ -115,7 +115,7 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
 ///
 /// # Errors
 /// As [`contact()`], for a definition at `/contact`.
-pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
+pub(super) fn spring_foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
     let moves = plan.moves(start.gross_slip_displacement(), None).map(|step| step.step());
@@ -177,7 +177,7 @@ pub fn follow<S: Solver>(
 }
 
 /// Radii between two checks of the flag.
-const AT_A_TIME: usize = 64;
+const RADII_PER_CHECK: usize = 64;
 
 /// The stresses asked for, and no others.
 ///
@@ -192,7 +192,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
     // Fields that are quick at one radius are computed at many radii between two checks.
     let together = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
         let mut all = Vec::with_capacity(radius.len());
-        for radii in radius.chunks(AT_A_TIME) {
+        for radii in radius.chunks(RADII_PER_CHECK) {
             stop.check()?;
             all.extend(field(radii).into_iter().map(finite));
         }
@@ -225,10 +225,10 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
-    stated::<S>(&solver.accuracy(), timer, reason)
+    accuracy_of::<S>(&solver.accuracy(), timer, reason)
 }
 
-fn stated<S: Solver>(estimate: &Estimate, timer: Timer, reason: &str) -> Accuracy {
+fn accuracy_of<S: Solver>(estimate: &Estimate, timer: Timer, reason: &str) -> Accuracy {
     Accuracy {
         solver: S::KIND,
         reason: reason.to_owned(),

@@ -4,16 +4,16 @@ use stickslip_mechanics::{Contact, Elasticity};
 use stickslip_wire::{Profile, Warning};
 
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays below it.
-const BETA: f64 = 1e-12;
+const BETA_ROUND_OFF: f64 = 1e-12;
 /// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that of curvature.
-const STEEP: f64 = 0.3;
+const MAX_SLOPE: f64 = 0.3;
 /// A contact radius (m), and a reduced modulus (Pa) with a curvature radius (m), that metres and pascals rarely give.
 const HUGE_CONTACT: f64 = 0.1;
 const SOFT: f64 = 1e7;
 const HUGE_CURVATURE: f64 = 1.0;
 
 /// Noise of g over the indentation beyond which a table is called noisy.
-const NOISY: f64 = 1e-3;
+const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
 /// What a run has shown that may require a warning.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +71,7 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
 pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |code: &str, message: String| warnings.push(Warning { code: code.to_owned(), message });
-    if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA) {
+    if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA_ROUND_OFF) {
         warn(
             "dundurs_beta",
             format!(
@@ -88,11 +88,11 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed)
         );
     }
     let slope = profile.slope(observed.contact_radius);
-    if observed.contact_radius > 0.0 && slope > STEEP {
+    if observed.contact_radius > 0.0 && slope > MAX_SLOPE {
         warn(
             "large_contact",
             format!(
-                "the indenter's surface has a slope of {slope:.3} at the edge of the contact: beyond {STEEP} a body is no longer a half-space"
+                "the indenter's surface has a slope of {slope:.3} at the edge of the contact: beyond {MAX_SLOPE} a body is no longer a half-space"
             ),
         );
     }
@@ -107,8 +107,9 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed)
             ),
         );
     }
-    if let Some((noise, amplification)) =
-        observed.noise.filter(|(noise, _)| observed.indentation > 0.0 && *noise > NOISY * observed.indentation)
+    if let Some((noise, amplification)) = observed
+        .noise
+        .filter(|(noise, _)| observed.indentation > 0.0 && *noise > MAX_RELATIVE_NOISE * observed.indentation)
     {
         warn(
             "noisy_table",

@@ -244,7 +244,7 @@ async fn a_key_counts_only_whole_and_once_and_as_a_bearer() {
     assert_eq!(elsewhere.header("x-api-key", a).send().await.unwrap().status().as_u16(), 401);
 }
 
-/// All that can be told from a reply, but for what is new in each.
+/// All of a reply, except what differs in each.
 async fn seen(response: Response, id: Uuid) -> (u16, Vec<(String, String)>, String) {
     let status = response.status().as_u16();
     let request_id = response.headers()["x-request-id"].to_str().unwrap().to_owned();
@@ -289,7 +289,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
         ("south", &[Role::Write], "south"),
         ("nameless", &[Role::Write], ""),
     ];
-    // With states at hand, and with none.
+    // With cached states, and with none.
     for (store, cache) in
         [("memory:".to_owned(), "1MiB"), (format!("sqlite:{file}"), "1MiB"), (format!("sqlite:{file}"), "0")]
     {
@@ -375,7 +375,7 @@ async fn a_job_is_there_for_its_tenant_alone() {
 }
 
 #[tokio::test]
-async fn that_a_contact_has_expired_is_told_to_its_tenant_alone() {
+async fn only_its_tenant_learns_that_a_contact_has_expired() {
     let keys: [(&'static str, &[Role], &str); 2] =
         [("north", &[Role::Write], "north"), ("south", &[Role::Read], "south")];
     let server = Guarded::start("memory:", &["--expire-after", "1s"], &keys).await;

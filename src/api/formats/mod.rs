@@ -52,32 +52,29 @@ impl Format {
     /// The formats of a table that has no plot.
     pub const TABLES: [Format; 5] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow];
 
+    /// Its name in a query, and its media type.
+    const fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Format::Columns => ("columns", "application/json"),
+            Format::Rows => ("rows", "application/vnd.stickslip.rows+json"),
+            Format::Csv => ("csv", "text/csv; charset=utf-8"),
+            Format::Ndjson => ("ndjson", "application/x-ndjson"),
+            Format::Arrow => ("arrow", "application/vnd.apache.arrow.stream"),
+            Format::Svg => ("svg", "image/svg+xml"),
+            Format::Png => ("png", "image/png"),
+        }
+    }
+
     /// Its name in a query.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Format::Columns => "columns",
-            Format::Rows => "rows",
-            Format::Csv => "csv",
-            Format::Ndjson => "ndjson",
-            Format::Arrow => "arrow",
-            Format::Svg => "svg",
-            Format::Png => "png",
-        }
+        self.names().0
     }
 
     /// Its media type.
     #[must_use]
     pub fn media_type(self) -> &'static str {
-        match self {
-            Format::Columns => "application/json",
-            Format::Rows => "application/vnd.stickslip.rows+json",
-            Format::Csv => "text/csv; charset=utf-8",
-            Format::Ndjson => "application/x-ndjson",
-            Format::Arrow => "application/vnd.apache.arrow.stream",
-            Format::Svg => "image/svg+xml",
-            Format::Png => "image/png",
-        }
+        self.names().1
     }
 
     /// Whether it is a plot.

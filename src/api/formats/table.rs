@@ -35,6 +35,11 @@ pub struct Column<'a> {
     cells: Cells<'a>,
 }
 
+/// A piece of the written table.
+pub type Block = Result<Vec<u8>, ArrowError>;
+/// The pieces of a written table, in order.
+pub type Blocks<'a> = Box<dyn Iterator<Item = Block> + Send + 'a>;
+
 type ByRow<'a, T> = Box<dyn Fn(usize) -> T + Send + 'a>;
 
 /// The cells of a column by their row.
@@ -123,41 +128,34 @@ impl<'a> Table<'a> {
         self.in_blocks(format, rows).collect::<Result<Vec<_>, _>>().map(|blocks| blocks.concat())
     }
 
-    /// The same piece by piece.
-    pub fn blocks(self, format: Format) -> Box<dyn Iterator<Item = Result<Vec<u8>, ArrowError>> + Send + 'a> {
+    /// The same block by block.
+    pub fn blocks(self, format: Format) -> Blocks<'a> {
         self.in_blocks(format, BLOCK)
     }
 
-    fn in_blocks(
-        self,
-        format: Format,
-        size: usize,
-    ) -> Box<dyn Iterator<Item = Result<Vec<u8>, ArrowError>> + Send + 'a> {
-        let blocks = self.rows.div_ceil(size).max(1);
-        let rows = self.rows;
+    fn in_blocks(self, format: Format, size: usize) -> Blocks<'a> {
+        let (rows, blocks) = (self.rows, self.rows.div_ceil(size).max(1));
         let range = move |block: usize| block * size..rows.min((block + 1) * size);
-        match format {
-            Format::Arrow => Box::new(self.arrow(blocks, range)),
-            Format::Columns => Box::new((0..blocks * self.columns.len()).map(move |piece| {
-                let mut text = String::new();
-                // Writing to a string cannot fail.
-                let _ = self.write_column(piece / blocks, range(piece % blocks), &mut text);
-                Ok(text.into_bytes())
-            })),
-            _ => Box::new((0..blocks).map(move |block| {
-                let mut text = String::new();
-                // As above.
-                let _ = self.write_rows(range(block), format, &mut text);
-                Ok(text.into_bytes())
-            })),
+        if format == Format::Arrow {
+            return Box::new(self.arrow(blocks, range));
         }
+        let pieces = if format == Format::Columns { blocks * self.columns.len() } else { blocks };
+        Box::new((0..pieces).map(move |piece| {
+            let mut text = String::new();
+            // Writing to a string cannot fail.
+            let _ = match format {
+                Format::Columns => self.write_column(piece / blocks, range(piece % blocks), &mut text),
+                _ => self.write_rows(range(piece), format, &mut text),
+            };
+            Ok(text.into_bytes())
+        }))
     }
 
     fn arrow(
         self,
         blocks: usize,
         range: impl Fn(usize) -> Range<usize> + Send + 'a,
-    ) -> impl Iterator<Item = Result<Vec<u8>, ArrowError>> + Send + 'a {
+    ) -> impl Iterator<Item = Block> + Send + 'a {
         let schema = Arc::new(Schema::new(self.columns.iter().map(Column::field).collect::<Vec<_>>()));
         let mut writer = StreamWriter::try_new(Vec::new(), &schema);
         (0..=blocks).map(move |block| {
@@ -193,15 +191,19 @@ impl<'a> Table<'a> {
 
     fn write_rows(&self, rows: Range<usize>, format: Format, text: &mut String) -> fmt::Result {
         let (is_first, is_last) = (rows.start == 0, rows.end == self.rows);
-        if is_first && format == Format::Csv {
-            *text = self.columns.iter().map(|column| csv_name(&column.name)).collect::<Vec<_>>().join(",") + "\n";
+        match format {
+            Format::Rows if is_first => text.push('['),
+            Format::Csv if is_first => {
+                let names: Vec<_> = self.columns.iter().map(|column| csv_name(&column.name)).collect();
+                *text = names.join(",") + "\n";
+            }
+            _ => {}
         }
-        // What stands before a row, between a row and the next, and after the last.
-        let (open, between, close) = match format {
-            Format::Rows => ("[", ",", "]"),
-            _ => ("", "", ""),
+        let (between, end) = match format {
+            Format::Csv => ("", "\n"),
+            Format::Rows => (",", "}"),
+            _ => ("", "}\n"),
         };
-        text.push_str(if is_first { open } else { "" });
         for row in rows {
             text.push_str(if row > 0 { between } else { "" });
             for (index, column) in self.columns.iter().enumerate() {
@@ -212,13 +214,9 @@ impl<'a> Table<'a> {
                 }
                 column.write_cell(row, format, text)?;
             }
-            text.push_str(match format {
-                Format::Csv => "\n",
-                Format::Rows => "}",
-                _ => "}\n",
-            });
+            text.push_str(end);
         }
-        text.push_str(if is_last { close } else { "" });
+        text.push_str(if is_last && format == Format::Rows { "]" } else { "" });
         Ok(())
     }
 }

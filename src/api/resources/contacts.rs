@@ -133,7 +133,7 @@ pub async fn get_definition(
 pub async fn fork_contact(
     TenantApp(app): TenantApp,
     ContactPath { id }: ContactPath,
-    OptionalBody(request): OptionalBody<ForkRequest>,
+    request: OptionalBody<ForkRequest>,
 ) -> Result<Response, Problem> {
     Ok(reply::of_change(app.sessions.fork(id, request.body, request.key).await?))
 }

@@ -17,9 +17,9 @@ use stickslip_wire::pluck::{Found, pluck};
 use stickslip_wire::{Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest};
 
 /// How long a sweep keeps its threads.
-const SLICE: Duration = Duration::from_millis(25);
+const SLICE_TIME: Duration = Duration::from_millis(25);
 /// Work that a thread takes at a time.
-const BATCH: Nanoseconds = 1_000_000;
+const BATCH_COST: Nanoseconds = 1_000_000;
 /// The most points that a thread takes at a time.
 const BATCH_POINTS: u64 = 64;
 /// How much lower the priority of the threads is.
@@ -83,7 +83,7 @@ impl Sweep {
         stop: &Stop,
         allowed: Option<Duration>,
     ) -> Result<SweepResult, Failure> {
-        let batch = usize::try_from((BATCH / self.each.max(1)).clamp(1, BATCH_POINTS)).unwrap_or(1);
+        let batch = usize::try_from((BATCH_COST / self.cost_per_point.max(1)).clamp(1, BATCH_POINTS)).unwrap_or(1);
         let (next, begin, done) = (AtomicUsize::new(points.start), Instant::now(), Mutex::new(Vec::new()));
         workers.0.scope(|scope| {
             for _ in 0..width {
@@ -99,7 +99,7 @@ impl Sweep {
                             self.compute_batch(&mut document, first..points.end.min(first + batch), stop, allowed);
                         let stopped = result.is_err();
                         mine.push((first, result));
-                        if stopped || begin.elapsed() >= SLICE {
+                        if stopped || begin.elapsed() >= SLICE_TIME {
                             break;
                         }
                     }

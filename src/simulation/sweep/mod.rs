@@ -19,7 +19,7 @@ pub use compute::Workers;
 pub use result::SweepResult;
 
 /// Work that is stored at a time, and that a killed process loses.
-const CHUNK: Nanoseconds = 1_000_000_000;
+const CHUNK_COST: Nanoseconds = 1_000_000_000;
 /// The most numbers that are stored at a time.
 const CHUNK_NUMBERS: usize = 65_536;
 /// The most chunks that a sweep is stored in, roughly.
@@ -31,7 +31,7 @@ pub struct Sweep {
     base: Value,
     /// The contact, if no axis changes it, so that a table is parsed once and not for each point.
     contact: Option<(ContactDefinition, Setup)>,
-    each: Nanoseconds,
+    cost_per_point: Nanoseconds,
     bytes: usize,
 }
 
@@ -62,7 +62,7 @@ impl Sweep {
     /// What all of it costs at most.
     #[must_use]
     pub fn cost(&self) -> Nanoseconds {
-        self.each.saturating_mul(self.checked.points as u64)
+        self.cost_per_point.saturating_mul(self.checked.points as u64)
     }
 
     /// Numbers in the result of so many points.
@@ -80,7 +80,7 @@ impl Sweep {
     /// Points that are stored at a time.
     #[must_use]
     pub fn chunk(&self) -> usize {
-        let worth = usize::try_from(CHUNK / self.each.max(1)).unwrap_or(usize::MAX);
+        let worth = usize::try_from(CHUNK_COST / self.cost_per_point.max(1)).unwrap_or(usize::MAX);
         let most = CHUNK_NUMBERS / self.checked.outputs.len().max(1);
         worth.max(self.checked.points.div_ceil(CHUNKS)).clamp(1, most)
     }

@@ -24,7 +24,7 @@ impl Sweep {
     /// output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
     pub fn plan(checked: CheckedSweep) -> Result<Sweep, Rejection> {
         let mut document = checked.request.base.0.clone();
-        let mut sweep = Sweep { checked, base: Value::Null, contact: None, each: 0, bytes: 0 };
+        let mut sweep = Sweep { checked, base: Value::Null, contact: None, cost_per_point: 0, bytes: 0 };
         let mut outputs = vec![Found::Nothing; sweep.checked.outputs.len()];
         let (mut faults, mut accepted, mut refused) = (Vec::new(), 0, None);
         for point in sweep.corners() {
@@ -64,12 +64,12 @@ impl Sweep {
     }
 
     fn inspect(&mut self, simulation: Simulation, outputs: &mut [Found]) {
-        self.each = self.each.max(cost::of_simulation(&simulation));
+        self.cost_per_point = self.cost_per_point.max(cost::of_simulation(&simulation));
         self.bytes = self.bytes.max(cost::bytes_of_simulation(&simulation));
         let reply = reply_template(&simulation);
         for (output, found) in self.checked.outputs.iter().zip(outputs) {
             if !matches!(found, Found::Number(_)) {
-                *found = pluck(&reply, &any_peak(output));
+                *found = pluck(&reply, &first_peak(output));
             }
         }
         let fixed =
@@ -112,7 +112,7 @@ impl Sweep {
 }
 
 /// The pointer to the first peak for one to any peak: how many there are is not known before.
-fn any_peak(output: &Pointer) -> Pointer {
+fn first_peak(output: &Pointer) -> Pointer {
     match output.segments() {
         [residual, peaks, position, rest @ ..]
             if residual == "residual" && peaks == "peaks" && index(position).is_some() =>

@@ -1,4 +1,4 @@
-//! Jobs: how they are asked for, followed, bounded and cancelled.
+//! Jobs: how they are requested, watched, bounded and cancelled.
 
 use std::collections::BTreeSet;
 
@@ -68,7 +68,7 @@ async fn events_lead_from_the_beginning_to_the_end_of_a_job() {
     let done: Vec<u64> = events.iter().map(|(_, job)| job["progress"]["done"].as_u64().unwrap()).collect();
     assert!(done.is_sorted() && done.last() == Some(&40_000), "{done:?}");
     assert_eq!((last.0.as_str(), &last.1["state"]), ("done", &json!("done")));
-    // Whoever comes later is told of the end at once.
+    // A client that connects later receives the end at once.
     let path = format!("/jobs/{}", last.1["id"].as_str().unwrap());
     let late = self::events(server.get(&format!("{path}/events")).await).await;
     assert_eq!(late, [("done".to_owned(), last.1.clone())]);
@@ -91,7 +91,7 @@ async fn a_cancelled_job_is_gone_with_its_result() {
         assert_eq!((refusal.status, refusal.code.as_str()), (404, "job_not_found"), "{more}");
     }
     assert_eq!(problem(server.get("/jobs/none").await).await.code, "job_not_found");
-    // Those who worked on it are free for others.
+    // Its threads are free for others.
     let path = server.start_job(&small_job()).await;
     server.job_result(&path).await;
 }

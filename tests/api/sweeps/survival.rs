@@ -1,4 +1,4 @@
-//! Jobs over the end of processes.
+//! Jobs survive the end of processes.
 
 use serde_json::{Value, json};
 use tempfile::tempdir;
@@ -135,7 +135,7 @@ async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
     let open = "UPDATE jobs SET finished_at = NULL, created_at = created_at - ?2, done = 0 WHERE id = ?1";
     database.execute(open, (id(&paths[2]), hours(24 * 7 + 1))).unwrap();
     drop(database);
-    // At its start, a server keeps house.
+    // A server removes expired jobs at its start.
     let process = Process::start(&store).await;
     let server = Server::at(&process.base);
     for gone in [&paths[0], &paths[2]] {

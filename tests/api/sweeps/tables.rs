@@ -1,4 +1,4 @@
-//! What stands in the table.
+//! The numbers in the table of a sweep.
 
 use arrow_array::Array as _;
 use arrow_array::cast::AsArray as _;
@@ -16,7 +16,7 @@ async fn compare(server: &Server, sweep: &Value) -> (usize, usize) {
     let table: Value = response.json().await.unwrap();
     let axes: Vec<&str> =
         sweep["axes"].as_array().unwrap().iter().map(|axis| axis["pointer"].as_str().unwrap()).collect();
-    let (mut numbers, mut nothings) = (0, 0);
+    let (mut numbers, mut nulls) = (0, 0);
     for row in 0..table["points"].as_u64().unwrap() as usize {
         let mut point = sweep["base"].clone();
         for axis in &axes {
@@ -36,10 +36,10 @@ async fn compare(server: &Server, sweep: &Value) -> (usize, usize) {
             let expected = reply.pointer(output).and_then(Value::as_f64);
             let found = &table["columns"][output][row];
             assert_eq!(found.as_f64().map(f64::to_bits), expected.map(f64::to_bits), "{output} of row {row}");
-            *if expected.is_some() { &mut numbers } else { &mut nothings } += 1;
+            *if expected.is_some() { &mut numbers } else { &mut nulls } += 1;
         }
     }
-    (numbers, nothings)
+    (numbers, nulls)
 }
 
 #[tokio::test]
@@ -51,9 +51,9 @@ async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
         {"pointer": "/contact/preload/normal_force", "logarithmic": {"from": 0.001, "to": 3000, "count": 4}}
     ], "outputs": ["/residual/max", "/residual/peaks/3/radius", "/residual/peaks/3/shear", "/steps/0/elastic_energy",
         "/steps/0/memory_depth", "/contact/contact_radius", "/accuracy/stress_error"]});
-    let (numbers, nothings) = compare(&server, &three).await;
-    assert_eq!(numbers + nothings, 36 * 7);
-    assert!(nothings > 0 && nothings < 72, "a peak that some points do not reach: {nothings}");
+    let (numbers, nulls) = compare(&server, &three).await;
+    assert_eq!(numbers + nulls, 36 * 7);
+    assert!(nulls > 0 && nulls < 72, "a peak that some points do not reach: {nulls}");
 
     // A member that the base leaves out, a curved path, stresses, and states along it.
     let moves = json!([{"normal_force": 12, "force": 2}, {"displacement": 1e-8, "normal_force": 11}]);
