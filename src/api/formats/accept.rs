@@ -2,8 +2,8 @@
 
 use axum::http::{HeaderMap, header};
 
-use super::super::problem::{Kind, Problem};
 use super::Format;
+use crate::api::problem::{Kind, Problem};
 
 impl Format {
     /// The format that the query names, or the one out of `formats` that `Accept` prefers.

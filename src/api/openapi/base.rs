@@ -4,9 +4,9 @@ use utoipa::OpenApi;
 
 use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
-use super::super::extract::BODY_LIMIT;
-use super::super::problem::MEDIA_TYPE;
-use super::super::query::PAGE;
+use crate::api::extract::BODY_LIMIT;
+use crate::api::problem::MEDIA_TYPE;
+use crate::api::query::PAGE;
 
 #[derive(OpenApi)]
 #[openapi(

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::super::middleware::access_control::{Need, need};
 use super::operations;
 use super::refusals::refusal;
 use crate::access::Role;
+use crate::api::middleware::access_control::{Need, need};
 
 /// Writes the security scheme, and with each operation the key that it needs.
 pub fn write(document: &mut Value) {

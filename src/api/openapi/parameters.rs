@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 use stickslip_mechanics::range;
 use stickslip_wire::limits;
 
-use super::super::params::KEY_LENGTH;
-use super::super::query::{DEFAULT_PAGE, PAGE};
-use super::super::resources::stress::QUERY_RADII;
 use super::operations;
+use crate::api::params::KEY_LENGTH;
+use crate::api::query::{DEFAULT_PAGE, PAGE};
+use crate::api::resources::stress::QUERY_RADII;
 
 /// Completes the parameters of every operation.
 pub fn write(document: &mut Value) {

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::super::problem::MEDIA_TYPE;
 use super::operations;
+use crate::api::problem::MEDIA_TYPE;
 use crate::server::limits::HEAD;
 
 /// Adds to every operation the refusals that it can meet.

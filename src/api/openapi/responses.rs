@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::formats::Format;
 use super::operations;
 use super::refusals::refusal;
+use crate::api::formats::Format;
 
 /// Completes the responses.
 pub fn write(document: &mut Value) {

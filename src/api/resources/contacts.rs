@@ -52,7 +52,7 @@ impl QueryParams for ListQuery {
     }
 }
 
-/// List the contacts
+/// List contacts
 ///
 /// A page of contacts, oldest first.
 #[utoipa::path(
@@ -103,7 +103,7 @@ pub async fn delete_contact(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Read the definition of a contact
+/// Get the definition of a contact
 ///
 /// As it was sent: with another preload, or another path, it serves as the `contact` of a simulation. A fork has the
 /// definition of its original.

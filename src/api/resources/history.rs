@@ -21,8 +21,8 @@ pub(super) const ITEM_BYTES: usize = 1_536;
 #[into_params(parameter_in = Query)]
 pub struct HistoryQuery {
     /// The `next` of the previous page.
-    #[param(nullable = false)]
-    after: Option<u64>,
+    #[param(value_type = Option<u64>, nullable = false)]
+    after: u64,
     /// How many moves at most.
     #[param(value_type = Option<usize>, nullable = false)]
     limit: usize,
@@ -35,11 +35,11 @@ pub struct HistoryQuery {
 impl QueryParams for HistoryQuery {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<HistoryQuery> {
         let (after, limit) = query.page(SEQUENCE);
-        Some(HistoryQuery { after, limit, format: query.format(&Format::ALL) })
+        Some(HistoryQuery { after: after.unwrap_or(0), limit, format: query.format(&Format::ALL) })
     }
 }
 
-/// Read the past of a contact
+/// Get the history of a contact
 ///
 /// A page of its moves with the states after them, oldest first.
 #[utoipa::path(
@@ -54,7 +54,6 @@ pub async fn get_history(
     CheckedQuery(query): CheckedQuery<HistoryQuery>,
 ) -> Result<Response, Problem> {
     let HistoryQuery { after, limit, format } = query;
-    let after = after.unwrap_or(0);
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     let memory = app.pool.reserve(limit * ITEM_BYTES + format.bytes(0, 0)).await?;
     let page = app.sessions.history(id, after, limit).await?;

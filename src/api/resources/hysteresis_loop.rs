@@ -20,8 +20,8 @@ use crate::api::state::TenantApp;
 #[into_params(parameter_in = Query)]
 pub struct LoopQuery {
     /// The `next` of the previous page.
-    #[param(nullable = false)]
-    after: Option<u64>,
+    #[param(value_type = Option<u64>, nullable = false)]
+    after: u64,
     /// How many moves at most.
     #[param(value_type = Option<usize>, nullable = false)]
     limit: usize,
@@ -40,11 +40,11 @@ impl QueryParams for LoopQuery {
         let (after, limit) = query.page(SEQUENCE);
         let points_per_move = query.number("points_per_move", COUNT).unwrap_or(1);
         query.faults.count(At::Root.member("points_per_move"), points_per_move, &limits::LOOP_POINTS);
-        Some(LoopQuery { after, limit, points_per_move, format: query.format(&Format::ALL) })
+        Some(LoopQuery { after: after.unwrap_or(0), limit, points_per_move, format: query.format(&Format::ALL) })
     }
 }
 
-/// Read the hysteresis loop of a contact
+/// Get the hysteresis loop of a contact
 ///
 /// Tangential force and displacement along a page of its moves, oldest first.
 #[utoipa::path(
@@ -59,7 +59,6 @@ pub async fn get_loop(
     CheckedQuery(query): CheckedQuery<LoopQuery>,
 ) -> Result<Response, Problem> {
     let LoopQuery { after, limit, points_per_move: points, format } = query;
-    let after = after.unwrap_or(0);
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     let bytes = limit * ITEM_BYTES + Sessions::bytes_of_trace(limit * points) + format.bytes(0, 0);
     let memory = app.pool.reserve(bytes).await?;

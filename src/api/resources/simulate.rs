@@ -17,7 +17,7 @@ use stickslip_wire::{SimulateReply, SimulateRequest};
 #[utoipa::path(
     post, path = "/simulate", tag = "simulation",
     request_body(content = SimulateRequest, examples(
-        ("back and forth" = (summary = "Falling amplitude, with the stresses that remain", value = json!({
+        ("back and forth" = (summary = "Falling amplitude, with the residual stresses", value = json!({
             "contact": {
                 "profile": {"type": "sphere", "radius": 0.01},
                 "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},

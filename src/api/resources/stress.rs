@@ -84,7 +84,7 @@ impl QueryParams for Wanted {
     }
 }
 
-/// Read the stresses of a contact
+/// Get the stresses of a contact
 #[utoipa::path(
     get, path = "/contacts/{id}/stress", tag = "contacts", params(ContactPath, StressQuery),
     responses((status = 200, description = "The stresses in its present state", body = StressReply,

@@ -23,7 +23,7 @@ use stickslip_wire::{JobReply, SweepReply, SweepRequest};
 /// Bytes of a number of the table while it is computed.
 const NUMBER_BYTES: usize = 16;
 
-/// Sweep over simulations
+/// Run a sweep
 ///
 /// Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the outputs. A
 /// point without an answer is a row of `null` and is listed among the failures. A small sweep is answered at once. A large one

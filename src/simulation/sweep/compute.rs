@@ -9,9 +9,9 @@ use rayon::ThreadPool;
 use serde::Deserialize as _;
 use serde_json::Value;
 
-use super::super::{Failure, simulate};
 use super::{Sweep, SweepError, SweepResult};
 use crate::admission::{Nanoseconds, Pool, Stop};
+use crate::simulation::{Failure, simulate};
 use stickslip_wire::check::Fault;
 use stickslip_wire::pluck::{Found, pluck};
 use stickslip_wire::{Document as _, PointFailure, Rejection, SimulateReply, SimulateRequest};

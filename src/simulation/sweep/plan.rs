@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::super::cost;
-use super::super::reply_template::reply_template;
 use super::Sweep;
+use crate::simulation::cost;
+use crate::simulation::reply_template::reply_template;
 use stickslip_wire::any::{Pointer, index};
 use stickslip_wire::check::{At, Fault, Faults};
 use stickslip_wire::pluck::{Found, pluck};
