@@ -26,7 +26,8 @@ use super::state::App;
 pub const BODY_LIMIT: usize = 8 * 1024 * 1024;
 /// Bytes of a body that is too large which are read and thrown away, so that the client gets to read the answer.
 const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
-/// Bytes that a byte of a long body may become while it is parsed: a point of a table is a few digits, and then a series.
+/// Bytes that a byte of a long body may become while it is parsed: a point of a table is a few digits, and then a
+/// series.
 const EXPANSION: usize = 100;
 
 /// A checked body, and the headers that make it safe to repeat. If it is `OPTIONAL`, no body at all counts as `{}`.

@@ -34,7 +34,8 @@ pub struct JobPath {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 pub struct IfMatch {
-    /// The sequence that the contact must have, in quotes. If it has another one, nothing changes and the answer is 412.
+    /// The sequence that the contact must have, in quotes. If it has another one, nothing changes and the answer is
+    /// 412.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false)]
     pub sequence: Option<u64>,
 }
@@ -43,8 +44,8 @@ pub struct IfMatch {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 pub struct IdempotencyKey {
-    /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing and
-    /// gets the first reply again; with another body it is refused.
+    /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing
+    /// and gets the first reply again; with another body it is refused.
     #[param(rename = "Idempotency-Key", nullable = false)]
     pub key: Option<String>,
 }
@@ -53,8 +54,8 @@ pub struct IdempotencyKey {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 pub struct LastEventId {
-    /// The sequence of the last event that the client has received. The stream continues with the next one, without a gap;
-    /// if the header is left out, it begins with the present state.
+    /// The sequence of the last event that the client has received. The stream continues with the next one, without a
+    /// gap; if the header is left out, it begins with the present state.
     #[param(rename = "Last-Event-ID", nullable = false)]
     pub sequence: Option<u64>,
 }
@@ -84,7 +85,8 @@ impl FromRequestParts<App> for JobPath {
     }
 }
 
-/// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than invalid.
+/// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
+/// invalid.
 async fn identifier(parts: &mut Parts, app: &App, kind: Kind, noun: &str) -> Result<Uuid, Problem> {
     let missing = |id: &str| Problem::new(kind, format!("there is no {noun} {id}"));
     match Path::<String>::from_request_parts(parts, app).await {

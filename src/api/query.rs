@@ -1,4 +1,5 @@
-//! Query strings. Each operation reads its own into a struct; a parameter that the operation does not have is refused by name.
+//! Query strings. Each operation reads its own into a struct; a parameter that the operation does not have is refused
+//! by name.
 
 use std::ops::RangeInclusive;
 use std::str::FromStr;

@@ -1,8 +1,8 @@
 //! The same path with several solvers, each compared with a reference.
 //!
-//! Every solver runs exactly as in [`super::simulate`], so that its numbers are those of a simulation.
-//! Where all moves of the path have an exact solution, the reference is the exact solver. Where some are curved, it is the
-//! exact solver again, held to a smaller tolerance.
+//! Every solver runs exactly as in [`super::simulate`], so that its numbers are those of a simulation. Where all moves
+//! of the path have an exact solution, the reference is the exact solver. Where some are curved, it is the exact solver
+//! again, held to a smaller tolerance.
 
 use std::time::{Duration, Instant};
 

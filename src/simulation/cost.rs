@@ -1,9 +1,10 @@
 //! Estimates of the time and memory that a request takes.
 //!
 //! Passing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
-//! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection, where it delays others by no
-//! more than that; everything above goes to the [`Pool`](crate::admission::Pool). The estimates need only be right to a relative_cost of a few:
-//! `cargo bench --bench request` and `--bench growth` show what they come from.
+//! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection,
+//! where it delays others by no more than that; everything above goes to the [`Pool`](crate::admission::Pool). The
+//! estimates need only be right to a relative_cost of a few: `cargo bench --bench request` and `--bench growth` show
+//! what they come from.
 
 use crate::admission::Nanoseconds;
 use stickslip_mechanics::Profile;
@@ -12,7 +13,8 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{self as wire, Comparison, Plan, Solver, Steps, limits};
 
-/// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50 microseconds.
+/// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50
+/// microseconds.
 pub const INLINE_BODY: usize = 1024;
 
 /// One move of the exact solver, with its state, and the state written as JSON.
@@ -37,8 +39,8 @@ const PROTOCOL_COST: u64 = 200_000;
 /// Reversals that a target is assumed to need.
 const ASSUMED_REVERSALS: usize = 100;
 
-/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that grows by
-/// doubling.
+/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that
+/// grows by doubling.
 const REVERSAL_BYTES: usize = 1_024;
 /// One trial of a protocol with errors.
 const SAMPLE_BYTES: usize = 16;
@@ -114,8 +116,8 @@ pub fn writing_table(points: usize) -> Nanoseconds {
     points as u64 * RADIUS_COST
 }
 
-/// What costs so much by the closed forms of a sphere costs this much on another shape; the search for extrema goes from knot
-/// to knot there, and is never cheap.
+/// What costs so much by the closed forms of a sphere costs this much on another shape; the search for extrema goes
+/// from knot to knot there, and is never cheap.
 fn on_profile(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
     let searched = if residual && !matches!(profile, Profile::Sphere(_)) { SEARCH_COST } else { 0 };
     sphere.saturating_mul(relative_cost(profile)).saturating_add(searched)

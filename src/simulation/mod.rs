@@ -1,7 +1,8 @@
 //! From a checked request to a reply, by way of the mechanics.
 //!
-//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor storage.
-//! Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the work.
+//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor
+//! storage. Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the
+//! work.
 
 mod compare_solvers;
 pub mod cost;

@@ -6,7 +6,8 @@ use stickslip_wire::{
     Stress,
 };
 
-/// A reply with a zero for each number that the simulation will compute, and one peak in place of however many there will be.
+/// A reply with a zero for each number that the simulation will compute, and one peak in place of however many there
+/// will be.
 pub(super) fn reply_template(simulation: &Simulation) -> SimulateReply {
     let steps = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
     let peak = Peak { radius: 0.0, shear: None };

@@ -144,8 +144,8 @@ pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol
         .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })
 }
 
-/// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
-/// [`equal_peaks`] has found for the plan.
+/// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is
+/// what [`equal_peaks`] has found for the plan.
 ///
 /// # Errors
 /// [`Failure`] at the first move without an answer, with a pointer to it; the moves before it have been made.

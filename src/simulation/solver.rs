@@ -12,7 +12,8 @@ pub trait Solver {
     fn figures(&self) -> Figures;
     /// Displacement of gross slip at the present normal load, m.
     fn gross_slip_displacement(&self) -> f64;
-    /// Makes a move, unless `go_on` ends it; a refused one changes nothing. The tolerance holds where no exact solution exists.
+    /// Makes a move, unless `go_on` ends it; a refused one changes nothing. The tolerance holds where no exact solution
+    /// exists.
     ///
     /// # Errors
     /// What the mechanics has no answer to, and [`Error::BrokenOff`].

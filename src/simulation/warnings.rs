@@ -3,9 +3,11 @@
 use stickslip_mechanics::{Contact, Elasticity};
 use stickslip_wire::{Profile, Warning};
 
-/// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays below it.
+/// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
+/// below it.
 const BETA_ROUND_OFF: f64 = 1e-12;
-/// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that of curvature.
+/// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that
+/// of curvature.
 const MAX_SLOPE: f64 = 0.3;
 /// A contact radius (m), and a reduced modulus (Pa) with a curvature radius (m), that metres and pascals rarely give.
 const HUGE_CONTACT: f64 = 0.1;
@@ -30,8 +32,9 @@ pub struct Observed {
     pub excess_error: Option<f64>,
 }
 
-/// The warnings that a request to a stored contact causes for the first time: none that held already at the contact radius
-/// `before`, m. `largest` is the largest contact radius since, m, and `excess_error` the error of the force if it is beyond the tolerance.
+/// The warnings that a request to a stored contact causes for the first time: none that held already at the contact
+/// radius `before`, m. `largest` is the largest contact radius since, m, and `excess_error` the error of the force if
+/// it is beyond the tolerance.
 #[must_use]
 pub fn new_warnings(
     profile: &Profile,

@@ -35,7 +35,8 @@ impl Format {
     }
 }
 
-/// The weight that `Accept` gives a media type, 0 to 1: that of the most specific range that it falls in (RFC 9110, 12.5.1).
+/// The weight that `Accept` gives a media type, 0 to 1: that of the most specific range that it falls in (RFC 9110,
+/// 12.5.1).
 fn quality(accepted: &str, media_type: &str) -> f64 {
     let essence = media_type.split(';').next().unwrap_or_default();
     let group = essence.split('/').next().unwrap_or_default();

@@ -1,4 +1,5 @@
-//! The OpenAPI document: what the attributes of handlers and types generate, completed by what attributes cannot express.
+//! The OpenAPI document: what the attributes of handlers and types generate, completed by what attributes cannot
+//! express.
 
 mod base;
 mod keys;

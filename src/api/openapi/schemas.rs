@@ -1,5 +1,5 @@
-//! What the derived schemas cannot say: which members exclude each other, and which values between the limits are left out.
-//! Generated clients and testers go by it.
+//! What the derived schemas cannot say: which members exclude each other, and which values between the limits are left
+//! out. Generated clients and testers go by it.
 
 use serde_json::{Map, Value, json};
 
@@ -28,7 +28,8 @@ fn close_choices(schemas: &mut Map<String, Value>) {
     }
 }
 
-/// The `type` of each profile inside it, so that the choice is by reference alone: generators lose one that is composed.
+/// The `type` of each profile inside it, so that the choice is by reference alone: generators lose one that is
+/// composed.
 fn write_profiles(schemas: &mut Map<String, Value>) {
     let mut names = Map::new();
     let choices = schemas["Profile"]["oneOf"].as_array_mut().map(std::mem::take).unwrap_or_default();
@@ -64,8 +65,8 @@ fn write_titles(schemas: &mut Map<String, Value>) {
     }
 }
 
-/// Members that exclude each other, or of which one is required. It is said with `not`, because that is the one form that
-/// generators of types ignore rather than fail on.
+/// Members that exclude each other, or of which one is required. It is said with `not`, because that is the one form
+/// that generators of types ignore rather than fail on.
 fn write_exclusions(schemas: &mut Map<String, Value>) {
     let have = |names: &[&str]| json!({"required": names});
     let none = |names: &[&str]| {

@@ -12,10 +12,10 @@ use stickslip_wire::{AccuracyReply, AccuracyRequest};
 
 /// Compare solvers
 ///
-/// Follows a path from the preloaded contact with each of the solvers, and compares the forces along it and the shear stresses at
-/// its end with a reference: the exact solver, refined where moves are curved. This shows what a coarser model would do
-/// to your own numbers. A solver that cannot follow the path has the reason in its row. The springs of all solvers together,
-/// times moves and stress points, have the limit of one simulation. Nothing is stored.
+/// Follows a path from the preloaded contact with each of the solvers, and compares the forces along it and the shear
+/// stresses at its end with a reference: the exact solver, refined where moves are curved. This shows what a coarser
+/// model would do to your own numbers. A solver that cannot follow the path has the reason in its row. The springs of
+/// all solvers together, times moves and stress points, have the limit of one simulation. Nothing is stored.
 #[utoipa::path(
     post, path = "/accuracy", tag = "simulation",
     request_body(content = AccuracyRequest, examples(

@@ -13,9 +13,9 @@ use stickslip_wire::{EndEvent, StateEvent};
 
 /// Watch a contact
 ///
-/// Server-sent events: an event `state` for each move, whose `id` is the sequence, in order and without a gap. A browser's
-/// `EventSource` resumes by itself after an interruption. The last event is `end` (its data an `EndEvent`), when the contact
-/// is deleted or expires, or the server stops. Comments keep an idle connection open.
+/// Server-sent events: an event `state` for each move, whose `id` is the sequence, in order and without a gap. A
+/// browser's `EventSource` resumes by itself after an interruption. The last event is `end` (its data an `EndEvent`),
+/// when the contact is deleted or expires, or the server stops. Comments keep an idle connection open.
 #[utoipa::path(
     get, path = "/contacts/{id}/events", tag = "contacts", params(ContactPath, LastEventId),
     responses((status = 200, description = "The states; the schema is that of one event",

@@ -26,8 +26,8 @@ pub struct HistoryQuery {
     /// How many moves at most.
     #[param(value_type = Option<usize>, nullable = false)]
     limit: usize,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC stream), or a
-    /// plot as `svg` or `png`. If it is left out, `Accept` decides.
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+    /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
     #[param(value_type = Option<String>, nullable = false, default = "columns")]
     format: Option<Format>,
 }

@@ -25,12 +25,12 @@ pub struct LoopQuery {
     /// How many moves at most.
     #[param(value_type = Option<usize>, nullable = false)]
     limit: usize,
-    /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded states; with
-    /// more, the moves are repeated in small steps on a copy of the contact.
+    /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
+    /// states; with more, the moves are repeated in small steps on a copy of the contact.
     #[param(value_type = Option<usize>, nullable = false, default = 1)]
     points_per_move: usize,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC stream), or a
-    /// plot as `svg` or `png`. If it is left out, `Accept` decides.
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+    /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
     #[param(value_type = Option<String>, nullable = false, default = "columns")]
     format: Option<Format>,
 }

@@ -22,7 +22,8 @@ use stickslip_wire::{JobEndEvent, JobReply, JobState, SweepReply};
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct TableQuery {
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv` or `ndjson`; left out, what `Accept` prefers.
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
+    /// stream). If it is left out, `Accept` decides.
     #[param(value_type = Option<String>, nullable = false, default = "columns")]
     pub format: Option<Format>,
 }
@@ -80,8 +81,8 @@ pub async fn cancel_job(TenantApp(app): TenantApp, JobPath { id }: JobPath) -> R
 
 /// Watch a job
 ///
-/// Server-sent events whose data are those of `GET /jobs/{id}`: `progress` at once and after each step of the job,
-/// and `done` or `failed` at its end. If the job is deleted or the server stops before that, the last event is `end` (its
+/// Server-sent events whose data are those of `GET /jobs/{id}`: `progress` at once and after each step of the job, and
+/// `done` or `failed` at its end. If the job is deleted or the server stops before that, the last event is `end` (its
 /// data a `JobEndEvent`). Comments keep an idle connection open.
 #[utoipa::path(
     get, path = "/jobs/{id}/events", tag = "jobs", params(JobPath),

@@ -1,4 +1,5 @@
-//! The service itself: health, the OpenAPI document, the kinds of problems, and the answers to requests without a handler.
+//! The service itself: health, the OpenAPI document, the kinds of problems, and the answers to requests without a
+//! handler.
 
 use std::any::Any;
 

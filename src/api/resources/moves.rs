@@ -63,8 +63,8 @@ pub async fn follow_path(
 
 /// Relax a contact
 ///
-/// Finds the path from the present state that leaves the least shear stress, whatever the history, and applies all of it or
-/// nothing. A dry run returns the same and changes nothing.
+/// Finds the path from the present state that leaves the least shear stress, whatever the history, and applies all of
+/// it or nothing. A dry run returns the same and changes nothing.
 #[utoipa::path(
     post, path = "/contacts/{id}/relax", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body(content = RelaxRequest, examples(

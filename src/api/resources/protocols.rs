@@ -12,8 +12,9 @@ use stickslip_wire::{ProtocolReply, ProtocolRequest};
 
 /// Find a protocol
 ///
-/// Finds displacements that leave little shear stress, in a number of reversals or in as few as reach a target, and says what
-/// remains, how far that may be from the optimum, and what the other laws would leave. Nothing is stored or changed.
+/// Finds displacements that leave little shear stress, in a number of reversals or in as few as reach a target, and
+/// says what remains, how far that may be from the optimum, and what the other laws would leave. Nothing is stored or
+/// changed.
 #[utoipa::path(
     post, path = "/protocols", tag = "protocols",
     request_body(content = ProtocolRequest, examples(

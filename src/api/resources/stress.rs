@@ -26,22 +26,22 @@ const PLOT_RADII: usize = 1_000;
 #[into_params(parameter_in = Query)]
 #[expect(dead_code, reason = "describes what `Wanted` is read from")]
 pub struct StressQuery {
-    /// Number of radii, evenly spaced from the centre to the edge, both included. Give this or `radii`, unless you ask for a
-    /// plot.
+    /// Number of radii, evenly spaced from the centre to the edge, both included. Give this or `radii`, unless you ask
+    /// for a plot.
     #[param(nullable = false, example = 100)]
     points: Option<usize>,
     /// Radii, m, separated by commas or given one by one.
     #[param(nullable = false)]
     radii: Option<String>,
-    /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out, the first
-    /// two.
+    /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out, the
+    /// first two.
     #[param(nullable = false)]
     fields: Option<String>,
     /// Whether the extrema of the shear stress are wanted too.
     #[param(nullable = false, default = false)]
     residual: Option<bool>,
-    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC stream), or a
-    /// plot as `svg` or `png`. If it is left out, `Accept` decides.
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+    /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
     #[param(nullable = false, default = "columns")]
     format: Option<String>,
 }

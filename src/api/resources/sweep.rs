@@ -26,8 +26,8 @@ const NUMBER_BYTES: usize = 16;
 /// Run a sweep
 ///
 /// Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the outputs. A
-/// point without an answer is a row of `null` and is listed among the failures. A small sweep is answered at once. A large one
-/// becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-stream`, its events.
+/// point without an answer is a row of `null` and is listed among the failures. A small sweep is answered at once. A
+/// large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-stream`, its events.
 #[utoipa::path(
     post, path = "/sweep", tag = "simulation", params(TableQuery, Prefer, IdempotencyKey), request_body = SweepRequest,
     responses(

@@ -12,16 +12,16 @@ use stickslip_wire::simulate::Simulation;
 use stickslip_wire::sweep::Draft as CheckedSweep;
 use stickslip_wire::{Document as _, Rejection, SimulateRequest, parse_value};
 
-/// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned into a
-/// request.
+/// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned
+/// into a request.
 const VALUE_BYTES: usize = 32;
 
 impl Sweep {
     /// Checks the corners of a sweep, and estimates its cost.
     ///
     /// # Errors
-    /// [`Rejection::Invalid`] if an axis leaves the range of its field, the base is at fault whatever the axes say, or an
-    /// output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
+    /// [`Rejection::Invalid`] if an axis leaves the range of its field, the base is at fault whatever the axes say, or
+    /// an output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
     pub fn plan(checked: CheckedSweep) -> Result<Sweep, Rejection> {
         let mut document = checked.request.base.0.clone();
         let mut sweep = Sweep { checked, base: Value::Null, contact: None, cost_per_point: 0, bytes: 0 };
