@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use load::{Connection, Process, serve};
 use serde_json::json;
 use stickslip::admission::Stop;
-use stickslip::simulation::{Rows, Sweep, Workers, simulate};
+use stickslip::simulation::{Sweep, SweepResult, Workers, simulate};
 use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
@@ -44,9 +44,9 @@ fn plan() -> Sweep {
     Sweep::plan(draft).expect("a sweep with outputs")
 }
 
-fn time_of_sweep(threads: usize) -> (Rows, Duration) {
+fn time_of_sweep(threads: usize) -> (SweepResult, Duration) {
     let (plan, workers) = (plan(), Workers::new(threads).expect("threads"));
-    let (mut rows, begin) = (Rows::default(), Instant::now());
+    let (mut rows, begin) = (SweepResult::default(), Instant::now());
     while rows.values.len() < POINTS {
         let rest = rows.values.len()..POINTS;
         rows.append(plan.slice(rest, &workers, threads, &Stop::default(), None).expect("nobody stops it"));
@@ -90,7 +90,7 @@ fn main() {
     let alone = begin.elapsed() / SIMULATIONS;
     println!("the simulation alone: {:.2} µs", alone.as_secs_f64() * 1e6);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut first: Option<(Rows, Duration)> = None;
+    let mut first: Option<(SweepResult, Duration)> = None;
     for threads in [1, 2, 4, 8, 16].into_iter().filter(|threads| *threads <= cores) {
         let (rows, time) = time_of_sweep(threads);
         let rate = POINTS as f64 / time.as_secs_f64();

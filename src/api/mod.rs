@@ -5,6 +5,7 @@ pub mod formats;
 pub mod limits;
 pub mod middleware;
 mod openapi;
+mod params;
 pub mod problem;
 mod query;
 mod reply;
@@ -13,11 +14,11 @@ mod state;
 
 use std::future::Future;
 use std::io;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use axum::Router;
 use axum::http::header::AUTHORIZATION;
 use axum::middleware::{from_fn, from_fn_with_state};
+use axum::{Extension, Router};
 use tokio::net::TcpListener;
 use tower::ServiceBuilder;
 use tower_http::CompressionLevel;
@@ -25,7 +26,7 @@ use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
 use tower_http::request_id::{PropagateRequestIdLayer, SetRequestIdLayer};
 use tower_http::sensitive_headers::SetSensitiveRequestHeadersLayer;
-use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
@@ -35,9 +36,10 @@ use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use middleware::request_id::{OwnId, REQUEST_ID};
 use middleware::request_metrics::RequestMetrics;
 use middleware::{access_control, compression, request_id, request_log, security_headers};
-use resources::{accuracy, contacts, events, jobs, meta, metrics, moves, page, protocols, reads, simulate, sweep};
+use resources::meta::OpenApiText;
+use resources::{accuracy, contacts, events, history, hysteresis_loop, jobs, meta, metrics, moves, page};
+use resources::{protocols, simulate, stress, sweep};
 
-pub use openapi::document;
 pub use problem::Problem;
 pub use state::{Access, App};
 
@@ -74,11 +76,11 @@ pub async fn serve_within(
 
 /// All routes.
 fn router(app: App, metrics: Arc<RequestMetrics>) -> Router {
-    let (api, _) = described().split_for_parts();
+    let (api, _) = described(document()).split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
     let pool = app.pool.clone();
-    let routes = api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::nothing_here);
+    let routes = api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::not_found);
     with_middleware(routes, access, metrics, pool)
 }
 
@@ -107,30 +109,36 @@ fn with_middleware(routes: Router, access: Access, metrics: Arc<RequestMetrics>,
     routes.layer(layers)
 }
 
-/// The routes that the OpenAPI document describes.
-fn described() -> OpenApiRouter<App> {
+/// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
+pub fn document() -> &'static str {
+    static DOCUMENT: OnceLock<String> = OnceLock::new();
+    DOCUMENT.get_or_init(|| openapi::complete(described("").get_openapi()))
+}
+
+/// The routes that the OpenAPI document describes. `document` is its text, which one of them serves.
+fn described(document: &'static str) -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(openapi::base())
-        .routes(routes!(simulate::simulate))
-        .routes(routes!(accuracy::accuracy))
-        .routes(routes!(protocols::protocols))
-        .routes(routes!(sweep::sweep))
-        .routes(routes!(jobs::get, jobs::delete))
-        .routes(routes!(jobs::result))
-        .routes(routes!(jobs::events))
-        .routes(routes!(contacts::create, contacts::list))
-        .routes(routes!(contacts::get, contacts::delete))
-        .routes(routes!(contacts::definition))
-        .routes(routes!(contacts::fork))
-        .routes(routes!(moves::apply))
-        .routes(routes!(moves::path))
-        .routes(routes!(moves::relax))
-        .routes(routes!(reads::stress))
-        .routes(routes!(reads::history))
-        .routes(routes!(reads::hysteresis))
-        .routes(routes!(events::events))
-        .routes(routes!(meta::openapi))
-        .routes(routes!(meta::problem))
-        .routes(routes!(meta::healthz))
-        .routes(routes!(meta::readyz))
+        .routes(routes!(simulate::simulate_path))
+        .routes(routes!(accuracy::compare_solvers))
+        .routes(routes!(protocols::find_protocol))
+        .routes(routes!(sweep::run_sweep))
+        .routes(routes!(jobs::get_job, jobs::cancel_job))
+        .routes(routes!(jobs::get_job_result))
+        .routes(routes!(jobs::watch_job))
+        .routes(routes!(contacts::create_contact, contacts::list_contacts))
+        .routes(routes!(contacts::get_contact, contacts::delete_contact))
+        .routes(routes!(contacts::get_definition))
+        .routes(routes!(contacts::fork_contact))
+        .routes(routes!(moves::move_contact))
+        .routes(routes!(moves::follow_path))
+        .routes(routes!(moves::relax_contact))
+        .routes(routes!(stress::get_stress))
+        .routes(routes!(history::get_history))
+        .routes(routes!(hysteresis_loop::get_loop))
+        .routes(routes!(events::watch_contact))
+        .routes(routes!(meta::get_openapi).layer(Extension(OpenApiText(document))))
+        .routes(routes!(meta::get_problem))
+        .routes(routes!(meta::check_health))
+        .routes(routes!(meta::check_readiness))
         .routes(routes!(metrics::metrics))
 }

@@ -1,30 +1,46 @@
-//! Query parameters, taken one by one; what nobody takes is refused by name.
+//! Query strings. Each operation reads its own into a struct; a parameter that the operation does not have is refused
+//! by name.
 
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use axum::extract::{FromRequestParts, Query};
 use axum::http::HeaderMap;
 use axum::http::request::Parts;
 
-use stickslip_wire::limits as wire_limits;
-use stickslip_wire::{Fault, Faults, Field, JsonPath, Rejection, Sampling, StressRequest};
+use stickslip_wire::{Fault, Faults, JsonPath, Rejection};
 
-use crate::api::App;
-use crate::api::formats::Format;
-use crate::api::limits;
-use crate::api::problem::Problem;
+use super::formats::Format;
+use super::problem::Problem;
+use super::state::App;
 
-/// Radii of a plot whose client does not say.
-const PLOTTED: usize = 1_000;
+/// Items of a page.
+pub const PAGE: RangeInclusive<usize> = 1..=1_000;
+/// Items of a page if the client does not say.
+pub const DEFAULT_PAGE: usize = 100;
 
-/// The parameters of a request, and what is wrong with them so far.
-pub struct Params {
-    given: Vec<(String, String)>,
-    known: Vec<&'static str>,
-    faults: Faults,
+/// What [`QueryReader::number`] expects of a count.
+pub const COUNT: &str = "a whole number, not negative";
+/// What [`QueryReader::number`] expects of the place after which a page of moves begins.
+pub const SEQUENCE: &str = "the number of a move";
+
+/// The parameters of an operation.
+pub trait QueryParams: Sized {
+    /// Takes its parameters out of the query; `None` if it has noted a fault without which there would be a value.
+    fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<Self>;
 }
 
-impl FromRequestParts<App> for Params {
+/// For operations without parameters.
+impl QueryParams for () {
+    fn take(_: &mut QueryReader, _: &HeaderMap) -> Option<()> {
+        Some(())
+    }
+}
+
+/// The checked parameters of a request.
+pub struct CheckedQuery<T>(pub T);
+
+impl<T: QueryParams> FromRequestParts<App> for CheckedQuery<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
@@ -35,11 +51,21 @@ impl FromRequestParts<App> for Params {
                 return Err(Rejection::Invalid(vec![fault]).into());
             }
         };
-        Ok(Params { given, known: Vec::new(), faults: Faults::default() })
+        let mut query = QueryReader { given, known: Vec::new(), faults: Faults::default() };
+        let value = T::take(&mut query, &parts.headers);
+        query.finish(value).map(CheckedQuery)
     }
 }
 
-impl Params {
+/// The parameters of a request that have not been taken yet, and the faults of those that have.
+pub struct QueryReader {
+    given: Vec<(String, String)>,
+    known: Vec<&'static str>,
+    /// What is wrong with the parameters so far.
+    pub faults: Faults,
+}
+
+impl QueryReader {
     /// The parameter of this name, read by `parse`; `expected` says what it must be.
     fn take<T>(&mut self, name: &'static str, expected: &str, parse: impl Fn(&str) -> Option<T>) -> Option<T> {
         self.known.push(name);
@@ -53,8 +79,8 @@ impl Params {
         value
     }
 
-    /// A list, whether its members have commas between them or come one by one under the same name.
-    fn list<T>(&mut self, name: &'static str, expected: &str, parse: impl Fn(&str) -> Option<T>) -> Option<Vec<T>> {
+    /// A list, whose members are separated by commas or given one by one under the same name.
+    pub fn list<T>(&mut self, name: &'static str, expected: &str, parse: impl Fn(&str) -> Option<T>) -> Option<Vec<T>> {
         let members: Vec<String> =
             self.given.iter().filter(|(key, _)| key == name).map(|(_, text)| text.clone()).collect();
         if members.len() > 1 {
@@ -64,11 +90,28 @@ impl Params {
         self.take(name, expected, |text| text.split(',').map(|member| parse(member.trim())).collect())
     }
 
-    fn number<T: FromStr>(&mut self, name: &'static str, expected: &str) -> Option<T> {
+    /// A value of a type that reads itself, such as a number.
+    pub fn number<T: FromStr>(&mut self, name: &'static str, expected: &str) -> Option<T> {
         self.take(name, expected, |text| text.parse().ok())
     }
 
-    /// What has been taken, if nothing is wrong and nothing is left.
+    /// The parameters `after` and `limit` of a page; `expected` says what `after` must be.
+    pub fn page<T: FromStr>(&mut self, expected: &str) -> (Option<T>, usize) {
+        let after = self.number("after", expected);
+        let limit = self.number("limit", COUNT).unwrap_or(DEFAULT_PAGE);
+        self.faults.count(JsonPath::Root.member("limit"), limit, &PAGE);
+        (after, limit)
+    }
+
+    /// The parameter `format`, one of `formats`.
+    pub fn format(&mut self, formats: &[Format]) -> Option<Format> {
+        let named = |text: &str| formats.iter().copied().find(|format| format.name() == text);
+        let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+        let expected = format!("one of `{}`", names.join("`, `"));
+        self.take("format", &expected, named)
+    }
+
+    /// The value, if nothing is wrong and every parameter has been taken.
     fn finish<T>(mut self, value: Option<T>) -> Result<T, Problem> {
         let known = self.known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let known = if known.is_empty() { "none".to_owned() } else { known };
@@ -79,105 +122,5 @@ impl Params {
             self.faults.add(JsonPath::Root.member(&shown), detail);
         }
         Ok(self.faults.done(value)?)
-    }
-
-    /// For calls that take no parameters.
-    ///
-    /// # Errors
-    /// A [`Problem`] if there is one all the same.
-    pub fn none(self) -> Result<(), Problem> {
-        self.finish(Some(()))
-    }
-
-    /// Where a page begins and how long it is.
-    ///
-    /// # Errors
-    /// A [`Problem`] with every fault of the parameters.
-    pub fn page<T: FromStr>(mut self, expected: &str) -> Result<(Option<T>, usize), Problem> {
-        let page = self.bounds(expected);
-        self.finish(Some(page))
-    }
-
-    /// The same, and the format if it is named.
-    ///
-    /// # Errors
-    /// A [`Problem`] with every fault of the parameters.
-    pub fn history(mut self) -> Result<(Option<u64>, usize, Option<Format>), Problem> {
-        let (after, limit) = self.bounds("the number of a move");
-        let format = self.format();
-        self.finish(Some((after, limit, format)))
-    }
-
-    /// The format of a table if it is named.
-    ///
-    /// # Errors
-    /// A [`Problem`] with every fault of the parameters.
-    pub fn table(mut self) -> Result<Option<Format>, Problem> {
-        let format = self.format_of(&Format::TABLES);
-        self.finish(Some(format))
-    }
-
-    /// As [`Params::history`], and how many points of a loop a move is given.
-    ///
-    /// # Errors
-    /// A [`Problem`] with every fault of the parameters.
-    pub fn hysteresis(mut self) -> Result<(Option<u64>, usize, usize, Option<Format>), Problem> {
-        let (after, limit) = self.bounds("the number of a move");
-        let points = self.number("points_per_move", "a whole number, not negative").unwrap_or(1);
-        self.faults.count(JsonPath::Root.member("points_per_move"), points, &wire_limits::LOOP_POINTS);
-        let format = self.format();
-        self.finish(Some((after, limit, points, format)))
-    }
-
-    fn format(&mut self) -> Option<Format> {
-        self.format_of(&Format::ALL)
-    }
-
-    fn format_of(&mut self, formats: &[Format]) -> Option<Format> {
-        let named = |text: &str| formats.iter().copied().find(|format| format.name() == text);
-        let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
-        let expected = format!("one of `{}`", names.join("`, `"));
-        self.take("format", &expected, named)
-    }
-
-    fn bounds<T: FromStr>(&mut self, expected: &str) -> (Option<T>, usize) {
-        let after = self.number("after", expected);
-        let limit = self.number("limit", "a whole number, not negative").unwrap_or(limits::DEFAULT_PAGE);
-        self.faults.count(JsonPath::Root.member("limit"), limit, &limits::PAGE);
-        (after, limit)
-    }
-
-    /// Which stresses are asked for, whether their extrema are, and the format if it is named. A plot needs no radii.
-    ///
-    /// # Errors
-    /// A [`Problem`] with every fault of the parameters.
-    pub fn stress(mut self, headers: &HeaderMap) -> Result<(Sampling, bool, Option<Format>), Problem> {
-        let field = |name: &str| Field::ALL.into_iter().find(|field| field.name() == name);
-        let mut points = self.number("points", "a whole number, not negative");
-        let radii = self.list("radii", "numbers with commas between them", |text| text.parse().ok());
-        if let Some(radii) = &radii {
-            self.faults.length(JsonPath::Root.member("radii"), radii.len(), &limits::QUERY_RADII);
-        }
-        let fields = self.list(
-            "fields",
-            "a list of fields, with commas between them, out of `pressure`, `shear`, `slip`, `displacement`",
-            field,
-        );
-        let residual = self.number("residual", "true or false").unwrap_or(false);
-        let format = self.format();
-        if Format::chosen(format, headers).is_ok_and(Format::is_plot) {
-            if fields.is_some() {
-                self.faults
-                    .add(JsonPath::Root.member("fields"), "a plot always shows pressure and shear: leave this out");
-            }
-            if radii.is_none() {
-                points = points.or(Some(PLOTTED));
-            }
-        }
-        if !self.faults.is_empty() {
-            return self.finish(None);
-        }
-        let sampling = StressRequest { points, radii, fields }.check(JsonPath::Root, &mut self.faults);
-        self.finish(sampling.map(|sampling| (sampling, residual, format)))
     }
 }

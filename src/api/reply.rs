@@ -1,4 +1,4 @@
-//! Replies that are ready-made JSON.
+//! Replies: JSON bodies, versions, and the memory that a reply holds until the client has it.
 
 use std::sync::Arc;
 
@@ -10,12 +10,12 @@ use crate::admission::Reservation;
 use crate::otlp;
 use crate::store::Reply;
 
-use crate::api::problem::Problem;
+use super::problem::Problem;
 
 /// Headers that a reply has in the end, so that the map need not grow step by step.
 const HEADERS: usize = 12;
 
-/// Bytes that a text begins with where nobody knows how long it will be.
+/// Capacity that a text begins with if its length is not known.
 const ROOM: usize = 128;
 
 /// 200 with a JSON body.
@@ -27,12 +27,12 @@ pub fn json(body: Vec<u8>) -> Response {
     response
 }
 
-/// 200 with a JSON body that belongs to a sequence of its session.
+/// 200 with a JSON body that belongs to a sequence of its contact.
 pub fn at_sequence(sequence: u64, body: Vec<u8>) -> Response {
     tagged(json(body), &format!("\"{sequence}\""))
 }
 
-/// A reply with the version that it is of, as `ETag`.
+/// A reply with its version as `ETag`.
 pub fn tagged(mut response: Response, tag: &str) -> Response {
     if let Ok(tag) = HeaderValue::from_str(tag) {
         response.headers_mut().insert(header::ETAG, tag);
@@ -40,8 +40,8 @@ pub fn tagged(mut response: Response, tag: &str) -> Response {
     response
 }
 
-/// Whether the client has this version already, as it says by `If-None-Match`.
-pub fn is_known(headers: &HeaderMap, tag: &str) -> bool {
+/// Whether the client already has this version, according to `If-None-Match`.
+pub fn is_current(headers: &HeaderMap, tag: &str) -> bool {
     let given = headers.get_all(header::IF_NONE_MATCH).iter().filter_map(|line| line.to_str().ok());
     given
         .flat_map(|line| line.split(','))
@@ -49,7 +49,7 @@ pub fn is_known(headers: &HeaderMap, tag: &str) -> bool {
         .any(|known| known == "*" || known.strip_prefix("W/").unwrap_or(known) == tag)
 }
 
-/// 304: the client has it already.
+/// 304: the client already has this version.
 pub fn not_modified(tag: &str) -> Response {
     let mut response = StatusCode::NOT_MODIFIED.into_response();
     response.headers_mut().insert(header::VARY, HeaderValue::from_static("accept"));
@@ -68,10 +68,10 @@ pub fn of_change(reply: Reply) -> Response {
     response
 }
 
-/// A reply whose memory stays spoken for until the client has it.
+/// A reply whose memory stays reserved until the client has it.
 pub fn holding(mut response: Response, held: Reservation) -> Response {
     if held.is_counted() {
-        // Extensions want to be cloned.
+        // In an `Arc`, because extensions must be `Clone`.
         response.extensions_mut().insert(Arc::new(held));
     }
     response
@@ -80,7 +80,7 @@ pub fn holding(mut response: Response, held: Reservation) -> Response {
 /// A value as JSON.
 ///
 /// # Errors
-/// [`Problem::internal`] if it cannot be written, which no value of ours does.
+/// [`Problem::internal`] if it cannot be written, which is a fault of the service.
 pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
     written_in(ROOM, value)
 }

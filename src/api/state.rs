@@ -1,4 +1,4 @@
-//! What the handlers work with.
+//! The state of the application, and the part of it that a tenant sees.
 
 use std::sync::Arc;
 
@@ -12,29 +12,29 @@ use crate::jobs::Jobs;
 use crate::sessions::Sessions;
 use crate::store::Tenant;
 
-/// What the handlers work with. Clones are handles on the same.
+/// The state that all handlers share. Clones refer to the same state.
 #[derive(Clone)]
 pub struct App {
-    /// The sessions.
+    /// The contacts.
     pub sessions: Sessions,
     /// The jobs.
     pub jobs: Jobs,
-    /// Where long work is done.
+    /// The threads and memory for requests.
     pub pool: Pool,
-    /// Who may use it.
+    /// Keys and origins.
     pub access: Access,
 }
 
-/// Who may use the service, and from where. Clones share it.
+/// Who may use the service, and from where.
 #[derive(Clone, Debug, Default)]
 pub struct Access {
-    /// The keys; without any, everything is open to everybody.
+    /// The keys; if there are none, everybody has access.
     pub keys: Option<Arc<Keys>>,
-    /// The origins whose pages a browser may let in, such as `https://lab.example`.
+    /// The origins whose pages may call the service from a browser, such as `https://lab.example`.
     pub origins: Arc<[HeaderValue]>,
 }
 
-/// The application as the tenant of the request sees it.
+/// The state restricted to the tenant of the request.
 pub struct TenantApp(pub App);
 
 impl FromRequestParts<App> for TenantApp {

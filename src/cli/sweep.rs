@@ -5,9 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use stickslip::admission::Stop;
-use stickslip::api::formats::Format;
-use stickslip::api::formats::sheet::Table;
-use stickslip::simulation::{Rows, Sweep as Plan, Workers};
+use stickslip::api::formats::{Format, tables};
+use stickslip::simulation::{Sweep as Plan, SweepResult, Workers};
 use stickslip_wire::{self as wire, SweepRequest};
 
 use super::io::{json, problem, read, write};
@@ -46,15 +45,15 @@ impl Sweep {
         let threads = self.threads.unwrap_or(cores).max(1);
         let workers = Workers::new(threads).map_err(|why| format!("cannot start threads for the sweep: {why}"))?;
         let (points, outputs) = (plan.points(), plan.numbers(1));
-        let (mut rows, mut done) = (Rows::default(), 0);
+        let (mut result, mut done) = (SweepResult::default(), 0);
         while done < points {
             let slice = plan.slice(done..points, &workers, threads, &Stop::default(), None);
-            rows.append(slice.map_err(problem)?);
-            done = rows.values.len() / outputs;
+            result.append(slice.map_err(problem)?);
+            done = result.values.len() / outputs;
             show_progress(done, points);
         }
-        if rows.failed > 0 {
-            eprintln!("{} of {points} points failed; the first: {}", rows.failed, json(&rows.failures[0]));
+        if result.failed > 0 {
+            eprintln!("{} of {points} points failed; the first: {}", result.failed, json(&result.failures[0]));
         }
         let format = match self.format {
             OutputFormat::Columns => Format::Columns,
@@ -63,8 +62,8 @@ impl Sweep {
             OutputFormat::Ndjson => Format::Ndjson,
             OutputFormat::Arrow => Format::Arrow,
         };
-        let mut pieces = Table::new(plan.draft(), rows).pieces(format);
-        write(|out| pieces.try_for_each(|piece| out.write_all(&piece)))
+        let mut blocks = tables::sweep(plan.checked(), result).blocks(format);
+        write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))
     }
 }
 

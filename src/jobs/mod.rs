@@ -19,7 +19,7 @@ use uuid::Uuid;
 use crate::admission::{INLINE, Nanoseconds};
 use crate::admission::{Pool, Stop};
 use crate::metrics::{counter, gauge};
-use crate::simulation::{Rows, Sweep, Workers};
+use crate::simulation::{Sweep, SweepResult, Workers};
 use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_wire::sweep::CheckedSweep;
 use stickslip_wire::{self as wire, JobProgress, JobReply, JobState, SweepRequest};
@@ -123,7 +123,7 @@ impl Jobs {
     ///
     /// # Errors
     /// [`JobError::Sweep`] if it was stopped or took too long.
-    pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<Rows, JobError> {
+    pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<SweepResult, JobError> {
         let rows = sweep.compute(0..sweep.points(), &self.common.pool, self.workers()?, stop, None).await?;
         self.common.meters.points.inc_by(sweep.points() as u64);
         Ok(rows)
@@ -154,7 +154,7 @@ impl Jobs {
             return Err(JobError::TooMuch { wanted: seconds(sweep.cost()), allowed: seconds(LARGEST_JOB) });
         }
         let request =
-            serde_json::to_string(&sweep.draft().request).map_err(|error| JobError::Broken(error.to_string()))?;
+            serde_json::to_string(&sweep.checked().request).map_err(|error| JobError::Broken(error.to_string()))?;
         let bytes = request.len() + sweep.numbers(sweep.points()) * NUMBER_BYTES + JOB_BYTES;
         let job = Job {
             id: Uuid::now_v7(),
@@ -208,14 +208,14 @@ impl Jobs {
     ///
     /// # Errors
     /// As [`Jobs::size`].
-    pub async fn result(&self, id: Uuid) -> Result<(CheckedSweep, Rows), JobError> {
+    pub async fn result(&self, id: Uuid) -> Result<(CheckedSweep, SweepResult), JobError> {
         self.size(id).await?;
         let job = self.find_own(id).await?;
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
         let read = move || wire::read::<SweepRequest>(request.as_bytes());
         let draft = self.common.pool.run(INLINE, read).await?;
         let draft = draft.map_err(|error| JobError::Broken(format!("a job cannot be read: {error}")))?;
-        let (mut rows, mut next) = (Rows::default(), 0);
+        let (mut rows, mut next) = (SweepResult::default(), 0);
         while next < job.chunks() {
             let chunks = self.common.store.chunks(id, next, CHUNKS_AT_ONCE).await.map_err(store_error(id))?;
             if chunks.is_empty() {
@@ -226,7 +226,7 @@ impl Jobs {
             for content in chunks {
                 let points = job.chunk.min(job.points - next * job.chunk);
                 let numbers = usize::try_from(points).unwrap_or(usize::MAX).saturating_mul(draft.outputs.len());
-                let read = Rows::from_bytes(&content, numbers);
+                let read = SweepResult::from_bytes(&content, numbers);
                 rows.append(read.ok_or_else(|| JobError::Broken(format!("chunk {next} of job {id} cannot be read")))?);
                 next += 1;
             }

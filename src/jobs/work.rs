@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::admission::INLINE;
 use crate::admission::{PoolError, Stop};
 use crate::metrics::Counted;
-use crate::simulation::{Rows, Sweep, SweepError};
+use crate::simulation::{Sweep, SweepError, SweepResult};
 use crate::store::{ChunkResult, Claim, Job, StoreError};
 use stickslip_wire::{self as wire, SweepRequest};
 
@@ -135,7 +135,7 @@ impl Jobs {
         sweep: &Arc<Sweep>,
         points: Range<usize>,
         lease: Duration,
-    ) -> Result<Option<Rows>, JobError> {
+    ) -> Result<Option<SweepResult>, JobError> {
         let (stop, guard) = Stop::unbounded();
         let mut guard = Some(guard);
         let (pool, workers) = (&self.common.pool, self.workers()?);

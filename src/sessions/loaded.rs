@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::simulation::{self, Seen, warnings};
+use crate::simulation::{self, Observed, warnings};
 use crate::store::{Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
@@ -44,8 +44,8 @@ impl LoadedSession {
         let figures: ContactSummary = contact.initial_summary().into();
         let ContactSummary { contact_radius, e_star, indentation, .. } = figures;
         let noise = contact.profile().noise(contact_radius);
-        let seen = Seen { contact_radius, e_star, indentation, noise, missed: None };
-        let warnings = warnings(contact.profile(), &elasticity, &seen);
+        let observed = Observed { contact_radius, e_star, indentation, noise, excess_error: None };
+        let warnings = warnings(contact.profile(), &elasticity, &observed);
         let derived = Arc::new(Derived { figures, warnings });
         Ok(LoadedSession { session, derived, contact, replay_cost: ReplayCost::default(), shared: false })
     }

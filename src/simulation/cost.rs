@@ -1,9 +1,10 @@
-//! What work costs, and what is cheap enough to do where one stands.
+//! Estimates of the time and memory that a request takes.
 //!
-//! Handing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
-//! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection, where it delays others by no
-//! more than that; everything above goes to the [`Pool`](crate::admission::Pool). The estimates need only be right to a factor of a few:
-//! `cargo bench --bench request` and `--bench growth` show what they come from.
+//! Passing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
+//! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection,
+//! where it delays others by no more than that; everything above goes to the [`Pool`](crate::admission::Pool). The
+//! estimates need only be right to a relative_cost of a few: `cargo bench --bench request` and `--bench growth` show
+//! what they come from.
 
 use crate::admission::Nanoseconds;
 use stickslip_mechanics::Profile;
@@ -12,33 +13,34 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{self as wire, Comparison, Plan, Solver, Steps, limits};
 
-/// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50 microseconds.
+/// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50
+/// microseconds.
 pub const INLINE_BODY: usize = 1024;
 
 /// One move of the exact solver, with its state, and the state written as JSON.
-const MOVE: u64 = 1_000;
+const MOVE_COST: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
-const CURVED: u64 = 3_000_000;
-/// One piece of memory seen from one radius.
-const PIECE: u64 = 15;
+const CURVED_MOVE_COST: u64 = 3_000_000;
+/// The contribution of one piece of memory to the stress at one radius.
+const PIECE_COST: u64 = 15;
 /// The same on a sphere, where many radii are done side by side.
-const SIDE_BY_SIDE: u64 = 2;
+const SPHERE_PIECE_COST: u64 = 2;
 /// One radius, whatever the memory, and its numbers written as JSON.
-const RADIUS: u64 = 200;
+const RADIUS_COST: u64 = 200;
 /// The search for extrema on a shape with knots, at the least.
-const SEARCH: u64 = 1_000_000;
-/// One spring in one move, or seen from one radius.
-const SPRING: u64 = 3;
+const SEARCH_COST: u64 = 1_000_000;
+/// One spring in one move, or its contribution at one radius.
+const SPRING_COST: u64 = 3;
 
-/// One pair of kinks of a protocol, over all looks at it and all three laws.
-const PAIR: u64 = 15_000;
+/// One pair of kinks of a protocol, over all evaluations and all three laws.
+const KINK_PAIR_COST: u64 = 15_000;
 /// The least that a protocol costs.
-const PROTOCOL: u64 = 200_000;
-/// Reversals that a target is taken to need.
-const SOUGHT: usize = 100;
+const PROTOCOL_COST: u64 = 200_000;
+/// Reversals that a target is assumed to need.
+const ASSUMED_REVERSALS: usize = 100;
 
-/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that grows by
-/// doubling.
+/// One reversal of a protocol in a reply: its displacement, and a peak for each of three laws, as JSON in a text that
+/// grows by doubling.
 const REVERSAL_BYTES: usize = 1_024;
 /// One trial of a protocol with errors.
 const SAMPLE_BYTES: usize = 16;
@@ -48,7 +50,7 @@ const MOVE_BYTES: usize = 256;
 const STATE_BYTES: usize = 768;
 /// One move on its way to the store.
 const RECORD_BYTES: usize = 512;
-/// One radius with all that may be asked of it, likewise.
+/// One radius with all fields, likewise.
 const RADIUS_BYTES: usize = 320;
 /// One point of a table.
 const POINT_BYTES: usize = 1_280;
@@ -83,50 +85,50 @@ impl Work {
     #[must_use]
     pub fn cost(&self, profile: &Profile) -> Nanoseconds {
         match profile {
-            Profile::Sphere(_) => self.seen_at(SIDE_BY_SIDE),
-            _ => on(profile, self.seen_at(PIECE), self.residual),
+            Profile::Sphere(_) => self.with_piece_cost(SPHERE_PIECE_COST),
+            _ => on_profile(profile, self.with_piece_cost(PIECE_COST), self.residual),
         }
     }
 
-    /// What it costs where a piece seen from one radius costs `piece`.
-    fn seen_at(&self, piece: Nanoseconds) -> Nanoseconds {
+    /// What it costs if a piece costs `piece` at each radius.
+    fn with_piece_cost(&self, piece: Nanoseconds) -> Nanoseconds {
         let (moves, radii) = (self.moves as u64, self.radii as u64);
         let pieces = (self.depth + self.moves) as u64 + 1;
-        // The search for extrema looks at each piece, and from there at all others.
+        // The search for extrema evaluates all pieces at each piece.
         let searched = if self.residual { pieces.saturating_mul(4) } else { 0 };
-        (moves * MOVE)
-            .saturating_add(self.curved as u64 * CURVED)
-            .saturating_add(radii * RADIUS)
+        (moves * MOVE_COST)
+            .saturating_add(self.curved as u64 * CURVED_MOVE_COST)
+            .saturating_add(radii * RADIUS_COST)
             .saturating_add(radii.saturating_mul(pieces * piece))
-            .saturating_add(searched.saturating_mul(pieces * PIECE))
+            .saturating_add(searched.saturating_mul(pieces * PIECE_COST))
     }
 }
 
 /// What the search for the extrema under a memory of so many pieces costs on a sphere.
 #[must_use]
 pub fn of_search(depth: usize) -> Nanoseconds {
-    Work { depth, residual: true, ..Work::default() }.seen_at(SIDE_BY_SIDE)
+    Work { depth, residual: true, ..Work::default() }.with_piece_cost(SPHERE_PIECE_COST)
 }
 
 /// What it costs to write a table of so many points as JSON.
 #[must_use]
 pub fn writing_table(points: usize) -> Nanoseconds {
-    points as u64 * RADIUS
+    points as u64 * RADIUS_COST
 }
 
-/// What costs so much by the closed forms of a sphere costs this much on another shape; the search for extrema goes from knot
-/// to knot there, and is never cheap.
-fn on(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
-    let searched = if residual && !matches!(profile, Profile::Sphere(_)) { SEARCH } else { 0 };
-    sphere.saturating_mul(factor(profile)).saturating_add(searched)
+/// What costs so much by the closed forms of a sphere costs this much on another shape; the search for extrema goes
+/// from knot to knot there, and is never cheap.
+fn on_profile(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
+    let searched = if residual && !matches!(profile, Profile::Sphere(_)) { SEARCH_COST } else { 0 };
+    sphere.saturating_mul(relative_cost(profile)).saturating_add(searched)
 }
 
-/// How many times dearer than a sphere a shape is: by closed forms, by a quadrature, part by part.
-fn factor(profile: &Profile) -> u64 {
+/// The cost of a profile relative to a sphere: by closed forms, by quadrature, or by the sum of its parts.
+fn relative_cost(profile: &Profile) -> u64 {
     match profile {
         Profile::Sphere(_) => 1,
         Profile::Tabulated(_) | Profile::PowerLaw(_) | Profile::ExactSphere(_) => 30,
-        Profile::Sum(sum) => sum.parts().iter().map(factor).sum(),
+        Profile::Sum(sum) => sum.parts().iter().map(relative_cost).sum(),
         _ => 5,
     }
 }
@@ -196,11 +198,11 @@ fn reversals(task: &ProtocolTask, sought: usize) -> usize {
 /// What it costs to find a protocol from a memory of so many pieces.
 #[must_use]
 pub fn of_protocol(profile: &Profile, task: &ProtocolTask, depth: usize) -> Nanoseconds {
-    let reversals = reversals(task, SOUGHT);
+    let reversals = reversals(task, ASSUMED_REVERSALS);
     let tried = task.robustness.map_or(0, |robustness| robustness.samples as u64);
-    let once = Work { moves: reversals + 1, residual: true, ..Work::default() }.seen_at(SIDE_BY_SIDE);
-    let pairs = (reversals * (reversals + depth.min(SOUGHT))) as u64;
-    on(profile, PROTOCOL + pairs * PAIR + 3 * tried.saturating_mul(once), true)
+    let once = Work { moves: reversals + 1, residual: true, ..Work::default() }.with_piece_cost(SPHERE_PIECE_COST);
+    let pairs = (reversals * (reversals + depth.min(ASSUMED_REVERSALS))) as u64;
+    on_profile(profile, PROTOCOL_COST + pairs * KINK_PAIR_COST + 3 * tried.saturating_mul(once), true)
 }
 
 /// Bytes that a protocol takes, with its reply and, in a session, its moves.
@@ -222,14 +224,14 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
         None | Some(Solver::Exact) => exact,
         Some(Solver::Springs(springs)) => {
             let search = if simulation.residual { limits::SPRING_SEARCH } else { 0 };
-            exact.saturating_add(sprung(springs.count, moves + radii + search))
+            exact.saturating_add(of_springs(springs.count, moves + radii + search))
         }
     }
 }
 
 /// What so many springs cost that are looked at so many times.
-fn sprung(springs: usize, passes: usize) -> Nanoseconds {
-    (springs as u64).saturating_mul(passes as u64 * SPRING)
+fn of_springs(springs: usize, passes: usize) -> Nanoseconds {
+    (springs as u64).saturating_mul(passes as u64 * SPRING_COST)
 }
 
 /// What a comparison of solvers costs: each of them once, and the reference.
@@ -238,7 +240,7 @@ pub fn of_comparison(comparison: &Comparison) -> Nanoseconds {
     let (plan, radii) = (&comparison.plan, comparison.sampling.length());
     let exact = Work { moves: plan.length(), curved: plan.curved(), radii, ..Work::default() };
     let each = exact.cost(&comparison.setup.profile).saturating_mul(comparison.solvers.len() as u64 + 1);
-    let springs = comparison.springs().map(|springs| sprung(springs, comparison.passes()));
+    let springs = comparison.springs().map(|springs| of_springs(springs, comparison.passes()));
     springs.fold(each, Nanoseconds::saturating_add)
 }
 

@@ -1,30 +1,29 @@
-//! Running what has been parsed: a checked request against the mechanics.
+//! From a checked request to a reply, by way of the mechanics.
 //!
-//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor storage.
-//! Long loops look at a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the work.
+//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor
+//! storage. Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the
+//! work.
 
-mod compare;
+mod compare_solvers;
 pub mod cost;
 mod path;
 mod protocol;
+mod reply_template;
 mod robustness;
-mod rows;
 mod run;
-mod shape;
 mod solver;
 mod sweep;
 #[cfg(test)]
 mod tests;
 mod warnings;
 
-pub use compare::compare;
+pub use compare_solvers::compare_solvers;
 pub use path::equal_peaks;
 pub use protocol::{Subject, protocol, protocol_for};
-pub use rows::Rows;
 pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
 pub use solver::Solver;
-pub use sweep::{Sweep, SweepError, Workers};
-pub use warnings::{Seen, missed, news, warnings};
+pub use sweep::{Sweep, SweepError, SweepResult, Workers};
+pub use warnings::{Observed, excess_error, new_warnings, warnings};
 
 use std::time::Duration;
 

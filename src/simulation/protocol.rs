@@ -1,4 +1,4 @@
-//! From a protocol asked for to the path, what it leaves, and what the others would.
+//! Protocols: the path of a law, the stress that it leaves, and what the other laws would leave.
 
 use stickslip_mechanics::protocol::{
     AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
@@ -15,7 +15,7 @@ use stickslip_wire::{ContactDefinition, Warning};
 
 use super::robustness::robustness;
 use super::run::{Timer, accuracy, contact};
-use super::{Failure, Seen, warnings};
+use super::{Failure, Observed, warnings};
 use crate::admission::Stop;
 
 /// A contact for which a protocol is sought, and what the reversals begin from.
@@ -35,7 +35,7 @@ impl Subject<'_> {
         self.first.map_or(PathStart::Here, PathStart::Displacement)
     }
 
-    /// A JSON pointer to what the mechanics finds fault with.
+    /// A JSON pointer to what the mechanics refuses.
     fn place(&self, error: &Error) -> &'static str {
         match error {
             Error::OutOfRange { quantity: Quantity::Friction, .. } if self.setup.is_some() => "/contact/friction",
@@ -119,10 +119,10 @@ pub fn protocol_for(
 /// How many reversals fewer than those found by halving are looked at.
 const FEWER: usize = 3;
 
-/// The protocol asked for, with what it leaves and what the others would.
+/// The requested protocol, with the stress that it leaves and what the other laws would leave.
 ///
 /// # Errors
-/// [`Failure`] where there is nothing to move against, the target is out of reach, or the time is up.
+/// [`Failure`] if there is no friction to move against, the target is out of reach, or the time limit is reached.
 pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     let timer = Timer::start();
     let contact = subject.contact;
@@ -195,17 +195,22 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         comparison,
         accuracy: accuracy(&chosen.contact, timer, "protocols are sought on the exact memory"),
         path: DisplacementPath { displacement: chosen.displacements },
-        warnings: noted(subject),
+        warnings: warnings_of(subject),
     })
 }
 
-fn noted(subject: &Subject<'_>) -> Vec<Warning> {
+fn warnings_of(subject: &Subject<'_>) -> Vec<Warning> {
     let contact = subject.contact;
     let (contact_radius, elasticity) = (contact.contact_radius(), contact.elasticity());
     let noise = contact.profile().noise(contact_radius);
-    let seen =
-        Seen { contact_radius, e_star: elasticity.e_star(), indentation: contact.indentation(), noise, missed: None };
-    warnings(contact.profile(), &elasticity, &seen)
+    let observed = Observed {
+        contact_radius,
+        e_star: elasticity.e_star(),
+        indentation: contact.indentation(),
+        noise,
+        excess_error: None,
+    };
+    warnings(contact.profile(), &elasticity, &observed)
 }
 
 fn objective(judged: &EvaluationRange) -> String {

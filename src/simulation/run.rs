@@ -15,7 +15,7 @@ use super::{
     Failure, Solver, cost,
     path::{equal_peaks, moves},
     quantity,
-    warnings::{Seen, missed, warnings},
+    warnings::{Observed, excess_error, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
@@ -49,7 +49,7 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
             run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, "as asked for", stop)
         }
         Some(wire::Solver::Springs(wire::Springs { count })) => {
-            let springs = foundation(&simulation.setup, &simulation.plan, count)?;
+            let springs = spring_foundation(&simulation.setup, &simulation.plan, count)?;
             run(springs, simulation, timer, "as asked for", stop)
         }
     }
@@ -87,14 +87,14 @@ pub(super) fn run<S: Solver>(
     let mut estimate = solver.accuracy();
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
-    let accuracy = stated::<S>(&estimate, timer, reason);
-    let seen = Seen {
+    let accuracy = accuracy_of::<S>(&estimate, timer, reason);
+    let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
         // The noise is a table's, and a table has no vertical edge.
         indentation: figures.indentation.max(simulation.setup.profile.level(largest)),
         noise: simulation.setup.profile.noise(largest),
-        missed: missed(path_error, simulation.tolerance, curved),
+        excess_error: excess_error(path_error, simulation.tolerance, curved),
     };
     Ok(SimulateReply {
         contact: figures.into(),
@@ -102,7 +102,7 @@ pub(super) fn run<S: Solver>(
         stress,
         residual,
         protocol,
-        warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &seen),
+        warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &observed),
         accuracy,
     })
 }
@@ -120,7 +120,7 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
 ///
 /// # Errors
 /// As [`contact()`], for a definition at `/contact`.
-pub(super) fn foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
+pub(super) fn spring_foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
     let moves = moves(plan, start.gross_slip_displacement(), None).map(|step| step.step());
@@ -172,8 +172,8 @@ pub fn follow<S: Solver>(
     Ok(())
 }
 
-/// Radii between two looks at the flag.
-const AT_A_TIME: usize = 64;
+/// Radii between two checks of the flag.
+const RADII_PER_CHECK: usize = 64;
 
 /// The stresses asked for, and no others.
 ///
@@ -185,10 +185,10 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
         let at = |radius: &f64| stop.check().map(|()| finite(field(*radius))).map_err(Failure::from);
         radius.iter().map(at).collect()
     };
-    // What is quick at one radius is done at many of them between two looks at the flag.
+    // Fields that are quick at one radius are computed at many radii between two checks.
     let together = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
         let mut all = Vec::with_capacity(radius.len());
-        for radii in radius.chunks(AT_A_TIME) {
+        for radii in radius.chunks(RADII_PER_CHECK) {
             stop.check()?;
             all.extend(field(radii).into_iter().map(finite));
         }
@@ -206,7 +206,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// The extrema of the shear stress.
 ///
 /// # Errors
-/// [`Failure`] if the memory is so deep that they would take longer than is allowed, or nobody waits for them.
+/// [`Failure`] if the memory is so deep that the search would exceed the time limit, or nobody waits for it.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     let cost = Duration::from_nanos(cost::of_search(solver.depth()));
     let allowed = stop.time_limit().unwrap_or(LONGEST_WORK);
@@ -221,10 +221,10 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
-    stated::<S>(&solver.accuracy(), timer, reason)
+    accuracy_of::<S>(&solver.accuracy(), timer, reason)
 }
 
-fn stated<S: Solver>(estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
+fn accuracy_of<S: Solver>(estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
     Accuracy {
         solver: S::KIND,
         reason: reason.to_owned(),

@@ -1,18 +1,19 @@
-//! What the two solvers have in common.
+//! The interface that the exact solver and the spring foundation share.
 
 use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, Springs, State};
 use stickslip_wire::SolverKind;
 
-/// A contact that can be moved and looked at.
+/// A contact that can be moved and whose fields can be read.
 pub trait Solver {
     /// Its name in replies.
     const KIND: SolverKind;
 
     /// The figures of the definition.
     fn summary(&self) -> ContactSummary;
-    /// Displacement of gross slip at the normal load at hand, m.
+    /// Displacement of gross slip at the present normal load, m.
     fn gross_slip_displacement(&self) -> f64;
-    /// Makes a move while `go_on` says so; a refused one changes nothing. The tolerance is for what is not exact.
+    /// Makes a move, unless `go_on` ends it; a refused one changes nothing. The tolerance holds where no exact solution
+    /// exists.
     ///
     /// # Errors
     /// What the mechanics has no answer to, and [`Error::Interrupted`].

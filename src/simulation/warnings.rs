@@ -1,23 +1,25 @@
-//! What to know about a result that is nevertheless given. Each code has its paragraph in `docs/warnings.md`.
+//! Warnings: what to know about a result that is valid nevertheless. Each code has its paragraph in `docs/warnings.md`.
 
 use stickslip_mechanics::{Contact, Elasticity, Profile};
 use stickslip_wire::Warning;
 
-/// Dundurs' β beyond which the bodies are no longer called alike; round-off of like bodies stays below it.
-const BETA: f64 = 1e-12;
-/// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that of curvature.
-const STEEP: f64 = 0.3;
+/// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
+/// below it.
+const BETA_ROUND_OFF: f64 = 1e-12;
+/// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that
+/// of curvature.
+const MAX_SLOPE: f64 = 0.3;
 /// A contact radius (m), and a reduced modulus (Pa) with a curvature radius (m), that metres and pascals rarely give.
 const HUGE_CONTACT: f64 = 0.1;
 const SOFT: f64 = 1e7;
 const HUGE_CURVATURE: f64 = 1.0;
 
 /// Noise of g over the indentation beyond which a table is called noisy.
-const NOISY: f64 = 1e-3;
+const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
-/// What a run has shown that may call for a warning.
+/// What a run has shown that may require a warning.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct Observed {
     /// The largest contact radius, m.
     pub contact_radius: f64,
     /// The reduced modulus E*, Pa.
@@ -27,42 +29,43 @@ pub struct Seen {
     /// The noise of g, m, from a table's heights, and how many times theirs that is.
     pub noise: Option<(f64, f64)>,
     /// The estimated error of the force, if it is beyond the tolerance.
-    pub missed: Option<f64>,
+    pub excess_error: Option<f64>,
 }
 
-/// What a request to a contact that lives has shown for the first time: nothing that held for it already at the contact radius
-/// `before`, m. `largest` is the largest contact radius since, m, and `missed` the error of the force if it is beyond the tolerance.
+/// The warnings that a request to a stored contact causes for the first time: none that held already at the contact
+/// radius `before`, m. `largest` is the largest contact radius since, m, and `excess_error` the error of the force if
+/// it is beyond the tolerance.
 #[must_use]
-pub fn news(contact: &Contact, before: f64, largest: f64, missed: Option<f64>) -> Vec<Warning> {
-    if largest <= before && missed.is_none() {
+pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: Option<f64>) -> Vec<Warning> {
+    if largest <= before && excess_error.is_none() {
         return Vec::new();
     }
     let elasticity = contact.elasticity();
-    let at = |contact_radius: f64, missed: Option<f64>| {
+    let at = |contact_radius: f64, excess_error: Option<f64>| {
         let shape = contact.profile();
         let (indentation, noise) = (shape.level(contact_radius), shape.noise(contact_radius));
-        let seen = Seen { contact_radius, e_star: elasticity.e_star(), indentation, noise, missed };
-        warnings(shape, &elasticity, &seen)
+        let observed = Observed { contact_radius, e_star: elasticity.e_star(), indentation, noise, excess_error };
+        warnings(shape, &elasticity, &observed)
     };
     let known = at(before, None);
-    let mut found = at(largest, missed);
+    let mut found = at(largest, excess_error);
     found.retain(|warning| known.iter().all(|old| old.code != warning.code));
     found
 }
 
 /// The error of the force along `curved` moves, if it is more than their tolerance allows.
 #[must_use]
-pub fn missed(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
+pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     // The tolerance is for a move, and the errors of several add up.
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
 }
 
-/// The warnings for a pair of bodies, and what is known of the run.
+/// The warnings for a pair of bodies and a run.
 #[must_use]
-pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<Warning> {
+pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |code: &str, message: String| warnings.push(Warning { code: code.to_owned(), message });
-    if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA) {
+    if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA_ROUND_OFF) {
         warn(
             "dundurs_beta",
             format!(
@@ -78,39 +81,40 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, seen: &Seen) -> Vec<
             ),
         );
     }
-    let slope = profile.surface_slope(seen.contact_radius);
-    if seen.contact_radius > 0.0 && slope > STEEP {
+    let slope = profile.surface_slope(observed.contact_radius);
+    if observed.contact_radius > 0.0 && slope > MAX_SLOPE {
         warn(
             "large_contact",
             format!(
-                "the indenter's surface has a slope of {slope:.3} at the edge of the contact: beyond {STEEP} a body is no longer a half-space"
+                "the indenter's surface has a slope of {slope:.3} at the edge of the contact: beyond {MAX_SLOPE} a body is no longer a half-space"
             ),
         );
     }
     let curvature = profile.curvature_radius();
-    let soft_and_huge = seen.e_star < SOFT && curvature.is_some_and(|curvature| curvature >= HUGE_CURVATURE);
-    if seen.contact_radius > HUGE_CONTACT || soft_and_huge {
+    let soft_and_huge = observed.e_star < SOFT && curvature.is_some_and(|curvature| curvature >= HUGE_CURVATURE);
+    if observed.contact_radius > HUGE_CONTACT || soft_and_huge {
         warn(
             "units",
             format!(
                 "a contact radius of {} m with E* = {} Pa: are lengths in m and moduli in Pa?",
-                seen.contact_radius, seen.e_star
+                observed.contact_radius, observed.e_star
             ),
         );
     }
-    if let Some((noise, amplification)) =
-        seen.noise.filter(|(noise, _)| seen.indentation > 0.0 && *noise > NOISY * seen.indentation)
+    if let Some((noise, amplification)) = observed
+        .noise
+        .filter(|(noise, _)| observed.indentation > 0.0 && *noise > MAX_RELATIVE_NOISE * observed.indentation)
     {
         warn(
             "noisy_table",
             format!(
                 "the table's heights seem to carry noise, which comes out {amplification:.0} times as large in the contact: \
                  some {noise:.1e} m against an indentation of {} m; smooth them first",
-                seen.indentation
+                observed.indentation
             ),
         );
     }
-    if let Some(error) = seen.missed {
+    if let Some(error) = observed.excess_error {
         warn(
             "tolerance_not_met",
             format!("the force may be off by {error:.1e} of mu F_N, more than the tolerance asked for"),

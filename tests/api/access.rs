@@ -4,10 +4,9 @@ use crate::common;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use common::process::Process;
-use common::{ball, problem};
+use common::{ball, problem, until};
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use stickslip::access::{Role, new_key};
@@ -130,16 +129,11 @@ impl Guarded {
         sweep["job"] = json!(true);
         let response = self.send(Some(who), "POST", "/sweep", Some(&sweep), &[]).await;
         let path = response.headers()["location"].to_str().unwrap().to_owned();
-        let ended = async {
-            loop {
-                let job: Value = self.send(Some(who), "GET", &path, None, &[]).await.json().await.unwrap();
-                if job["state"] != "running" {
-                    break;
-                }
-                tokio::time::sleep(Duration::from_millis(5)).await;
-            }
-        };
-        tokio::time::timeout(Duration::from_secs(60), ended).await.expect("the job does not end");
+        until("the job ends", async || {
+            let job: Value = self.send(Some(who), "GET", &path, None, &[]).await.json().await.unwrap();
+            (job["state"] != "running").then_some(())
+        })
+        .await;
         path.strip_prefix("/jobs/").unwrap().to_owned()
     }
 }
@@ -250,7 +244,7 @@ async fn a_key_counts_only_whole_and_once_and_as_a_bearer() {
     assert_eq!(elsewhere.header("x-api-key", a).send().await.unwrap().status().as_u16(), 401);
 }
 
-/// All that can be told from a reply, but for what is new in each.
+/// All of a reply, except what differs in each.
 async fn seen(response: Response, id: Uuid) -> (u16, Vec<(String, String)>, String) {
     let status = response.status().as_u16();
     let request_id = response.headers()["x-request-id"].to_str().unwrap().to_owned();
@@ -295,7 +289,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
         ("south", &[Role::Write], "south"),
         ("nameless", &[Role::Write], ""),
     ];
-    // With states at hand, and with none.
+    // With cached states, and with none.
     for (store, cache) in
         [("memory:".to_owned(), "1MiB"), (format!("sqlite:{file}"), "1MiB"), (format!("sqlite:{file}"), "0")]
     {
@@ -381,19 +375,14 @@ async fn a_job_is_there_for_its_tenant_alone() {
 }
 
 #[tokio::test]
-async fn that_a_contact_has_expired_is_told_to_its_tenant_alone() {
+async fn only_its_tenant_learns_that_a_contact_has_expired() {
     let keys: [(&'static str, &[Role], &str); 2] =
         [("north", &[Role::Write], "north"), ("south", &[Role::Read], "south")];
     let server = Guarded::start("memory:", &["--expire-after", "1s"], &keys).await;
     let id = server.contact("north").await;
     let get =
         async |who: &str| server.send(Some(who), "GET", &format!("/contacts/{id}"), None, &[]).await.status().as_u16();
-    let expired = async {
-        while get("north").await != 410 {
-            tokio::time::sleep(Duration::from_millis(50)).await;
-        }
-    };
-    tokio::time::timeout(Duration::from_secs(30), expired).await.expect("it did not expire");
+    until("it expires", async || (get("north").await == 410).then_some(())).await;
     assert_eq!(get("south").await, 404);
     let history = server.send(Some("south"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;
     assert_eq!(history.status().as_u16(), 404);

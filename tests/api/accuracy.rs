@@ -167,7 +167,7 @@ async fn what_is_too_much_or_wrong_is_refused_at_its_place() {
     let long = json!({"falling_amplitude": {"reversals": 99_999}});
     let path = json!({"displacement": [1e-8]});
     let shear = json!({"points": 2, "fields": ["pressure"]});
-    for (path, stress, solvers, pointer, told) in [
+    for (path, stress, solvers, pointer, detail) in [
         (&path, None, many(17), "/solvers", "17 elements: allowed are 1 to 16"),
         (&path, None, many(0), "/solvers", "0 elements: allowed are 1 to 16"),
         (&path, None, json!([springs(10), springs(1)]), "/solvers/1/springs/count", "allowed is 2 to 1e6"),
@@ -185,7 +185,7 @@ async fn what_is_too_much_or_wrong_is_refused_at_its_place() {
         let refusal = problem(server.post("/accuracy", &body).await).await;
         assert_eq!((refusal.status, refusal.code.as_str()), (422, "invalid_input"), "{refusal:?}");
         assert_eq!(refusal.errors[0].pointer, pointer, "{refusal:?}");
-        assert!(refusal.errors[0].detail.contains(told), "{refusal:?}");
+        assert!(refusal.errors[0].detail.contains(detail), "{refusal:?}");
     }
     // Nothing is computed from a count that is out of range: these two overflow when one is added, or one to the other.
     for (path, points, pointer) in [

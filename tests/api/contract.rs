@@ -4,15 +4,15 @@ use crate::common;
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
-use common::{Server, ball, create};
+use common::{PATIENCE, Server, ball, create, until};
 use serde_json::{Value, json};
 use stickslip_wire::client::{Client, Options, Swept};
 use stickslip_wire::{
     FallingAmplitude, Field, ForkRequest, JobState, Move, Path, PathRequest, Regime, SimulateRequest, SolverKind,
     Steps, StressRequest, SweepRequest,
 };
+use tokio::io::AsyncReadExt as _;
 
 fn simulation(more: Value) -> SimulateRequest {
     let mut body = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 20}}});
@@ -47,9 +47,7 @@ async fn loops_and_sweeps_answer_the_client() {
         Swept::Job(job.clone()),
         "once, however often it is sent"
     );
-    while client.job(job.id).await.unwrap().state == JobState::Running {
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
+    until("the job ends", async || (client.job(job.id).await.unwrap().state != JobState::Running).then_some(())).await;
     assert_eq!(client.job_result(job.id).await.unwrap(), table);
     client.delete_job(job.id).await.unwrap();
     assert_eq!(client.job(job.id).await.unwrap_err().problem().unwrap().code, "job_not_found");
@@ -162,11 +160,9 @@ async fn headers_say_where_and_which() {
     assert!(docs.status().is_success() && docs.text().await.unwrap().contains("swagger"));
 }
 
-/// The real binary: it starts, says where it listens, and stops within five seconds of being told to, even with a
-/// connection open.
+/// The real binary: it starts, says where it listens, and stops when it is told to, although a connection is open.
 #[tokio::test]
-async fn the_binary_starts_at_once_and_stops_gracefully() {
-    let begin = Instant::now();
+async fn the_binary_starts_and_stops_gracefully() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
         .args(["--listen", "127.0.0.1:0", "--store", "memory:"])
         .stdout(Stdio::piped())
@@ -175,7 +171,6 @@ async fn the_binary_starts_at_once_and_stops_gracefully() {
         .unwrap();
     let mut line = String::new();
     BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    assert!(begin.elapsed() < Duration::from_secs(2), "{:?}", begin.elapsed());
     let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
     let client = Client::new(base);
     client.healthz().await.unwrap();
@@ -185,14 +180,15 @@ async fn the_binary_starts_at_once_and_stops_gracefully() {
     };
     let address = base.trim_start_matches("http://");
     assert!(healthcheck(address) && !healthcheck("127.0.0.1:1"));
-    let _idle = tokio::net::TcpStream::connect(address).await.unwrap();
+    let mut idle = tokio::net::TcpStream::connect(address).await.unwrap();
 
-    let told = Instant::now();
     let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
-    let status = tokio::task::spawn_blocking(move || child.wait().unwrap()).await.unwrap();
+    let ended = tokio::task::spawn_blocking(move || child.wait().unwrap());
+    let status = tokio::time::timeout(PATIENCE, ended).await.expect("it waits for the connection").unwrap();
     assert!(status.success(), "{status}");
-    assert!(told.elapsed() < Duration::from_secs(5), "{:?}", told.elapsed());
+    // It was the server that closed the connection.
+    assert_eq!(idle.read(&mut [0]).await.unwrap_or(0), 0);
 }
 
 #[test]

@@ -6,9 +6,8 @@ use std::io::Read as _;
 use std::pin::pin;
 use std::process::Command;
 use std::sync::Arc;
-use std::time::Duration;
 
-use common::{Binary, Server, create, problem};
+use common::{Binary, PATIENCE, Server, create, problem};
 use futures::future::join_all;
 use futures::{Stream, StreamExt as _};
 use reqwest::Method;
@@ -19,9 +18,6 @@ use stickslip::store::MemoryStore;
 use stickslip_wire::client::{Client, Error, Event, Options};
 use stickslip_wire::{EndReason, Move, Path, PathRequest, StateEvent, Steps};
 use uuid::Uuid;
-
-/// Against hanging alone.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 type Events<'a> = std::pin::Pin<Box<dyn Stream<Item = Result<Event, Error>> + Send + 'a>>;
 

@@ -1,4 +1,4 @@
-//! Tables in every format hold the same numbers, and who has a version already is told so.
+//! Tables in every format hold the same numbers, and a client that has the current version gets 304.
 
 use crate::common;
 
@@ -182,7 +182,7 @@ async fn accept_chooses_and_the_query_outweighs_it() {
 }
 
 #[tokio::test]
-async fn who_has_a_version_already_is_told_so_until_the_contact_moves() {
+async fn a_client_with_the_current_version_gets_304_until_the_contact_moves() {
     let (server, contact) = moved().await;
     let paths = [
         "",

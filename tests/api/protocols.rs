@@ -208,7 +208,7 @@ async fn robustness_is_the_same_for_the_same_seed_and_grows_with_the_error() {
 }
 
 #[tokio::test]
-async fn what_is_wrong_is_told_by_its_place() {
+async fn every_fault_has_its_pointer() {
     let server = Server::start().await;
     let id = server.contact().await;
     let (mut smooth, mut loose, mut deep) = (ball(), ball(), ball());

@@ -132,7 +132,7 @@ async fn each_warning_has_its_cause_and_its_page() {
 }
 
 /// The codes of the warnings of a reply, and whether it has the member at all.
-fn told(reply: &Value) -> Option<Vec<&str>> {
+fn codes_if_present(reply: &Value) -> Option<Vec<&str>> {
     let warnings = reply.get("warnings")?.as_array().unwrap();
     Some(warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect())
 }
@@ -149,7 +149,7 @@ async fn a_session_warns_when_a_move_gives_it_cause() {
     let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
     let contact = with(&json!({"material": {"bodies": [steel, steel]}}))["contact"].clone();
     let made = send("/contacts", contact).await;
-    assert_eq!(told(&made), Some(vec!["slip_direction"]));
+    assert_eq!(codes_if_present(&made), Some(vec!["slip_direction"]));
     let place = |last: &str| format!("/contacts/{}/{last}", made["id"].as_str().unwrap());
     for (last, body, expected) in [
         ("move", json!({"displacement": 1e-7}), None),
@@ -171,6 +171,6 @@ async fn a_session_warns_when_a_move_gives_it_cause() {
             Some(vec!["tolerance_not_met"]),
         ),
     ] {
-        assert_eq!(told(&send(&place(last), body.clone()).await), expected, "{body}");
+        assert_eq!(codes_if_present(&send(&place(last), body.clone()).await), expected, "{body}");
     }
 }

@@ -59,7 +59,7 @@ impl Random {
     }
 }
 
-/// What the clients have been told: by session and sequence the move and the state after it.
+/// The confirmed moves: by session and sequence, the move and the state after it.
 type Acknowledged = BTreeMap<(Uuid, u64), (Move, State)>;
 
 /// Kills and restarts a server over a store, so many times, and checks that nothing is lost and nothing is there twice.
@@ -82,7 +82,7 @@ pub async fn survives(store: &str, rounds: usize, seed: u64) {
                 let (step, key) = (random.step(), format!("{seed}-{client}-{}", random.next()));
                 let reply = until_acknowledged(&places, id, step, key).await;
                 let before = acknowledged.lock().unwrap().insert((id, reply.sequence), (step, reply.state));
-                assert!(before.is_none(), "two moves of {id} were told that they are number {}", reply.sequence);
+                assert!(before.is_none(), "two moves of {id} were confirmed as number {}", reply.sequence);
                 count.fetch_add(1, Ordering::SeqCst);
             }
         })
@@ -114,7 +114,7 @@ pub async fn survives(store: &str, rounds: usize, seed: u64) {
         for item in &history {
             let (step, state) = acknowledged
                 .remove(&(id, item.sequence))
-                .unwrap_or_else(|| panic!("{id} holds a move that nobody was told of: {item:?}"));
+                .unwrap_or_else(|| panic!("{id} holds a move that was not confirmed: {item:?}"));
             assert_eq!((exact(&step), exact(&state)), (exact(&item.step), exact(&item.state)));
         }
     }
@@ -158,7 +158,7 @@ pub fn replays_to_the_last_bit(history: &[HistoryItem]) {
     }
 }
 
-/// Every digit, and the sign of nought, which `==` does not see.
+/// Every digit, and the sign of zero, which `==` ignores.
 pub fn exact(value: &impl std::fmt::Debug) -> String {
     format!("{value:?}")
 }

@@ -11,6 +11,7 @@ pub mod raw;
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
+use std::time::Duration;
 
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
@@ -23,7 +24,23 @@ use stickslip_wire::client::Client;
 use stickslip_wire::{CreateRequest, ProblemDocument};
 use tokio::net::TcpListener;
 
-/// A server; it ends with the runtime of its test.
+/// How long a test waits before it gives up. It guards against hanging; nothing is measured by it.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Waits until `look` finds something.
+pub async fn until<T>(what: &str, mut look: impl AsyncFnMut() -> Option<T>) -> T {
+    let found = async {
+        loop {
+            match look().await {
+                Some(found) => break found,
+                None => tokio::time::sleep(Duration::from_millis(20)).await,
+            }
+        }
+    };
+    tokio::time::timeout(PATIENCE, found).await.unwrap_or_else(|_| panic!("waited in vain until {what}"))
+}
+
+/// A server. If this process runs it, it ends with the runtime of its test.
 pub struct Server {
     pub client: Client,
     pub base: String,
@@ -35,7 +52,7 @@ impl Server {
         Server::with(Arc::new(MemoryStore::new()), CAPACITY).await
     }
 
-    /// A server over a store, with so many bytes of states at hand.
+    /// A server over a store, with so many bytes of cached states.
     pub async fn with(store: Arc<dyn Store>, capacity: usize) -> Server {
         let pool = Pool::with_defaults();
         let jobs = Jobs::new(Arc::clone(&store), pool.clone());
@@ -43,10 +60,15 @@ impl Server {
         Server::of(sessions, jobs, pool).await
     }
 
-    /// A server over sessions that the test has its hands on too; jobs are kept apart from them.
+    /// A server over sessions that the test uses directly too; its jobs have a store of their own.
     pub async fn over(sessions: Sessions, pool: Pool) -> Server {
         let jobs = Jobs::new(Arc::new(MemoryStore::new()), pool.clone());
         Server::of(sessions, jobs, pool).await
+    }
+
+    /// A server that another process runs.
+    pub fn at(base: &str) -> Server {
+        Server { client: Client::new(base), base: base.to_owned(), http: reqwest::Client::new() }
     }
 
     async fn of(sessions: Sessions, jobs: Jobs, pool: Pool) -> Server {
@@ -55,7 +77,7 @@ impl Server {
         tokio::spawn(jobs.clone().work(stickslip::jobs::LEASE));
         let app = App { sessions, jobs, pool, access: Access::default() };
         tokio::spawn(api::serve(listener, app, std::future::pending()));
-        Server { client: Client::new(&base), base, http: reqwest::Client::new() }
+        Server::at(&base)
     }
 
     /// Any request; a body goes as JSON.

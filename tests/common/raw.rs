@@ -12,7 +12,7 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::timeout;
 
-/// Against hanging alone.
+/// How long a test waits before it gives up.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A server in a process of its own, killed when dropped.

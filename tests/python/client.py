@@ -3,7 +3,7 @@
 import sys
 
 from made import Client
-from made.api.contacts import apply, create, get, history, stress
+from made.api.contacts import create_contact, get_contact, get_history, get_stress, move_contact
 from made.models import (
     CreateRequest,
     ElasticBody,
@@ -28,7 +28,7 @@ ball = CreateRequest(
     friction=FRICTION,
     preload=PreloadNormalForce(normal_force=LOAD),
 )
-made = create.sync(client=client, body=ball)
+made = create_contact.sync(client=client, body=ball)
 assert made.label == "made by a machine" and made.sequence == 0, made
 
 # Hertz, by hand: a^3 = 3 F R / (4 E*).
@@ -37,22 +37,22 @@ radius = (0.75 * LOAD * RADIUS / e_star) ** (1 / 3)
 assert abs(made.contact.contact_radius / radius - 1) < 1e-12, made.contact
 
 # Cattaneo, by hand: at F = mu F_N / 2 the stick radius is a (1/2)^(1/3).
-moved = apply.sync(id=made.id, client=client, body=MoveRequest(force=0.5 * FRICTION * LOAD))
+moved = move_contact.sync(id=made.id, client=client, body=MoveRequest(force=0.5 * FRICTION * LOAD))
 assert moved.sequence == 1 and moved.state.regime == "partial_slip", moved
 assert abs(moved.state.stick_radius / radius - 0.5 ** (1 / 3)) < 1e-12, moved.state
 
 # In the ring that slips the shear stress is mu p, and p is Hertz's.
 radii = [0.9 * radius, 0.95 * radius]
-found = stress.sync(id=made.id, client=client, radii=radii, fields=[Field.PRESSURE, Field.SHEAR])
+found = get_stress.sync(id=made.id, client=client, radii=radii, fields=[Field.PRESSURE, Field.SHEAR])
 largest = 1.5 * LOAD / (3.141592653589793 * radius**2)
 for r, pressure, shear in zip(found.radius, found.pressure, found.shear, strict=True):
     assert abs(pressure / (largest * (1 - (r / radius) ** 2) ** 0.5) - 1) < 1e-9, found
     assert abs(shear / (FRICTION * pressure) - 1) < 1e-9, found
 
 # A refusal is a typed document as well, with the place of the fault.
-refused = apply.sync(id=made.id, client=client, body=MoveRequest(force=FRICTION * LOAD))
+refused = move_contact.sync(id=made.id, client=client, body=MoveRequest(force=FRICTION * LOAD))
 assert isinstance(refused, ProblemDocument) and refused.code == "force_exceeds_friction", refused
 assert refused.errors[0].pointer == "", "the whole move"
-assert get.sync(id=made.id, client=client).sequence == 1
-assert [item.sequence for item in history.sync(id=made.id, client=client).items] == [1]
+assert get_contact.sync(id=made.id, client=client).sequence == 1
+assert [item.sequence for item in get_history.sync(id=made.id, client=client).items] == [1]
 print("the generated client works")

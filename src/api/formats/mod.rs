@@ -1,31 +1,30 @@
-//! The formats that tables are given in, and how a client asks for one: by `?format=`, or else by `Accept`.
+//! The formats of tables and plots.
 
+mod accept;
 pub mod plots;
-pub mod sheet;
-pub mod table;
+mod table;
+pub mod tables;
 
-use axum::http::{HeaderMap, HeaderValue, header};
+use std::fmt::Display;
+
+use axum::body::Body;
+use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse as _, Response};
+use serde::Serialize;
 
-use crate::api::problem::{Kind, Problem};
-use crate::api::reply::tagged;
+use crate::admission::{INLINE, Nanoseconds};
+use crate::otlp;
+use stickslip_report::plot::Plot;
 
-/// The media type of rows: a JSON array of flat objects.
-pub const ROWS: &str = "application/vnd.stickslip.rows+json";
-/// The media type of comma-separated values.
-pub const CSV: &str = "text/csv; charset=utf-8";
-/// The media type of one flat object a line.
-pub const NDJSON: &str = "application/x-ndjson";
-/// The media type of Arrow's stream of record batches.
-pub const ARROW: &str = "application/vnd.apache.arrow.stream";
-/// The media type of a plot to scale at will.
-pub const SVG: &str = "image/svg+xml";
-/// The media type of a plot in pixels.
-pub const PNG: &str = "image/png";
+use super::problem::Problem;
+use super::reply;
+
+pub use table::Table;
+
 /// Bytes of a row of stresses in the longest of the formats.
 pub const STRESS_ROW: usize = 256;
 /// Bytes that a plot takes while it is drawn.
-pub const PLOT: usize = 16 * 1024 * 1024;
+const PLOT: usize = 16 * 1024 * 1024;
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +39,9 @@ pub enum Format {
     Ndjson,
     /// A stream of Arrow's record batches: typed columns, read without parsing.
     Arrow,
-    /// A plot to scale at will.
+    /// A vector plot.
     Svg,
-    /// A plot in pixels.
+    /// A bitmap plot.
     Png,
 }
 
@@ -51,44 +50,41 @@ impl Format {
     pub const ALL: [Format; 7] =
         [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow, Format::Svg, Format::Png];
 
-    /// Those of a table that nobody draws.
+    /// The formats of a table that has no plot.
     pub const TABLES: [Format; 5] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow];
+
+    /// Its name in a query, and its media type.
+    const fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Format::Columns => ("columns", "application/json"),
+            Format::Rows => ("rows", "application/vnd.stickslip.rows+json"),
+            Format::Csv => ("csv", "text/csv; charset=utf-8"),
+            Format::Ndjson => ("ndjson", "application/x-ndjson"),
+            Format::Arrow => ("arrow", "application/vnd.apache.arrow.stream"),
+            Format::Svg => ("svg", "image/svg+xml"),
+            Format::Png => ("png", "image/png"),
+        }
+    }
 
     /// Its name in a query.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Format::Columns => "columns",
-            Format::Rows => "rows",
-            Format::Csv => "csv",
-            Format::Ndjson => "ndjson",
-            Format::Arrow => "arrow",
-            Format::Svg => "svg",
-            Format::Png => "png",
-        }
+        self.names().0
     }
 
     /// Its media type.
     #[must_use]
-    pub fn media_type(self) -> &'static str {
-        match self {
-            Format::Columns => "application/json",
-            Format::Rows => ROWS,
-            Format::Csv => CSV,
-            Format::Ndjson => NDJSON,
-            Format::Arrow => ARROW,
-            Format::Svg => SVG,
-            Format::Png => PNG,
-        }
+    pub const fn media_type(self) -> &'static str {
+        self.names().1
     }
 
-    /// Whether it is a picture.
+    /// Whether it is a plot.
     #[must_use]
     pub fn is_plot(self) -> bool {
         matches!(self, Format::Svg | Format::Png)
     }
 
-    /// Bytes that it takes beyond the columns, for so many rows of so many bytes each.
+    /// Bytes that writing takes beyond the columns, for so many rows of so many bytes each.
     #[must_use]
     pub fn bytes(self, rows: usize, row: usize) -> usize {
         match self {
@@ -96,42 +92,6 @@ impl Format {
             Format::Svg | Format::Png => PLOT + rows * row,
             Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => rows * row,
         }
-    }
-
-    /// The format that the query names, or that `Accept` likes best.
-    ///
-    /// # Errors
-    /// [`Kind::NotAcceptable`] if `Accept` admits none.
-    pub fn chosen(named: Option<Format>, headers: &HeaderMap) -> Result<Format, Problem> {
-        Format::chosen_of(named, headers, &Format::ALL)
-    }
-
-    /// The same out of some formats.
-    ///
-    /// # Errors
-    /// [`Kind::NotAcceptable`] if `Accept` admits none of them.
-    pub fn chosen_of(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-        if let Some(format) = named {
-            return Ok(format);
-        }
-        let accepted: Vec<&str> =
-            headers.get_all(header::ACCEPT).iter().filter_map(|line| line.to_str().ok()).collect();
-        let accepted = accepted.join(",");
-        if accepted.trim().is_empty() {
-            return Ok(Format::Columns);
-        }
-        let mut best = (0.0, None);
-        for &format in formats {
-            let quality = quality(&accepted, format.media_type());
-            if quality > best.0 {
-                best = (quality, Some(format));
-            }
-        }
-        best.1.ok_or_else(|| {
-            let known: Vec<String> =
-                formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
-            Problem::new(Kind::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
-        })
     }
 
     /// The tag of a reply in this format; that of columns is the version alone.
@@ -143,38 +103,42 @@ impl Format {
         }
     }
 
+    /// What it costs to write, beyond the numbers: a plot needs a thread of its own.
+    #[must_use]
+    pub fn cost(self) -> Nanoseconds {
+        if self.is_plot() { INLINE } else { 0 }
+    }
+
+    /// A page in this format; the plot and the table are made where they are needed.
+    ///
+    /// # Errors
+    /// [`Problem::internal`] if it cannot be written, which is a fault of the service.
+    pub fn write<'p>(
+        self,
+        page: &impl Serialize,
+        plot: impl FnOnce() -> Plot,
+        table: impl FnOnce() -> Table<'p>,
+    ) -> Result<Vec<u8>, Problem> {
+        let write = || match self {
+            Format::Columns => reply::written(page),
+            Format::Svg => plot().svg().map_err(unwritable),
+            Format::Png => plot().png().map_err(unwritable),
+            Format::Rows | Format::Csv | Format::Ndjson | Format::Arrow => table().write(self).map_err(unwritable),
+        };
+        if self == Format::Columns { write() } else { otlp::part!("write").in_scope(write) }
+    }
+
     /// 200 with a body in this format.
     #[must_use]
-    pub fn reply(self, body: Vec<u8>, tag: &str) -> Response {
-        let mut response = ([(header::CONTENT_TYPE, self.media_type())], body).into_response();
-        response.headers_mut().insert(header::VARY, HeaderValue::from_static("accept"));
-        tagged(response, tag)
+    pub fn reply(self, body: impl Into<Body>) -> Response {
+        let headers = [
+            (header::CONTENT_TYPE, HeaderValue::from_static(self.media_type())),
+            (header::VARY, HeaderValue::from_static("accept")),
+        ];
+        (headers, body.into()).into_response()
     }
 }
 
-/// How much a media type is liked, 0 to 1: the most specific range that it falls in says so (RFC 9110, 12.5.1).
-fn quality(accepted: &str, media_type: &str) -> f64 {
-    let essence = media_type.split(';').next().unwrap_or_default();
-    let group = essence.split('/').next().unwrap_or_default();
-    let mut best = (0, 0.0);
-    for range in accepted.split(',') {
-        let mut parts = range.split(';').map(str::trim);
-        let name = parts.next().unwrap_or_default();
-        let rank = if name.eq_ignore_ascii_case(essence) {
-            3
-        } else if name.strip_suffix("/*").is_some_and(|named| named.eq_ignore_ascii_case(group)) {
-            2
-        } else if name == "*/*" {
-            1
-        } else {
-            continue;
-        };
-        let given = parts.find_map(|part| part.strip_prefix("q=").or_else(|| part.strip_prefix("Q=")));
-        let quality =
-            given.map_or(1.0, |text| text.trim().parse::<f64>().map_or(0.0, |quality| quality.clamp(0.0, 1.0)));
-        if rank > best.0 {
-            best = (rank, quality);
-        }
-    }
-    best.1
+fn unwritable(error: impl Display) -> Problem {
+    Problem::internal(format!("a reply cannot be written: {error}"))
 }

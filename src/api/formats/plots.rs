@@ -1,4 +1,4 @@
-//! The plots of tables: what is drawn of a stress, of a history and of a loop.
+//! The plots of a contact's stress, history and loop.
 
 use uuid::Uuid;
 
@@ -6,21 +6,9 @@ use stickslip_mechanics::{Contact, Regime};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot};
 use stickslip_wire::{HistoryPage, LoopPage, State, StressReply};
 
-use crate::api::formats::Format;
-use crate::api::problem::Problem;
-
-/// A plot as a file.
-///
-/// # Errors
-/// [`Problem::internal`] if it cannot be drawn, which is so of no plot of ours.
-pub fn written(format: Format, plot: &Plot) -> Result<Vec<u8>, Problem> {
-    let drawn = if format == Format::Png { plot.png() } else { plot.svg() };
-    drawn.map_err(|fault| Problem::internal(format!("a plot cannot be drawn: {fault}")))
-}
-
-/// Shear stress between the bounds of friction, over what stuck and what slipped in the last move.
+/// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
 #[must_use]
-pub fn of_stress(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply) -> Plot {
+pub fn stress(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply) -> Plot {
     let over = |values: &Option<Vec<Option<f64>>>, factor: f64| {
         let values = values.iter().flatten().map(|value| factor * value.unwrap_or(f64::NAN));
         reply.radius.iter().copied().zip(values).collect::<Vec<_>>()
@@ -55,7 +43,7 @@ pub fn of_stress(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply
 
 /// Displacement, force and friction work over the moves.
 #[must_use]
-pub fn of_history(id: Uuid, page: &HistoryPage) -> Plot {
+pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
     let panel = |name, unit, colour, of: fn(&State) -> f64| Panel {
         y: Axis { name, unit: Some(unit) },
         curves: vec![Curve {
@@ -79,7 +67,7 @@ pub fn of_history(id: Uuid, page: &HistoryPage) -> Plot {
 
 /// Force over displacement.
 #[must_use]
-pub fn of_loop(id: Uuid, page: &LoopPage) -> Plot {
+pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
     let points = page.displacement.iter().copied().zip(page.force.iter().copied()).collect();
     Plot {
         title: format!("Contact {id}: hysteresis loop"),

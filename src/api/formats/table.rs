@@ -1,192 +1,227 @@
-//! Tables of named columns, and how they are written: as rows, CSV, NDJSON and Arrow.
+//! Tables of named columns, and how they are written in each format, whole or block by block.
+//!
+//! A cell is computed when it is written, so that the text of a large table is never in memory at once.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
+use std::ops::Range;
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray, TimestampNanosecondArray, UInt64Array};
 use arrow_ipc::writer::StreamWriter;
-use arrow_schema::{ArrowError, Field as ArrowField, Schema};
+use arrow_schema::{ArrowError, DataType, Field, Schema, TimeUnit};
 use jiff::Timestamp;
-use serde_json::{Value, json};
+use serde_json::{Number, Value};
 
-use stickslip_wire::{Field, HistoryPage, LoopPage, StressReply};
+use super::Format;
 
-use crate::api::formats::Format;
-use crate::api::problem::Problem;
+/// Rows of a block.
+const BLOCK: usize = 512;
 
-/// Columns of one length.
-pub struct Table {
-    columns: Vec<(&'static str, &'static str, Column)>,
+/// A table.
+pub struct Table<'a> {
+    rows: usize,
+    columns: Vec<Column<'a>>,
+    /// What surrounds the columns in [`Format::Columns`].
+    envelope: [String; 2],
 }
 
-/// The values of a column.
-pub enum Column {
-    /// Numbers; what has no value is infinite, or not there.
-    Numbers(Vec<Option<f64>>),
+/// A column of a table.
+pub struct Column<'a> {
+    name: String,
+    /// Its name as JSON, which is written with every row.
+    key: String,
+    unit: Option<&'static str>,
+    cells: Cells<'a>,
+}
+
+/// A piece of the written table.
+pub type Block = Result<Vec<u8>, ArrowError>;
+/// The pieces of a written table, in order.
+pub type Blocks<'a> = Box<dyn Iterator<Item = Block> + Send + 'a>;
+
+type ByRow<'a, T> = Box<dyn Fn(usize) -> T + Send + 'a>;
+
+/// The cells of a column by their row.
+pub enum Cells<'a> {
+    /// Numbers, where there is one.
+    Numbers(ByRow<'a, Option<Number>>),
     /// Whole numbers.
-    Counts(Vec<u64>),
+    Counts(ByRow<'a, u64>),
     /// Moments.
-    Times(Vec<Timestamp>),
-    /// Words, without commas and quotes.
-    Words(Vec<&'static str>),
+    Times(ByRow<'a, Timestamp>),
+    /// Words without commas and quotes.
+    Words(ByRow<'a, &'static str>),
 }
 
-impl Column {
-    fn length(&self) -> usize {
-        match self {
-            Column::Numbers(values) => values.len(),
-            Column::Counts(values) => values.len(),
-            Column::Times(values) => values.len(),
-            Column::Words(values) => values.len(),
+impl<'a> Column<'a> {
+    /// A column; its unit is written in Arrow's metadata.
+    #[must_use]
+    pub fn new(name: &str, unit: Option<&'static str>, cells: Cells<'a>) -> Column<'a> {
+        Column { name: name.to_owned(), key: Value::from(name).to_string(), unit, cells }
+    }
+
+    /// A column of floats; what is not finite has no value.
+    #[must_use]
+    pub fn floats(name: &str, unit: &'static str, value: impl Fn(usize) -> f64 + Send + 'a) -> Column<'a> {
+        Column::new(name, Some(unit), Cells::Numbers(Box::new(move |row| Number::from_f64(value(row)))))
+    }
+
+    /// A column of whole numbers without a unit.
+    #[must_use]
+    pub fn counts(name: &str, value: impl Fn(usize) -> u64 + Send + 'a) -> Column<'a> {
+        Column::new(name, Some("1"), Cells::Counts(Box::new(value)))
+    }
+
+    fn write_cell(&self, row: usize, format: Format, text: &mut String) -> fmt::Result {
+        let (none, quote) = if format == Format::Csv { ("", "") } else { ("null", "\"") };
+        match &self.cells {
+            Cells::Numbers(at) => match at(row) {
+                Some(number) => write!(text, "{number}"),
+                None => text.write_str(none),
+            },
+            Cells::Counts(at) => write!(text, "{}", at(row)),
+            Cells::Times(at) => write!(text, "{quote}{}{quote}", at(row)),
+            Cells::Words(at) => write!(text, "{quote}{}{quote}", at(row)),
         }
     }
 
-    fn value(&self, row: usize) -> Value {
-        match self {
-            Column::Numbers(values) => json!(values[row]),
-            Column::Counts(values) => json!(values[row]),
-            Column::Times(values) => json!(values[row]),
-            Column::Words(values) => json!(values[row]),
-        }
+    fn field(&self) -> Field {
+        let (data_type, nullable) = match self.cells {
+            Cells::Numbers(_) => (DataType::Float64, true),
+            Cells::Counts(_) => (DataType::UInt64, false),
+            Cells::Times(_) => (DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())), true),
+            Cells::Words(_) => (DataType::Utf8, false),
+        };
+        let unit = self.unit.map(|unit| ("unit".to_owned(), unit.to_owned()));
+        Field::new(&self.name, data_type, nullable).with_metadata(HashMap::from_iter(unit))
     }
 
-    fn array(&self) -> ArrayRef {
-        match self {
-            Column::Numbers(values) => Arc::new(values.iter().copied().collect::<Float64Array>()),
-            Column::Counts(values) => Arc::new(values.iter().copied().collect::<UInt64Array>()),
-            Column::Times(values) => {
-                let since = |time: &Timestamp| i64::try_from(time.as_nanosecond()).ok();
-                let times: TimestampNanosecondArray = values.iter().map(since).collect();
-                Arc::new(times.with_timezone("UTC"))
+    fn array(&self, rows: Range<usize>) -> ArrayRef {
+        match &self.cells {
+            Cells::Numbers(at) => {
+                Arc::new(rows.map(|row| at(row).and_then(|number| number.as_f64())).collect::<Float64Array>())
             }
-            Column::Words(values) => Arc::new(values.iter().map(Some).collect::<StringArray>()),
+            Cells::Counts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
+            Cells::Times(at) => {
+                let since = |row| i64::try_from(at(row).as_nanosecond()).ok();
+                Arc::new(rows.map(since).collect::<TimestampNanosecondArray>().with_timezone("UTC"))
+            }
+            Cells::Words(at) => Arc::new(rows.map(|row| Some(at(row))).collect::<StringArray>()),
         }
     }
 }
 
-/// Finite numbers as a column.
-fn all(values: impl Iterator<Item = f64>) -> Column {
-    Column::Numbers(values.map(Some).collect())
-}
-
-impl Table {
-    /// Stresses.
+impl<'a> Table<'a> {
+    /// A table of so many rows; `envelope` is the JSON before and after its columns.
     #[must_use]
-    pub fn of_stress(reply: &StressReply) -> Table {
-        let mut columns = vec![("radius", "m", all(reply.radius.iter().copied()))];
-        for field in Field::ALL {
-            let (unit, values) = match field {
-                Field::Pressure => ("Pa", &reply.pressure),
-                Field::Shear => ("Pa", &reply.shear),
-                Field::Slip => ("m", &reply.slip),
-                Field::Displacement => ("m", &reply.displacement),
-            };
-            columns.extend(values.clone().map(|values| (field.name(), unit, Column::Numbers(values))));
-        }
-        Table { columns }
+    pub fn new(rows: usize, columns: Vec<Column<'a>>, envelope: [String; 2]) -> Table<'a> {
+        Table { rows, columns, envelope }
     }
 
-    /// A page of a history: the states with their numbers and times.
-    #[must_use]
-    pub fn of_history(page: &HistoryPage) -> Table {
-        let items = || page.items.iter();
-        let states = || page.items.iter().map(|item| &item.state);
-        Table {
-            columns: vec![
-                ("sequence", "1", Column::Counts(items().map(|item| item.sequence).collect())),
-                ("at", "UTC", Column::Times(items().map(|item| item.at).collect())),
-                ("displacement", "m", all(states().map(|state| state.displacement))),
-                ("force", "N", all(states().map(|state| state.force))),
-                ("indentation", "m", all(states().map(|state| state.indentation))),
-                ("normal_force", "N", all(states().map(|state| state.normal_force))),
-                ("contact_radius", "m", all(states().map(|state| state.contact_radius))),
-                ("stick_radius", "m", all(states().map(|state| state.stick_radius))),
-                ("regime", "", Column::Words(states().map(|state| state.regime.name()).collect())),
-                ("dissipated_energy", "J", all(states().map(|state| state.dissipated_energy))),
-                ("elastic_energy", "J", all(states().map(|state| state.elastic_energy))),
-                ("memory_depth", "1", Column::Counts(states().map(|state| state.memory_depth as u64).collect())),
-            ],
-        }
-    }
-
-    /// A page of a hysteresis loop.
-    #[must_use]
-    pub fn of_loop(page: &LoopPage) -> Table {
-        Table {
-            columns: vec![
-                ("sequence", "1", Column::Counts(page.sequence.clone())),
-                ("part", "1", all(page.part.iter().copied())),
-                ("displacement", "m", all(page.displacement.iter().copied())),
-                ("force", "N", all(page.force.iter().copied())),
-            ],
-        }
-    }
-
-    /// The table in a flat format.
+    /// All of the table in a format.
     ///
     /// # Errors
-    /// [`Problem::internal`] if Arrow refuses it, which it does with no table of ours.
-    pub fn written(&self, format: Format) -> Result<Vec<u8>, Problem> {
-        match format {
-            Format::Arrow => {
-                self.arrow().map_err(|error| Problem::internal(format!("a table cannot be written: {error}")))
-            }
-            text => Ok(self.text(text)),
+    /// What Arrow has against it, which is nothing for a table whose columns have different names.
+    pub fn write(self, format: Format) -> Result<Vec<u8>, ArrowError> {
+        let rows = self.rows.max(1);
+        self.in_blocks(format, rows).collect::<Result<Vec<_>, _>>().map(|blocks| blocks.concat())
+    }
+
+    /// The same block by block.
+    pub fn blocks(self, format: Format) -> Blocks<'a> {
+        self.in_blocks(format, BLOCK)
+    }
+
+    fn in_blocks(self, format: Format, size: usize) -> Blocks<'a> {
+        let (rows, blocks) = (self.rows, self.rows.div_ceil(size).max(1));
+        let range = move |block: usize| block * size..rows.min((block + 1) * size);
+        if format == Format::Arrow {
+            return Box::new(self.arrow(blocks, range));
         }
+        let pieces = if format == Format::Columns { blocks * self.columns.len() } else { blocks };
+        Box::new((0..pieces).map(move |piece| {
+            let mut text = String::new();
+            // Writing to a string cannot fail.
+            let _ = match format {
+                Format::Columns => self.write_column(piece / blocks, range(piece % blocks), &mut text),
+                _ => self.write_rows(range(piece), format, &mut text),
+            };
+            Ok(text.into_bytes())
+        }))
     }
 
-    fn rows(&self) -> usize {
-        self.columns.first().map_or(0, |(.., column)| column.length())
+    fn arrow(
+        self,
+        blocks: usize,
+        range: impl Fn(usize) -> Range<usize> + Send + 'a,
+    ) -> impl Iterator<Item = Block> + Send + 'a {
+        let schema = Arc::new(Schema::new(self.columns.iter().map(Column::field).collect::<Vec<_>>()));
+        let mut writer = StreamWriter::try_new(Vec::new(), &schema);
+        (0..=blocks).map(move |block| {
+            let writer = writer.as_mut().map_err(|error| ArrowError::IpcError(error.to_string()))?;
+            if block < blocks {
+                let arrays = self.columns.iter().map(|column| column.array(range(block)));
+                writer.write(&RecordBatch::try_new(Arc::clone(&schema), arrays.collect())?)?;
+            } else {
+                // Without this mark, a reader knows that something is missing.
+                writer.finish()?;
+            }
+            Ok(std::mem::take(writer.get_mut()))
+        })
     }
 
-    fn arrow(&self) -> Result<Vec<u8>, ArrowError> {
-        let arrays: Vec<ArrayRef> = self.columns.iter().map(|(.., column)| column.array()).collect();
-        let fields = self.columns.iter().zip(&arrays).map(|((name, unit, column), array)| {
-            let nullable = matches!(column, Column::Numbers(_) | Column::Times(_));
-            let unit = HashMap::from([("unit".to_owned(), (*unit).to_owned())]);
-            ArrowField::new(*name, array.data_type().clone(), nullable).with_metadata(unit)
-        });
-        let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
-        let batch = RecordBatch::try_new(Arc::clone(&schema), arrays)?;
-        let mut writer = StreamWriter::try_new(Vec::new(), &schema)?;
-        writer.write(&batch)?;
-        writer.into_inner()
-    }
-
-    fn text(&self, format: Format) -> Vec<u8> {
-        let csv = format == Format::Csv;
-        let names: Vec<&str> = self.columns.iter().map(|(name, ..)| *name).collect();
-        let mut text = match format {
-            Format::Csv => names.join(",") + "\n",
-            Format::Rows => "[".to_owned(),
-            _ => String::new(),
-        };
-        for row in 0..self.rows() {
-            if row > 0 && format == Format::Rows {
-                text.push(',');
-            }
-            for (index, (name, _, column)) in self.columns.iter().enumerate() {
-                let comma = if index > 0 { "," } else { "" };
-                // Writing to a string cannot fail.
-                let _ = match column.value(row) {
-                    Value::Null if csv => write!(text, "{comma}"),
-                    Value::String(value) if csv => write!(text, "{comma}{value}"),
-                    value if csv => write!(text, "{comma}{value}"),
-                    value if index == 0 => write!(text, "{{\"{name}\":{value}"),
-                    value => write!(text, ",\"{name}\":{value}"),
-                };
-            }
-            if !csv {
-                text.push('}');
-            }
-            if format != Format::Rows {
-                text.push('\n');
-            }
+    fn write_column(&self, index: usize, rows: Range<usize>, text: &mut String) -> fmt::Result {
+        let column = &self.columns[index];
+        if rows.start == 0 {
+            text.write_str(if index == 0 { &self.envelope[0] } else { "," })?;
+            write!(text, "{}:[", column.key)?;
         }
-        if format == Format::Rows {
+        let is_last = rows.end == self.rows;
+        for row in rows {
+            text.write_str(if row > 0 { "," } else { "" })?;
+            column.write_cell(row, Format::Columns, text)?;
+        }
+        if is_last {
             text.push(']');
+            text.write_str(if index + 1 == self.columns.len() { &self.envelope[1] } else { "" })?;
         }
-        text.into_bytes()
+        Ok(())
     }
+
+    fn write_rows(&self, rows: Range<usize>, format: Format, text: &mut String) -> fmt::Result {
+        let (is_first, is_last) = (rows.start == 0, rows.end == self.rows);
+        match format {
+            Format::Rows if is_first => text.push('['),
+            Format::Csv if is_first => {
+                let names: Vec<_> = self.columns.iter().map(|column| csv_name(&column.name)).collect();
+                *text = names.join(",") + "\n";
+            }
+            _ => {}
+        }
+        let (between, end) = match format {
+            Format::Csv => ("", "\n"),
+            Format::Rows => (",", "}"),
+            _ => ("", "}\n"),
+        };
+        for row in rows {
+            text.push_str(if row > 0 { between } else { "" });
+            for (index, column) in self.columns.iter().enumerate() {
+                text.push_str(if index > 0 { "," } else { "" });
+                if format != Format::Csv {
+                    text.push_str(if index == 0 { "{" } else { "" });
+                    write!(text, "{}:", column.key)?;
+                }
+                column.write_cell(row, format, text)?;
+            }
+            text.push_str(end);
+        }
+        text.push_str(if is_last && format == Format::Rows { "]" } else { "" });
+        Ok(())
+    }
+}
+
+/// A name in the first line of comma-separated values.
+fn csv_name(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }

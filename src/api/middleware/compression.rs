@@ -9,11 +9,19 @@ use axum::middleware::Next;
 use axum::response::Response;
 
 use crate::admission::{Pool, Reservation};
-use crate::api::formats::{ARROW, CSV, NDJSON, ROWS, SVG};
+use crate::api::formats::Format;
 use crate::api::problem;
 
 /// What is compressed; event streams must not wait for more to come, and PNG is packed already.
-const COMPRESSED: [&str; 7] = ["application/json", problem::MEDIA_TYPE, ROWS, CSV, NDJSON, ARROW, SVG];
+const COMPRESSED: [&str; 7] = [
+    problem::MEDIA_TYPE,
+    Format::Columns.media_type(),
+    Format::Rows.media_type(),
+    Format::Csv.media_type(),
+    Format::Ndjson.media_type(),
+    Format::Arrow.media_type(),
+    Format::Svg.media_type(),
+];
 /// Bytes below which compression is not worth its time.
 const SMALLEST: u64 = 1024;
 /// Bytes that an encoder takes until its reply is sent: zstd at its fastest has a window of 512 KiB, held twice, and tables.

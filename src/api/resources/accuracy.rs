@@ -1,22 +1,21 @@
-//! `/accuracy`: a contact and a path in, and out what each solver costs and how wrong it is; nothing is kept.
+//! `/accuracy`: the time and the error of each solver on a path; nothing is stored.
 
 use axum::extract::State;
 use axum::response::Response;
 
-use crate::simulation::{compare, cost};
-use stickslip_wire::{AccuracyReply, AccuracyRequest};
-
-use crate::api::App;
-use crate::api::extract::Command;
+use crate::api::extract::CheckedBody;
 use crate::api::problem::Problem;
 use crate::api::reply;
+use crate::api::state::App;
+use crate::simulation::{self, cost};
+use stickslip_wire::{AccuracyReply, AccuracyRequest};
 
 /// Compare solvers
 ///
-/// Follows a path from the preloaded contact with each of the solvers, and holds the forces along it and the shear stresses at
-/// its end against a reference: the exact solver, refined where moves are curved. So a client sees what a coarser model
-/// would do to its own numbers. A solver that cannot follow the path says so in its row. The springs of all
-/// solvers together, times moves and stress points, have the limit of one simulation. Nothing is kept.
+/// Follows a path from the preloaded contact with each of the solvers, and compares the forces along it and the shear
+/// stresses at its end with a reference: the exact solver, refined where moves are curved. This shows what a coarser
+/// model would do to your own numbers. A solver that cannot follow the path has the reason in its row. The springs of
+/// all solvers together, times moves and stress points, have the limit of one simulation. Nothing is stored.
 #[utoipa::path(
     post, path = "/accuracy", tag = "simulation",
     request_body(content = AccuracyRequest, examples(
@@ -29,7 +28,7 @@ use crate::api::reply;
             },
             "path": {"falling_amplitude": {"reversals": 20}}
         }))),
-        ("own solvers" = (summary = "Two foundations, at radii of one's own", value = json!({
+        ("own solvers" = (summary = "Two spring foundations, at given radii", value = json!({
             "contact": {
                 "profile": {"type": "cone", "slope": 0.05},
                 "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
@@ -43,11 +42,14 @@ use crate::api::reply;
     )),
     responses((status = 200, description = "The reference, and a row a solver", body = AccuracyReply))
 )]
-pub async fn accuracy(State(app): State<App>, command: Command<AccuracyRequest>) -> Result<Response, Problem> {
+pub async fn compare_solvers(
+    State(app): State<App>,
+    request: CheckedBody<AccuracyRequest>,
+) -> Result<Response, Problem> {
     let (stop, _guard) = app.pool.deadline();
-    let (comparison, mut held) = (command.body, command.held);
+    let (comparison, mut held) = (request.body, request.held);
     held.resize(&app.pool, cost::bytes_of_comparison(&comparison)).await?;
     let cost = cost::of_comparison(&comparison);
-    let work = move || reply::written(&compare(&comparison, &stop)?);
+    let work = move || reply::written(&simulation::compare_solvers(&comparison, &stop)?);
     Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
 }

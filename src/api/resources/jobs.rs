@@ -1,5 +1,6 @@
-//! `/jobs`: work that goes on after its request has been answered.
+//! `/jobs`: sweeps that continue after their request has been answered.
 
+use axum::body::Body;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse as _, Response};
@@ -7,36 +8,42 @@ use futures::StreamExt as _;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
+use crate::api::formats::{Format, tables};
+use crate::api::limits::KEEP_ALIVE;
+use crate::api::params::JobPath;
+use crate::api::problem::Problem;
+use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
+use crate::api::reply;
+use crate::api::state::{App, TenantApp};
 use crate::store::StreamEvent;
 use stickslip_wire::{JobEndEvent, JobReply, JobState, SweepReply};
 
-use crate::api::App;
-use crate::api::extract::JobId;
-use crate::api::formats::Format;
-use crate::api::formats::sheet::Table;
-use crate::api::limits::KEEP_ALIVE;
-use crate::api::problem::Problem;
-use crate::api::query::Params;
-use crate::api::reply;
-use crate::api::resources::sweep::{TableQuery, table};
-use crate::api::state::TenantApp;
-
-/// The job in the path.
+/// How a table is written.
 #[derive(IntoParams)]
-#[into_params(parameter_in = Path)]
-#[expect(dead_code, reason = "described here, read by `JobId`")]
-pub struct JobPath {
-    /// The identifier of the job.
-    id: Uuid,
+#[into_params(parameter_in = Query)]
+pub struct TableQuery {
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson` or `arrow` (an Arrow IPC
+    /// stream). If it is left out, `Accept` decides.
+    #[param(value_type = Option<String>, nullable = false, default = "columns")]
+    pub format: Option<Format>,
 }
 
-/// Look at a job
+impl QueryParams for TableQuery {
+    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<TableQuery> {
+        Some(TableQuery { format: query.format(&Format::TABLES) })
+    }
+}
+
+/// Get a job
 #[utoipa::path(
-    get, path = "/jobs/{id}", operation_id = "get_job", tag = "jobs", params(JobPath),
-    responses((status = 200, description = "How it stands", body = JobReply))
+    get, path = "/jobs/{id}", tag = "jobs", params(JobPath),
+    responses((status = 200, description = "Its state and progress", body = JobReply))
 )]
-pub async fn get(TenantApp(app): TenantApp, JobId(id): JobId, params: Params) -> Result<Response, Problem> {
-    params.none()?;
+pub async fn get_job(
+    TenantApp(app): TenantApp,
+    JobPath { id }: JobPath,
+    _: CheckedQuery<()>,
+) -> Result<Response, Problem> {
     Ok(reply::json(reply::written(&app.jobs.get(id).await?)?))
 }
 
@@ -44,45 +51,49 @@ pub async fn get(TenantApp(app): TenantApp, JobId(id): JobId, params: Params) ->
 ///
 /// The table, once the job is done. It is kept for a day.
 #[utoipa::path(
-    get, path = "/jobs/{id}/result", operation_id = "job_result", tag = "jobs", params(JobPath, TableQuery),
+    get, path = "/jobs/{id}/result", tag = "jobs", params(JobPath, TableQuery),
     responses((status = 200, description = "The table", body = SweepReply))
 )]
-pub async fn result(
+pub async fn get_job_result(
     TenantApp(app): TenantApp,
-    JobId(id): JobId,
+    JobPath { id }: JobPath,
     headers: HeaderMap,
-    params: Params,
+    CheckedQuery(query): CheckedQuery<TableQuery>,
 ) -> Result<Response, Problem> {
-    let format = Format::chosen_of(params.table()?, &headers, &Format::TABLES)?;
-    let held = app.pool.reserve(app.jobs.size(id).await?).await?;
-    let (draft, rows) = app.jobs.result(id).await?;
-    Ok(reply::holding(table(Table::new(&draft, rows), format), held))
+    let format = Format::chosen(query.format, &headers, &Format::TABLES)?;
+    let memory = app.pool.reserve(app.jobs.size(id).await?).await?;
+    let (sweep, result) = app.jobs.result(id).await?;
+    let table = Body::from_stream(futures::stream::iter(tables::sweep(&sweep, result).blocks(format)));
+    Ok(reply::holding(format.reply(table), memory))
 }
 
 /// Cancel a job
 ///
-/// Ends it if it has not ended, and deletes it with its result.
+/// Stops the job if it is running, and deletes it with its result.
 #[utoipa::path(
-    delete, path = "/jobs/{id}", operation_id = "cancel_job", tag = "jobs", params(JobPath),
-    responses((status = 204, description = "It is gone"))
+    delete, path = "/jobs/{id}", tag = "jobs", params(JobPath),
+    responses((status = 204, description = "The job is deleted"))
 )]
-pub async fn delete(TenantApp(app): TenantApp, JobId(id): JobId) -> Result<StatusCode, Problem> {
+pub async fn cancel_job(TenantApp(app): TenantApp, JobPath { id }: JobPath) -> Result<StatusCode, Problem> {
     app.jobs.delete(id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Follow a job
+/// Watch a job
 ///
-/// Server-sent events whose data are those of `GET /jobs/{id}`: `progress` at once and whenever the job has come on, and
-/// `done` or `failed` at its end. If there is nothing more to tell before that, because it has been deleted or the server
-/// stops, the last event is `end` (its data a `JobEndEvent`); comments keep an idle connection open.
+/// Server-sent events whose data are those of `GET /jobs/{id}`: `progress` at once and after each step of the job, and
+/// `done` or `failed` at its end. If the job is deleted or the server stops before that, the last event is `end` (its
+/// data a `JobEndEvent`). Comments keep an idle connection open.
 #[utoipa::path(
-    get, path = "/jobs/{id}/events", operation_id = "job_events", tag = "jobs", params(JobPath),
+    get, path = "/jobs/{id}/events", tag = "jobs", params(JobPath),
     responses((status = 200, description = "The events; the schema is that of the data of all but `end`",
         content_type = "text/event-stream", body = JobReply))
 )]
-pub async fn events(TenantApp(app): TenantApp, JobId(id): JobId, params: Params) -> Result<Response, Problem> {
-    params.none()?;
+pub async fn watch_job(
+    TenantApp(app): TenantApp,
+    JobPath { id }: JobPath,
+    _: CheckedQuery<()>,
+) -> Result<Response, Problem> {
     stream(&app, id).await
 }
 

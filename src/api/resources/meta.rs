@@ -1,4 +1,5 @@
-//! What is not about contacts: health, the specification, the kinds of problems, and the answers where nothing is.
+//! The service itself: health, the OpenAPI document, the kinds of problems, and the answers to requests without a
+//! handler.
 
 use std::any::Any;
 
@@ -9,43 +10,46 @@ use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
 use crate::admission::PoolError;
-
-use crate::api::App;
 use crate::api::problem::{Kind, Problem};
 use crate::api::reply;
+use crate::api::state::App;
 use crate::server::connections::Refusal;
 
-/// Is the process alive?
+/// Check that the process is alive
 #[utoipa::path(
     get, path = "/healthz", tag = "service",
-    responses((status = 200, description = "It is", body = serde_json::Value, example = json!({"status": "ok"})))
+    responses((status = 200, description = "It is alive", body = serde_json::Value, example = json!({"status": "ok"})))
 )]
-pub async fn healthz() -> Result<Response, Problem> {
+pub async fn check_health() -> Result<Response, Problem> {
     Ok(reply::json(reply::written(&json!({"status": "ok"}))?))
 }
 
-/// Can it serve?
+/// Check that the service is ready
 #[utoipa::path(
     get, path = "/readyz", tag = "service",
-    responses((status = 200, description = "It can", body = serde_json::Value, example = json!({"status": "ready"})))
+    responses((status = 200, description = "It is ready", body = serde_json::Value, example = json!({"status": "ready"})))
 )]
-pub async fn readyz(State(app): State<App>) -> Result<Response, Problem> {
+pub async fn check_readiness(State(app): State<App>) -> Result<Response, Problem> {
     match app.sessions.ready().await {
         Ok(()) => Ok(reply::json(reply::written(&json!({"status": "ready"}))?)),
         Err(error) => Err(Problem::new(Kind::Overloaded, "the store is not ready").because(error.to_string())),
     }
 }
 
-/// This document
+/// The text that `/openapi.json` serves.
+#[derive(Clone, Copy)]
+pub struct OpenApiText(pub &'static str);
+
+/// Get this document
 #[utoipa::path(
     get, path = "/openapi.json", tag = "service",
     responses((status = 200, description = "The specification (OpenAPI 3.1)", body = serde_json::Value))
 )]
-pub async fn openapi() -> Response {
-    reply::json(crate::api::document().as_bytes().to_vec())
+pub async fn get_openapi(Extension(OpenApiText(text)): Extension<OpenApiText>) -> Response {
+    reply::json(text.as_bytes().to_vec())
 }
 
-/// What a kind of problem is
+/// Explain a kind of problem
 ///
 /// The `type` of every problem document leads here.
 #[utoipa::path(
@@ -54,19 +58,19 @@ pub async fn openapi() -> Response {
     responses((status = 200, description = "Its title and status", body = serde_json::Value,
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
-pub async fn problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
+pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
     let Some(kind) = Kind::parse(&code) else {
-        return Err(nothing(&uri));
+        return Err(nothing_at(&uri));
     };
     Ok(reply::json(reply::written(&json!({"code": code, "title": kind.title(), "status": kind.status()}))?))
 }
 
 /// The answer to a path that does not exist.
-pub async fn nothing_here(uri: Uri) -> Problem {
-    nothing(&uri)
+pub async fn not_found(uri: Uri) -> Problem {
+    nothing_at(&uri)
 }
 
-/// The answer to a request that does not come as far as a handler.
+/// The answer to a request that is refused before routing.
 pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
     match refusal {
         Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Kind::AmbiguousRequest, why),
@@ -75,7 +79,7 @@ pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
     }
 }
 
-fn nothing(uri: &Uri) -> Problem {
+fn nothing_at(uri: &Uri) -> Problem {
     let path: String = uri.path().chars().take(100).collect();
     Problem::new(Kind::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
 }

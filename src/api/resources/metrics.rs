@@ -17,9 +17,9 @@ use crate::metrics::process::Process;
 use crate::sessions::Readings;
 use crate::store::Commits;
 
-use crate::api::App;
 use crate::api::middleware::request_metrics::RequestMetrics;
 use crate::api::problem::Problem;
+use crate::api::state::App;
 
 /// Where the numbers are.
 pub const ROUTE: &str = "/metrics";
@@ -31,7 +31,7 @@ const MEDIA_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
 ///
 /// Counters, gauges and histograms since the start, for Prometheus.
 #[utoipa::path(
-    get, path = "/metrics", tag = "service",
+    get, path = "/metrics", operation_id = "get_metrics", tag = "service",
     responses((status = 200, description = "The text format of Prometheus, version 0.0.4", content_type = "text/plain",
         body = String))
 )]

@@ -3,12 +3,14 @@
 pub mod accuracy;
 pub mod contacts;
 pub mod events;
+pub mod history;
+pub mod hysteresis_loop;
 pub mod jobs;
 pub mod meta;
 pub mod metrics;
 pub mod moves;
 pub mod page;
 pub mod protocols;
-pub mod reads;
 pub mod simulate;
+pub mod stress;
 pub mod sweep;

@@ -1,22 +1,20 @@
-//! `/contacts/{id}/move`, `/contacts/{id}/path` and `/contacts/{id}/relax`: sessions move on.
+//! `/contacts/{id}/move`, `/contacts/{id}/path` and `/contacts/{id}/relax`: contacts are moved.
 
 use axum::response::Response;
 use uuid::Uuid;
 
+use crate::api::extract::CheckedBody;
+use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
+use crate::api::problem::Problem;
+use crate::api::reply;
+use crate::api::state::{App, TenantApp};
 use crate::simulation::cost;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
-use crate::api::App;
-use crate::api::extract::{Command, ContactId, Expected};
-use crate::api::openapi::{ContactPath, IdempotencyKey, IfMatch};
-use crate::api::problem::Problem;
-use crate::api::reply;
-use crate::api::state::TenantApp;
-
 /// Move a contact
 ///
-/// Makes one move. Moves of one contact are applied one at a time, in the order of their arrival.
+/// Applies one move. Moves of one contact are applied one at a time, in the order of their arrival.
 #[utoipa::path(
     post, path = "/contacts/{id}/move", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body(content = MoveRequest, examples(
@@ -25,27 +23,27 @@ use crate::api::state::TenantApp;
         ("oblique" = (summary = "Deeper and sideways at once, then the stresses",
             value = json!({"displacement": 1e-7, "indentation": 1.2e-6, "stress": {"points": 50}}))),
         ("back a little" = (summary = "By an increment", value = json!({"displacement": -2e-8, "relative": true}))),
-        ("lift off" = (summary = "Out of contact, where nothing is remembered", value = json!({"indentation": -1e-6})))
+        ("lift off" = (summary = "Out of contact, which erases the memory", value = json!({"indentation": -1e-6})))
     )),
     responses((status = 200, description = "The state after the move", body = MoveReply,
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
-pub async fn apply(
+pub async fn move_contact(
     TenantApp(app): TenantApp,
-    ContactId(id): ContactId,
-    Expected(expected): Expected,
-    command: Command<MoveRequest>,
+    ContactPath { id }: ContactPath,
+    IfMatch { sequence }: IfMatch,
+    request: CheckedBody<MoveRequest>,
 ) -> Result<Response, Problem> {
-    advance(&app, id, expected, command).await
+    advance(&app, id, sequence, request).await
 }
 
-/// Take a contact along a path
+/// Follow a path
 ///
-/// All of it or nothing: if a move of it cannot be made, none is.
+/// Applies all moves of the path, or none if one of them is refused.
 #[utoipa::path(
     post, path = "/contacts/{id}/path", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body(content = PathRequest, examples(
-        ("displacements" = (summary = "To and fro", value = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))),
+        ("displacements" = (summary = "Back and forth", value = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))),
         ("falling amplitude" = (summary = "Until almost no force is left, the last state alone",
             value = json!({"path": {"falling_amplitude": {"reversals": 20, "amplitude": 2e-7}}, "steps": "last"}))),
         ("moves" = (summary = "Lift off and touch again",
@@ -54,19 +52,19 @@ pub async fn apply(
     responses((status = 200, description = "The states along the path", body = PathReply,
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
-pub async fn path(
+pub async fn follow_path(
     TenantApp(app): TenantApp,
-    ContactId(id): ContactId,
-    Expected(expected): Expected,
-    command: Command<PathRequest>,
+    ContactPath { id }: ContactPath,
+    IfMatch { sequence }: IfMatch,
+    request: CheckedBody<PathRequest>,
 ) -> Result<Response, Problem> {
-    advance(&app, id, expected, command).await
+    advance(&app, id, sequence, request).await
 }
 
 /// Relax a contact
 ///
-/// Finds the path that leaves least shear stress from the present state, whatever its history, and applies all of it or
-/// nothing. A dry run shows the same and changes nothing.
+/// Finds the path from the present state that leaves the least shear stress, whatever the history, and applies all of
+/// it or nothing. A dry run returns the same and changes nothing.
 #[utoipa::path(
     post, path = "/contacts/{id}/relax", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
     request_body(content = RelaxRequest, examples(
@@ -75,30 +73,30 @@ pub async fn path(
             value = json!({"target": 0.2, "steps": "all"})))
     )),
     responses((status = 200, description = "The path, and what remains", body = RelaxReply,
-        headers(("ETag" = String, description = "The sequence in quotes: the new one, but of a dry run"))))
+        headers(("ETag" = String, description = "The sequence in quotes: the new one, or the present one after a dry run"))))
 )]
-pub async fn relax(
+pub async fn relax_contact(
     TenantApp(app): TenantApp,
-    ContactId(id): ContactId,
-    Expected(expected): Expected,
-    command: Command<RelaxRequest>,
+    ContactPath { id }: ContactPath,
+    IfMatch { sequence }: IfMatch,
+    request: CheckedBody<RelaxRequest>,
 ) -> Result<Response, Problem> {
-    let Command { body, key, mut held } = command;
+    let CheckedBody { body, key, mut held } = request;
     if body.dry_run {
-        let (sequence, body, memory) = app.sessions.dry_run_relax(id, body, expected).await?;
+        let (sequence, body, memory) = app.sessions.dry_run_relax(id, body, sequence).await?;
         return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
     }
     let advance = Advance::from(body);
     held.resize(&app.pool, cost::bytes_of_advance(&advance)).await?;
-    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, expected, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, sequence, key).await?)))
 }
 
 async fn advance<T: Document<Checked = Advance>>(
     app: &App,
     id: Uuid,
-    expected: Option<u64>,
-    Command { body, key, mut held }: Command<T>,
+    sequence: Option<u64>,
+    CheckedBody { body, key, mut held }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
     held.resize(&app.pool, cost::bytes_of_advance(&body)).await?;
-    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, body, expected, key).await?)))
+    Ok(held.on(reply::of_change(app.sessions.apply_moves(id, body, sequence, key).await?)))
 }

@@ -1,4 +1,4 @@
-//! `/`: the page to look at. Its files are a part of the program, packed when it was built.
+//! `/`: the web page. Its files are part of the program, compressed when it was built.
 
 use std::sync::LazyLock;
 
@@ -9,8 +9,8 @@ use axum::response::{IntoResponse as _, Response};
 use axum::routing::get;
 use sha2::{Digest as _, Sha256};
 
+use super::meta;
 use crate::api::reply;
-use crate::api::resources::meta;
 
 /// Where the files are, below the page itself.
 pub const FOLDER: &str = "/page/{name}";
@@ -25,7 +25,7 @@ struct Asset {
 /// All files, as the build script found them.
 const ASSETS: &[Asset] = &include!(concat!(env!("OUT_DIR"), "/page.in"));
 
-/// The beginnings of the hashes of all files, which are those of both forms.
+/// The truncated hashes of all files, in the order of [`ASSETS`].
 static HASHES: LazyLock<Vec<String>> = LazyLock::new(|| ASSETS.iter().map(|asset| hash(asset.plain)).collect());
 
 /// The routes of the page.
@@ -44,26 +44,26 @@ async fn file(Path(name): Path<String>, headers: HeaderMap, uri: Uri) -> Respons
 async fn named(name: &str, headers: &HeaderMap, uri: &Uri) -> Response {
     match ASSETS.iter().zip(&*HASHES).find(|(asset, _)| asset.name == name) {
         Some((asset, hash)) => asset.answer(hash, headers),
-        None => meta::nothing_here(uri.clone()).await.into_response(),
+        None => meta::not_found(uri.clone()).await.into_response(),
     }
 }
 
 impl Asset {
-    /// The file, or the word that the client has it already.
+    /// The file, or 304 if the client already has it.
     fn answer(&self, hash: &str, asked: &HeaderMap) -> Response {
         let (body, coding) = if takes_gzip(asked) { (self.packed, "gzip") } else { (self.plain, "identity") };
-        // The two forms are told apart: a tag stands for bytes.
+        // The two encodings have different tags, because a tag identifies bytes.
         let tag = format!("\"{hash}-{coding}\"");
-        let fresh = reply::is_known(asked, &tag);
-        let mut response = if fresh { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
+        let current = reply::is_current(asked, &tag);
+        let mut response = if current { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
         let headers = response.headers_mut();
         headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
-        // Kept, and asked about each time: after an update no old file meets a new one.
+        // Revalidated each time: after an update no old file is used with a new one.
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-cache"));
         if let Ok(tag) = HeaderValue::from_str(&tag) {
             headers.insert(header::ETAG, tag);
         }
-        if !fresh {
+        if !current {
             headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.media_type()));
             if coding == "gzip" {
                 headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static(coding));

@@ -1,20 +1,20 @@
-//! `/protocols`: how a contact is to be moved so that little shear stress remains.
+//! `/protocols`: paths that leave little shear stress.
 
 use axum::response::Response;
 
+use crate::api::extract::CheckedBody;
+use crate::api::problem::Problem;
+use crate::api::reply;
+use crate::api::state::TenantApp;
 use crate::simulation::{self, cost};
 use stickslip_wire::protocol::ProtocolSubject;
 use stickslip_wire::{ProtocolReply, ProtocolRequest};
 
-use crate::api::extract::Command;
-use crate::api::problem::Problem;
-use crate::api::reply;
-use crate::api::state::TenantApp;
-
 /// Find a protocol
 ///
-/// Finds displacements that leave little shear stress, in a number of reversals or in as few as reach a target, and says what
-/// remains, how far that may be from the best there is, and what the other laws would leave. Nothing is kept or changed.
+/// Finds displacements that leave little shear stress, in a number of reversals or in as few as reach a target, and
+/// says what remains, how far that may be from the optimum, and what the other laws would leave. Nothing is stored or
+/// changed.
 #[utoipa::path(
     post, path = "/protocols", tag = "protocols",
     request_body(content = ProtocolRequest, examples(
@@ -27,7 +27,7 @@ use crate::api::state::TenantApp;
             },
             "reversals": 20, "kind": "minimax", "end": "free"
         }))),
-        ("target" = (summary = "As few reversals as leave a quarter, and how sure that is with a coarse actuator", value = json!({
+        ("target" = (summary = "The fewest reversals that leave a quarter, and how robust they are with a coarse actuator", value = json!({
             "contact": {
                 "profile": {"type": "power_law", "exponent": 3.0, "coefficient": 1e4},
                 "material": {"effective": {"e_star": 1.2e11, "g_star": 9.6e10}},
@@ -40,11 +40,14 @@ use crate::api::state::TenantApp;
     )),
     responses((status = 200, description = "The path, and what remains", body = ProtocolReply))
 )]
-pub async fn protocols(TenantApp(app): TenantApp, command: Command<ProtocolRequest>) -> Result<Response, Problem> {
-    let ((subject, task), mut held) = (command.body, command.held);
+pub async fn find_protocol(
+    TenantApp(app): TenantApp,
+    request: CheckedBody<ProtocolRequest>,
+) -> Result<Response, Problem> {
+    let ((subject, task), mut held) = (request.body, request.held);
     match subject {
-        ProtocolSubject::Living(id, said) => {
-            let (_, body, memory) = app.sessions.protocol(id, said.map(|said| *said), task).await?;
+        ProtocolSubject::Living(id, contact) => {
+            let (_, body, memory) = app.sessions.protocol(id, contact.map(|contact| *contact), task).await?;
             Ok(reply::holding(reply::json(body), memory))
         }
         ProtocolSubject::Virgin(made, first) => {

@@ -1,25 +1,24 @@
-//! `/simulate`: a contact and a path in, states and stresses out; nothing is kept.
+//! `/simulate`: the states and stresses of a contact along a path; nothing is stored.
 
 use axum::extract::State;
 use axum::response::Response;
 
+use crate::api::extract::CheckedBody;
+use crate::api::problem::Problem;
+use crate::api::reply;
+use crate::api::state::App;
 use crate::otlp;
 use crate::simulation::{self, cost};
 use stickslip_wire::{SimulateReply, SimulateRequest};
 
-use crate::api::App;
-use crate::api::extract::Command;
-use crate::api::problem::Problem;
-use crate::api::reply;
-
 /// Simulate a path
 ///
 /// Follows a path from the preloaded contact and returns the states along it, and the stresses and their extrema at its
-/// end if asked for. Nothing is kept, so that a repeated request simply runs again.
+/// end if asked for. Nothing is stored, so that a repeated request simply runs again.
 #[utoipa::path(
     post, path = "/simulate", tag = "simulation",
     request_body(content = SimulateRequest, examples(
-        ("to and fro" = (summary = "Falling amplitude, with the stresses that remain", value = json!({
+        ("back and forth" = (summary = "Falling amplitude, with the residual stresses", value = json!({
             "contact": {
                 "profile": {"type": "sphere", "radius": 0.01},
                 "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
@@ -51,9 +50,9 @@ use crate::api::reply;
     )),
     responses((status = 200, description = "States, and what else was asked for", body = SimulateReply))
 )]
-pub async fn simulate(State(app): State<App>, command: Command<SimulateRequest>) -> Result<Response, Problem> {
+pub async fn simulate_path(State(app): State<App>, request: CheckedBody<SimulateRequest>) -> Result<Response, Problem> {
     let (stop, _guard) = app.pool.deadline();
-    let (simulation, mut held) = (command.body, command.held);
+    let (simulation, mut held) = (request.body, request.held);
     held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;
     let cost = cost::of_simulation(&simulation);
     let room = cost::length_of_simulation(&simulation);

@@ -1,4 +1,4 @@
-//! Jobs: how they are asked for, followed, bounded and cancelled.
+//! Jobs: how they are requested, watched, bounded and cancelled.
 
 use std::collections::BTreeSet;
 
@@ -6,8 +6,8 @@ use futures::StreamExt as _;
 use reqwest::Method;
 use serde_json::{Value, json};
 
-use super::{PATIENCE, Place, base, long, small_job, until};
-use crate::common::{Server, ball, problem};
+use super::{base, long, small_job};
+use crate::common::{PATIENCE, Server, ball, problem, until};
 
 /// The events of a stream to its end: names and data.
 async fn events(response: reqwest::Response) -> Vec<(String, Value)> {
@@ -23,7 +23,7 @@ async fn events(response: reqwest::Response) -> Vec<(String, Value)> {
 
 #[tokio::test]
 async fn a_large_sweep_becomes_a_job_and_a_small_one_if_that_is_wanted() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     // Much work for its size; it is not waited for.
     let response = server.post("/sweep", &long(200_000)).await;
     assert_eq!(response.status(), 202);
@@ -39,9 +39,10 @@ async fn a_large_sweep_becomes_a_job_and_a_small_one_if_that_is_wanted() {
     assert_eq!(server.send(Method::DELETE, &path, None, &[]).await.status(), 204);
 
     let mut small = small_job();
-    let by_member = server.start(&small).await;
+    let by_member = server.start_job(&small).await;
     small["job"] = json!(false);
-    let preferred = server.send(Method::POST, "/sweep", Some(&small), &[("prefer", "wait=5, respond-async")]).await;
+    let preferred =
+        server.send(Method::POST, "/sweep", Some(&small.to_string()), &[("prefer", "wait=5, respond-async")]).await;
     assert_eq!(
         (preferred.status().as_u16(), &preferred.headers()["preference-applied"]),
         (202, &"respond-async".parse().unwrap())
@@ -49,7 +50,7 @@ async fn a_large_sweep_becomes_a_job_and_a_small_one_if_that_is_wanted() {
     let by_header = preferred.headers()["location"].to_str().unwrap().to_owned();
     let at_once = server.post("/sweep", &small).await.text().await.unwrap();
     for path in [by_member, by_header] {
-        assert_eq!(server.result(&path).await, at_once);
+        assert_eq!(server.job_result(&path).await, at_once);
         let job = server.job(&path).await;
         let time = |name: &str| job[name].as_str().unwrap().parse::<jiff::Timestamp>().unwrap();
         assert_eq!(time("expires_at").duration_since(time("finished_at")).as_hours(), 24, "kept for a day");
@@ -58,25 +59,26 @@ async fn a_large_sweep_becomes_a_job_and_a_small_one_if_that_is_wanted() {
 
 #[tokio::test]
 async fn events_lead_from_the_beginning_to_the_end_of_a_job() {
-    let server = Place::of(&Server::start().await);
-    let stream = server.send(Method::POST, "/sweep", Some(&long(40_000)), &[("accept", "text/event-stream")]).await;
+    let server = Server::start().await;
+    let stream =
+        server.send(Method::POST, "/sweep", Some(&long(40_000).to_string()), &[("accept", "text/event-stream")]).await;
     let events = events(stream).await;
     let (last, before) = events.split_last().unwrap();
     assert!(before.iter().all(|(name, _)| name == "progress"), "{events:?}");
     let done: Vec<u64> = events.iter().map(|(_, job)| job["progress"]["done"].as_u64().unwrap()).collect();
     assert!(done.is_sorted() && done.last() == Some(&40_000), "{done:?}");
     assert_eq!((last.0.as_str(), &last.1["state"]), ("done", &json!("done")));
-    // Whoever comes later is told of the end at once.
+    // A client that connects later receives the end at once.
     let path = format!("/jobs/{}", last.1["id"].as_str().unwrap());
     let late = self::events(server.get(&format!("{path}/events")).await).await;
     assert_eq!(late, [("done".to_owned(), last.1.clone())]);
-    assert!(server.result(&path).await.starts_with("{\"points\":40000,"));
+    assert!(server.job_result(&path).await.starts_with("{\"points\":40000,"));
 }
 
 #[tokio::test]
 async fn a_cancelled_job_is_gone_with_its_result() {
-    let server = Place::of(&Server::start().await);
-    let path = server.start(&long(300_000)).await;
+    let server = Server::start().await;
+    let path = server.start_job(&long(300_000)).await;
     let stream = server.get(&format!("{path}/events")).await;
     until("a part is done", async || (server.job(&path).await["progress"]["done"].as_u64() > Some(0)).then_some(()))
         .await;
@@ -89,14 +91,14 @@ async fn a_cancelled_job_is_gone_with_its_result() {
         assert_eq!((refusal.status, refusal.code.as_str()), (404, "job_not_found"), "{more}");
     }
     assert_eq!(problem(server.get("/jobs/none").await).await.code, "job_not_found");
-    // Those who worked on it are free for others.
-    let path = server.start(&small_job()).await;
-    server.result(&path).await;
+    // Its threads are free for others.
+    let path = server.start_job(&small_job()).await;
+    server.job_result(&path).await;
 }
 
 #[tokio::test]
 async fn jobs_are_bounded_in_number_and_work_until_some_are_gone() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let mut heavy = long(2_000_000);
     heavy["base"]["path"]["falling_amplitude"]["reversals"] = json!(2_000);
     let (mut paths, mut refused) = (Vec::new(), None);
@@ -126,14 +128,14 @@ async fn jobs_are_bounded_in_number_and_work_until_some_are_gone() {
     };
     assert_eq!((refusal.status, refusal.code.as_str()), (429, "too_many_jobs"));
     assert_eq!(server.send(Method::DELETE, &paths[0], None, &[]).await.status(), 204);
-    server.start(&small_job()).await;
+    server.start_job(&small_job()).await;
 }
 
 #[tokio::test]
 async fn a_retry_with_the_same_key_makes_no_second_job() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let send = async |body: &Value, key: &str| {
-        server.send(Method::POST, "/sweep", Some(body), &[("idempotency-key", key)]).await
+        server.send(Method::POST, "/sweep", Some(&body.to_string()), &[("idempotency-key", key)]).await
     };
     let mut ids = BTreeSet::new();
     for key in ["one", "one", "two", "one"] {
@@ -147,10 +149,10 @@ async fn a_retry_with_the_same_key_makes_no_second_job() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_move_is_made_while_huge_sweeps_are_under_way() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let mut huge = long(2_000_000);
     huge["base"] = base();
-    let paths = [server.start(&huge).await, server.start(&huge).await];
+    let paths = [server.start_job(&huge).await, server.start_job(&huge).await];
     let contact: Value = server.post("/contacts", &ball()).await.json().await.unwrap();
     let contact = format!("/contacts/{}", contact["id"].as_str().unwrap());
     until("both are under way", async || {

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Place, base};
+use super::base;
 use crate::common::{Server, problem};
 
 fn sweep(axes: Value, outputs: Value) -> Value {
@@ -15,7 +15,7 @@ fn axis(pointer: &str, key: &str, values: Value) -> Value {
 
 #[tokio::test]
 async fn every_fault_is_named_with_its_place() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let friction = || axis("/contact/friction", "values", json!([0.1, 0.2]));
     let reversals = "/path/falling_amplitude/reversals";
     let max = || json!(["/residual/max"]);
@@ -101,7 +101,7 @@ async fn every_fault_is_named_with_its_place() {
 
 #[tokio::test]
 async fn more_work_than_a_server_takes_on_is_refused_as_such() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let mut huge = sweep(
         axis("/contact/friction", "linear", json!({"from": 0.1, "to": 0.2, "count": 2_000_000})),
         json!(["/residual/max"]),

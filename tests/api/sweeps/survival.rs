@@ -1,15 +1,13 @@
-//! Jobs over the end of processes.
-
-use std::time::Duration;
+//! Jobs survive the end of processes.
 
 use serde_json::{Value, json};
 use tempfile::tempdir;
 use tokio_postgres::NoTls;
 
-use super::{Place, long, until};
+use super::long;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
-use crate::common::{self};
+use crate::common::{PATIENCE, Server, run, until};
 
 /// Enough points that a process can be killed in the middle of them.
 const POINTS: usize = 250_000;
@@ -19,13 +17,13 @@ fn undisturbed(sweep: &Value) -> String {
     let folder = tempdir().unwrap();
     let file = folder.path().join("sweep.json");
     std::fs::write(&file, sweep.to_string()).unwrap();
-    let printed = common::run(&["sweep", file.to_str().unwrap(), "--format", "columns"]);
+    let printed = run(&["sweep", file.to_str().unwrap(), "--format", "columns"]);
     assert!(printed.status.success());
     String::from_utf8(printed.stdout).unwrap()
 }
 
-async fn done(place: &Place, path: &str) -> u64 {
-    place.job(path).await["progress"]["done"].as_u64().unwrap()
+async fn done(server: &Server, path: &str) -> u64 {
+    server.job(path).await["progress"]["done"].as_u64().unwrap()
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -33,28 +31,28 @@ async fn a_job_goes_on_after_a_kill_with_what_it_had() {
     let folder = tempdir().unwrap();
     let store = format!("sqlite:{}", folder.path().join("jobs.db").display());
     let (process, sweep) = (Process::start(&store).await, long(POINTS));
-    let path = Place::at(&process.base).start(&sweep).await;
+    let path = Server::at(&process.base).start_job(&sweep).await;
     let mut process = Some(process);
     let (mut seen, mut kills) = (0, 0);
     for wanted in [1, POINTS as u64 / 3] {
-        let place = Place::at(&process.as_ref().unwrap().base);
-        seen = until("more is done", async || Some(done(&place, &path).await).filter(|done| *done >= wanted)).await;
+        let server = Server::at(&process.as_ref().unwrap().base);
+        seen = until("more is done", async || Some(done(&server, &path).await).filter(|done| *done >= wanted)).await;
         kills += u32::from(seen < POINTS as u64);
         process.take().unwrap().kill().await;
         process = Some(Process::start(&store).await);
-        let place = Place::at(&process.as_ref().unwrap().base);
-        assert!(done(&place, &path).await >= seen, "what was done is done");
+        let server = Server::at(&process.as_ref().unwrap().base);
+        assert!(done(&server, &path).await >= seen, "what was done is done");
     }
     assert!(kills > 0, "the job was over before the first kill: {seen}");
     let process = process.unwrap();
-    let place = Place::at(&process.base);
-    assert_eq!(place.result(&path).await, undisturbed(&sweep));
+    let server = Server::at(&process.base);
+    assert_eq!(server.job_result(&path).await, undisturbed(&sweep));
     // The result outlives a stop too, and a cancelled job leaves nothing behind.
     process.stop().await;
     let process = Process::start(&store).await;
-    let place = Place::at(&process.base);
-    assert!(place.result(&path).await.starts_with("{\"points\":250000,"));
-    assert_eq!(place.send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
+    let server = Server::at(&process.base);
+    assert!(server.job_result(&path).await.starts_with("{\"points\":250000,"));
+    assert_eq!(server.send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
     process.stop().await;
     let database = rusqlite::Connection::open(folder.path().join("jobs.db")).unwrap();
     let left: i64 = database
@@ -74,7 +72,7 @@ async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_othe
     };
     let (first, second) = (start("first").await, start("second").await);
     let sweep = long(POINTS);
-    let path = Place::at(&first.base).start(&sweep).await;
+    let path = Server::at(&first.base).start_job(&sweep).await;
     let count =
         async |of: &str| client.query_one(&format!("SELECT {of} FROM job_chunks"), &[]).await.unwrap().get::<_, i64>(0);
     until("both work on it", async || {
@@ -84,8 +82,8 @@ async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_othe
     first.kill().await;
     let left = count("count(*) FILTER (WHERE content IS NULL)").await;
     assert!(left > 0, "the job was over before the kill");
-    let place = Place::at(&second.base);
-    assert_eq!(place.result(&path).await, undisturbed(&sweep));
+    let server = Server::at(&second.base);
+    assert_eq!(server.job_result(&path).await, undisturbed(&sweep));
     assert_eq!(count("count(*) FILTER (WHERE owner IS NOT NULL)").await, 0, "nobody holds what is done");
     second.stop().await;
 }
@@ -96,7 +94,7 @@ async fn a_replica_that_stops_gives_its_part_back_at_once() {
     let (client, connection) = tokio_postgres::connect(&url, NoTls).await.unwrap();
     tokio::spawn(connection);
     let process = Process::start(&url).await;
-    let path = Place::at(&process.base).start(&long(POINTS)).await;
+    let path = Server::at(&process.base).start_job(&long(POINTS)).await;
     let held = async || {
         let of =
             "SELECT count(*) FILTER (WHERE owner IS NOT NULL), count(*) FILTER (WHERE content IS NULL) FROM job_chunks";
@@ -109,7 +107,7 @@ async fn a_replica_that_stops_gives_its_part_back_at_once() {
     assert!(left > 0, "the job was over before the stop");
     assert_eq!(held, 0, "the lease is thirty seconds");
     let process = Process::start(&url).await;
-    assert_eq!(Place::at(&process.base).send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
+    assert_eq!(Server::at(&process.base).send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
     process.stop().await;
 }
 
@@ -119,13 +117,13 @@ async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
     let file = folder.path().join("old.db");
     let store = format!("sqlite:{}", file.display());
     let process = Process::start(&store).await;
-    let place = Place::at(&process.base);
+    let server = Server::at(&process.base);
     let mut paths = Vec::new();
     for _ in 0..3 {
-        paths.push(place.start(&super::small_job()).await);
+        paths.push(server.start_job(&super::small_job()).await);
     }
     for path in &paths {
-        place.result(path).await;
+        server.job_result(path).await;
     }
     process.stop().await;
     let database = rusqlite::Connection::open(&file).unwrap();
@@ -137,12 +135,12 @@ async fn results_are_gone_after_a_day_and_jobs_that_do_not_end_after_a_week() {
     let open = "UPDATE jobs SET finished_at = NULL, created_at = created_at - ?2, done = 0 WHERE id = ?1";
     database.execute(open, (id(&paths[2]), hours(24 * 7 + 1))).unwrap();
     drop(database);
-    // At its start, a server keeps house.
+    // A server removes expired jobs at its start.
     let process = Process::start(&store).await;
-    let place = Place::at(&process.base);
+    let server = Server::at(&process.base);
     for gone in [&paths[0], &paths[2]] {
-        until("it is gone", async || (place.get(gone).await.status() == 404).then_some(())).await;
+        until("it is gone", async || (server.get(gone).await.status() == 404).then_some(())).await;
     }
-    assert_eq!(place.job(&paths[1]).await["state"], json!("done"));
-    tokio::time::timeout(Duration::from_secs(30), process.stop()).await.expect("it does not stop");
+    assert_eq!(server.job(&paths[1]).await["state"], json!("done"));
+    tokio::time::timeout(PATIENCE, process.stop()).await.expect("it does not stop");
 }

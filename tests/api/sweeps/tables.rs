@@ -1,4 +1,4 @@
-//! What stands in the table.
+//! The numbers in the table of a sweep.
 
 use arrow_array::Array as _;
 use arrow_array::cast::AsArray as _;
@@ -6,17 +6,17 @@ use arrow_array::types::Float64Type;
 use arrow_ipc::reader::StreamReader;
 use serde_json::{Value, json};
 
-use super::{Place, base, small_job};
-use crate::common::{self, Server, ball, problem};
+use super::{base, small_job};
+use crate::common::{Server, ball, problem, run};
 
 /// Sends each row's point to `/simulate` by itself, and compares to the last bit. Says how many numbers there were.
-async fn compare(place: &Place, sweep: &Value) -> (usize, usize) {
-    let response = place.post("/sweep", sweep).await;
+async fn compare(server: &Server, sweep: &Value) -> (usize, usize) {
+    let response = server.post("/sweep", sweep).await;
     assert_eq!(response.status(), 200, "{sweep}: {}", response.text().await.unwrap());
     let table: Value = response.json().await.unwrap();
     let axes: Vec<&str> =
         sweep["axes"].as_array().unwrap().iter().map(|axis| axis["pointer"].as_str().unwrap()).collect();
-    let (mut numbers, mut nothings) = (0, 0);
+    let (mut numbers, mut nulls) = (0, 0);
     for row in 0..table["points"].as_u64().unwrap() as usize {
         let mut point = sweep["base"].clone();
         for axis in &axes {
@@ -28,7 +28,7 @@ async fn compare(place: &Place, sweep: &Value) -> (usize, usize) {
                 None => parent[member] = value,
             }
         }
-        let reply = place.post("/simulate", &point).await;
+        let reply = server.post("/simulate", &point).await;
         assert_eq!(reply.status(), 200, "{point}");
         let reply: Value = reply.json().await.unwrap();
         for output in sweep["outputs"].as_array().unwrap() {
@@ -36,24 +36,24 @@ async fn compare(place: &Place, sweep: &Value) -> (usize, usize) {
             let expected = reply.pointer(output).and_then(Value::as_f64);
             let found = &table["columns"][output][row];
             assert_eq!(found.as_f64().map(f64::to_bits), expected.map(f64::to_bits), "{output} of row {row}");
-            *if expected.is_some() { &mut numbers } else { &mut nothings } += 1;
+            *if expected.is_some() { &mut numbers } else { &mut nulls } += 1;
         }
     }
-    (numbers, nothings)
+    (numbers, nulls)
 }
 
 #[tokio::test]
 async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let three = json!({"base": base(), "axes": [
         {"pointer": "/path/falling_amplitude/reversals", "values": [1, 2, 20]},
         {"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.7, "count": 3}},
         {"pointer": "/contact/preload/normal_force", "logarithmic": {"from": 0.001, "to": 3000, "count": 4}}
     ], "outputs": ["/residual/max", "/residual/peaks/3/radius", "/residual/peaks/3/shear", "/steps/0/elastic_energy",
         "/steps/0/memory_depth", "/contact/contact_radius", "/accuracy/stress_error"]});
-    let (numbers, nothings) = compare(&server, &three).await;
-    assert_eq!(numbers + nothings, 36 * 7);
-    assert!(nothings > 0 && nothings < 72, "a peak that some points do not reach: {nothings}");
+    let (numbers, nulls) = compare(&server, &three).await;
+    assert_eq!(numbers + nulls, 36 * 7);
+    assert!(nulls > 0 && nulls < 72, "a peak that some points do not reach: {nulls}");
 
     // A member that the base leaves out, a curved path, stresses, and states along it.
     let moves = json!([{"normal_force": 12, "force": 2}, {"displacement": 1e-8, "normal_force": 11}]);
@@ -81,7 +81,7 @@ async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
 
 #[tokio::test]
 async fn figure_5_is_one_call() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let sweep = json!({"base": base(), "axes": [{"pointer": "/path/falling_amplitude/reversals",
         "linear": {"from": 1, "to": 100, "count": 100}}], "outputs": ["/residual/max", "/contact/max_pressure"]});
     let table: Value = server.post("/sweep", &sweep).await.json().await.unwrap();
@@ -99,7 +99,7 @@ async fn figure_5_is_one_call() {
 
 #[tokio::test]
 async fn a_point_without_an_answer_is_a_row_without_numbers_and_stands_among_the_failures() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let mut base = base();
     base["contact"]["profile"] = json!({"type": "exact_sphere", "radius": 0.01});
     base["contact"]["preload"] = json!({"indentation": 1e-6});
@@ -144,7 +144,7 @@ fn arrow(stream: &[u8], names: &[&str]) -> Vec<Vec<Option<f64>>> {
 
 #[tokio::test]
 async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     // More rows than are written at a time, and some without numbers.
     let sweep = json!({"base": base(), "axes": [
         {"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.5, "count": 300}},
@@ -153,8 +153,8 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
     let names = ["/contact/friction", "/path/falling_amplitude/reversals", "/residual/max", "/residual/peaks/2/shear"];
     let mut asked = sweep.clone();
     asked["job"] = json!(true);
-    let job = server.start(&asked).await;
-    let columns = server.result(&job).await;
+    let job = server.start_job(&asked).await;
+    let columns = server.job_result(&job).await;
     let table: Value = serde_json::from_str(&columns).unwrap();
     let rows: Vec<Vec<Value>> =
         (0..600).map(|row| names.iter().map(|name| table["columns"][name][row].clone()).collect()).collect();
@@ -170,7 +170,8 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
         assert_eq!(stored.headers()["content-type"], media_type);
         let stored = stored.bytes().await.unwrap();
         let accept = media_type.split(';').next().unwrap();
-        let at_once = server.send(reqwest::Method::POST, "/sweep", Some(&sweep), &[("accept", accept)]).await;
+        let at_once =
+            server.send(reqwest::Method::POST, "/sweep", Some(&sweep.to_string()), &[("accept", accept)]).await;
         assert_eq!((at_once.status().as_u16(), &at_once.headers()["vary"]), (200, &"accept".parse().unwrap()));
         assert_eq!(at_once.bytes().await.unwrap(), stored, "{format}");
         if format == "arrow" {
@@ -196,16 +197,19 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
         assert_eq!(read, rows, "{format}");
     }
     for path in ["/sweep".to_owned(), format!("{job}/result")] {
-        let (method, body) =
-            if path == "/sweep" { (reqwest::Method::POST, Some(&sweep)) } else { (reqwest::Method::GET, None) };
-        let refusal = problem(server.send(method, &path, body, &[("accept", "image/png")]).await).await;
+        let (method, body) = if path == "/sweep" {
+            (reqwest::Method::POST, Some(sweep.to_string()))
+        } else {
+            (reqwest::Method::GET, None)
+        };
+        let refusal = problem(server.send(method, &path, body.as_deref(), &[("accept", "image/png")]).await).await;
         assert_eq!(refusal.code, "not_acceptable");
     }
 }
 
 #[tokio::test]
 async fn the_command_line_prints_what_the_service_gives() {
-    let server = Place::of(&Server::start().await);
+    let server = Server::start().await;
     let (folder, mut sweep) = (tempfile::tempdir().unwrap(), small_job());
     sweep["job"] = json!(false);
     sweep["axes"][0]["values"] = (1..=200).map(|index| json!(f64::from(index) / 400.0)).collect();
@@ -214,7 +218,7 @@ async fn the_command_line_prints_what_the_service_gives() {
     for format in ["columns", "rows", "csv", "ndjson"] {
         let served = server.post(&format!("/sweep?format={format}"), &sweep).await.text().await.unwrap();
         for threads in ["1", "3"] {
-            let printed = common::run(&["sweep", file.to_str().unwrap(), "--format", format, "--threads", threads]);
+            let printed = run(&["sweep", file.to_str().unwrap(), "--format", format, "--threads", threads]);
             assert!(printed.status.success());
             assert_eq!(String::from_utf8(printed.stdout).unwrap(), served, "{format}");
         }
@@ -222,7 +226,7 @@ async fn the_command_line_prints_what_the_service_gives() {
     let mut wrong = sweep.clone();
     wrong["axes"][0]["pointer"] = json!("/contact/colour");
     std::fs::write(&file, wrong.to_string()).unwrap();
-    let refused = common::run(&["sweep", file.to_str().unwrap()]);
+    let refused = run(&["sweep", file.to_str().unwrap()]);
     assert!(!refused.status.success() && refused.stdout.is_empty());
     let refusal: Value = serde_json::from_slice(&refused.stderr).unwrap();
     assert_eq!(refusal["errors"][0]["pointer"], "/axes/0/pointer");

@@ -1,8 +1,8 @@
-//! The same path with several solvers, each held against a reference.
+//! The same path with several solvers, each compared with a reference.
 //!
-//! Every solver does just what [`super::simulate`] has it do, so that its numbers are the ones that a simulation would give.
-//! Where all moves of the path have an exact solution, the reference is the exact solver. Where some are curved, it is the
-//! exact solver again, held to a smaller tolerance.
+//! Every solver runs exactly as in [`super::simulate`], so that its numbers are those of a simulation. Where all moves
+//! of the path have an exact solution, the reference is the exact solver. Where some are curved, it is the exact solver
+//! again, held to a smaller tolerance.
 
 use std::time::{Duration, Instant};
 
@@ -14,25 +14,25 @@ use stickslip_wire::{
 };
 
 use super::path::equal_peaks;
-use super::run::{contact, follow, foundation, stresses};
+use super::run::{contact, follow, spring_foundation, stresses};
 use super::{Failure, Solver};
 use crate::admission::Stop;
 
 /// The reference is held to this part of the tolerance: four times the chords, with a sixteenth of their error.
-const REFINED: f64 = 1.0 / 16.0;
-/// As long as all its runs together have taken less than this, a solver runs again, for the median of the times.
-const REPEATED: Duration = Duration::from_millis(5);
-/// Runs of one solver, at the most.
-const RUNS: usize = 9;
+const REFERENCE_TOLERANCE: f64 = 1.0 / 16.0;
+/// A solver runs again, for the median of the times, until its runs together have taken this long.
+const REPEAT_UNTIL: Duration = Duration::from_millis(5);
+/// The most runs of one solver.
+const MAX_RUNS: usize = 9;
 
-/// What makes it a reference.
-const STRAIGHT: &str =
+/// Why the reference is one.
+const REASON_EXACT: &str =
     "every move of this path has an exact solution: what is left is rounding, or the points of a table";
-const CURVED_AND_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
-const CURVED: &str =
+const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
+const REASON_UNREFINED: &str =
     "the exact solver, held to the tolerance where moves are curved: more would be too much to remember";
 
-/// What one solver says: forces, N, after each move, and shear stresses, Pa, at the end.
+/// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
 struct Answer {
     forces: Vec<f64>,
     shears: Vec<Option<f64>>,
@@ -40,7 +40,7 @@ struct Answer {
     time: f64,
 }
 
-/// What all of them are told.
+/// What all solvers are given.
 struct Task<'a> {
     comparison: &'a Comparison,
     protocol: Option<&'a Protocol>,
@@ -51,9 +51,9 @@ struct Task<'a> {
 /// Runs every solver of a comparison.
 ///
 /// # Errors
-/// [`Failure`] if the reference has no answer to it, or nobody waits for one. A solver that cannot follow the path is refused
+/// [`Failure`] if the reference has no answer, or nobody waits for it. A solver that cannot follow the path is refused
 /// in its row.
-pub fn compare(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Failure> {
+pub fn compare_solvers(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Failure> {
     let Comparison { setup, plan, tolerance, .. } = comparison;
     let begin = Instant::now();
     let start = contact(setup.clone(), "/contact")?;
@@ -68,12 +68,12 @@ pub fn compare(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Fa
         Ok((truth, forces, setup.friction * load))
     };
     let (followed, reason) = if plan.curved() == 0 {
-        (follows(*tolerance), STRAIGHT)
+        (follows(*tolerance), REASON_EXACT)
     } else {
-        match follows((REFINED * tolerance).max(*limits::TOLERANCE.start())) {
+        match follows((REFERENCE_TOLERANCE * tolerance).max(*limits::TOLERANCE.start())) {
             // More chords leave more to remember.
-            Err(Failure::MemoryFull { .. }) => (follows(*tolerance), CURVED),
-            refined => (refined, CURVED_AND_REFINED),
+            Err(Failure::MemoryFull { .. }) => (follows(*tolerance), REASON_UNREFINED),
+            refined => (refined, REASON_REFINED),
         }
     };
     let (truth, forces, unit) = followed?;
@@ -107,7 +107,7 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
     let begin = Instant::now();
     let found = match solver {
         Named::Exact => answer(|| contact(setup.clone(), "/contact"), task),
-        Named::Springs(springs) => answer(|| foundation(setup, plan, springs.count), task),
+        Named::Springs(springs) => answer(|| spring_foundation(setup, plan, springs.count), task),
     };
     let found = match found {
         Ok(found) => found,
@@ -142,18 +142,18 @@ fn row(solver: Named, task: &Task<'_>, truth: &Answer, reference: &Reference) ->
     })
 }
 
-/// The largest of the differences over a unit; nought where all are, whatever the unit.
+/// The largest of the differences over a unit; zero where all are, whatever the unit.
 fn relative(differences: impl Iterator<Item = f64>, unit: f64) -> Option<f64> {
     let largest = differences.fold(0.0, f64::max);
     finite(if largest > 0.0 { largest / unit } else { 0.0 })
 }
 
 fn answer<S: Solver>(start: impl Fn() -> Result<S, Failure>, task: &Task<'_>) -> Result<Answer, Failure> {
-    let (begin, mut times) = (Instant::now(), Vec::with_capacity(RUNS));
+    let (begin, mut times) = (Instant::now(), Vec::with_capacity(MAX_RUNS));
     loop {
         let mut found = once(&start, task)?;
         times.push(found.time);
-        if times.len() == RUNS || begin.elapsed() >= REPEATED {
+        if times.len() == MAX_RUNS || begin.elapsed() >= REPEAT_UNTIL {
             times.sort_by(f64::total_cmp);
             found.time = times[times.len() / 2];
             return Ok(found);

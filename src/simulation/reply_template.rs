@@ -1,4 +1,4 @@
-//! The shape of a reply before anything is computed: which numbers it will have.
+//! The members of a reply before anything is computed: which numbers it will have.
 
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
@@ -6,8 +6,9 @@ use stickslip_wire::{
     Steps, Stress,
 };
 
-/// A reply with a nought for each number that the simulation will give, and one peak for however many there will be.
-pub(super) fn shape(simulation: &Simulation) -> SimulateReply {
+/// A reply with a zero for each number that the simulation will compute, and one peak in place of however many there
+/// will be.
+pub(super) fn reply_template(simulation: &Simulation) -> SimulateReply {
     let steps = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
     let peak = Peak { radius: 0.0, shear: None };
     let residual = Residual { centre: None, peaks: vec![peak], max: None, min: None, mean: None };

@@ -1,12 +1,12 @@
-//! Corners of the service: where springs refuse a move, contacts without friction, and noughts without a sign.
+//! Limiting cases: moves out of reach for either solver, contacts without friction, and zeros without a sign.
 
 use crate::common;
 
 use common::{Server, ball};
 use serde_json::{Value, json};
 
-async fn post(server: &Server, place: &str, body: &Value) -> (u16, String) {
-    let reply = reqwest::Client::new().post(format!("{}{place}", server.base)).json(body).send().await.unwrap();
+async fn post(server: &Server, path: &str, body: &Value) -> (u16, String) {
+    let reply = server.post(path, body).await;
     (reply.status().as_u16(), reply.text().await.unwrap())
 }
 
@@ -23,16 +23,16 @@ async fn springs_refuse_a_move_where_the_exact_solver_does() {
         // The first fault counts, whichever it is.
         (json!([{"force": 1e9}, {"indentation": 1.0}]), "/path/moves/0"),
     ] {
-        let mut told = Vec::new();
+        let mut pointers = Vec::new();
         for solver in [json!("exact"), json!({"springs": {"count": 50}})] {
             let body = json!({"contact": small, "path": {"moves": moves}, "solver": solver});
             let (status, text) = post(&server, "/simulate", &body).await;
             assert_eq!(status, 422, "{text}");
             let problem: Value = serde_json::from_str(&text).unwrap();
-            told.push(problem["errors"][0]["pointer"].as_str().unwrap().to_owned());
+            pointers.push(problem["errors"][0]["pointer"].as_str().unwrap().to_owned());
         }
-        assert!(told[0].starts_with(place), "{moves}: {told:?}");
-        assert_eq!(told[0], told[1], "{moves}");
+        assert!(pointers[0].starts_with(place), "{moves}: {pointers:?}");
+        assert_eq!(pointers[0], pointers[1], "{moves}");
     }
 }
 
@@ -57,7 +57,7 @@ async fn without_friction_the_surface_stays_behind() {
 }
 
 #[tokio::test]
-async fn a_nought_has_no_sign() {
+async fn a_zero_has_no_sign() {
     let server = Server::start().await;
     let mut smooth = ball();
     smooth["friction"] = json!(0.0);

@@ -1,11 +1,11 @@
-//! Rows of a sweep's table, and how they become bytes for a store.
+//! SweepResult of a sweep's table, and how they become bytes for a store.
 
 use stickslip_wire::{PointFailure, limits};
 
-/// The outputs of points that follow each other.
+/// The outputs of consecutive points.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rows {
-    /// The numbers, row by row; not a number where there is none.
+pub struct SweepResult {
+    /// The numbers, point by point; not a number where there is none.
     pub values: Vec<f64>,
     /// How many points have no answer.
     pub failed: u64,
@@ -13,9 +13,9 @@ pub struct Rows {
     pub failures: Vec<PointFailure>,
 }
 
-impl Rows {
+impl SweepResult {
     /// The row of a point without an answer.
-    pub(super) fn fail(&mut self, outputs: usize, failure: PointFailure) {
+    pub(super) fn push_failure(&mut self, outputs: usize, failure: PointFailure) {
         self.values.extend(std::iter::repeat_n(f64::NAN, outputs));
         self.failed += 1;
         if self.failures.len() < limits::SWEEP_FAILURES {
@@ -23,15 +23,15 @@ impl Rows {
         }
     }
 
-    /// Puts the rows of the points that come next behind these.
-    pub fn append(&mut self, next: Rows) {
+    /// Appends the results of the points that follow.
+    pub fn append(&mut self, next: SweepResult) {
         self.values.extend(next.values);
         self.failed += next.failed;
         self.failures.extend(next.failures);
         self.failures.truncate(limits::SWEEP_FAILURES);
     }
 
-    /// The same as bytes: how many failed, how long their list is, the list as JSON, and the numbers.
+    /// Its bytes: how many failed, the length of their list, the list as JSON, and the numbers.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         // Texts and numbers can always be written.
@@ -44,15 +44,15 @@ impl Rows {
         bytes
     }
 
-    /// The rows of so many numbers from their bytes; none if they are not that.
+    /// The result with so many numbers from its bytes; `None` if they are something else.
     #[must_use]
-    pub fn from_bytes(bytes: &[u8], numbers: usize) -> Option<Rows> {
+    pub fn from_bytes(bytes: &[u8], numbers: usize) -> Option<SweepResult> {
         let (failed, rest) = bytes.split_first_chunk()?;
         let (length, rest) = rest.split_first_chunk()?;
         let (failures, values) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
         let (values, odd) = values.as_chunks();
         (odd.is_empty() && values.len() == numbers).then_some(())?;
-        Some(Rows {
+        Some(SweepResult {
             values: values.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect(),
             failed: u64::from_le_bytes(*failed),
             failures: serde_json::from_slice(failures).ok()?,
@@ -62,7 +62,7 @@ impl Rows {
 
 #[cfg(test)]
 mod tests {
-    use super::Rows;
+    use super::SweepResult;
     use stickslip_wire::{PointFailure, limits};
 
     #[test]
@@ -73,17 +73,17 @@ mod tests {
             pointer: String::new(),
             detail: "far".to_owned(),
         };
-        let mut rows = Rows { values: vec![0.1, -0.0, 1e-300], ..Rows::default() };
+        let mut result = SweepResult { values: vec![0.1, -0.0, 1e-300], ..SweepResult::default() };
         for _ in 0..2 * limits::SWEEP_FAILURES {
-            rows.fail(1, failure.clone());
+            result.push_failure(1, failure.clone());
         }
-        assert_eq!((rows.failed, rows.failures.len()), (2 * limits::SWEEP_FAILURES as u64, limits::SWEEP_FAILURES));
-        let bytes = rows.to_bytes();
-        let back = Rows::from_bytes(&bytes, rows.values.len()).unwrap();
-        let bits = |rows: &Rows| rows.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-        assert_eq!((bits(&back), back.failed, &back.failures), (bits(&rows), rows.failed, &rows.failures));
+        assert_eq!((result.failed, result.failures.len()), (2 * limits::SWEEP_FAILURES as u64, limits::SWEEP_FAILURES));
+        let bytes = result.to_bytes();
+        let back = SweepResult::from_bytes(&bytes, result.values.len()).unwrap();
+        let bits = |result: &SweepResult| result.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!((bits(&back), back.failed, &back.failures), (bits(&result), result.failed, &result.failures));
         for length in [0, 8, 20, bytes.len() - 8, bytes.len() - 1] {
-            assert!(Rows::from_bytes(&bytes[..length], rows.values.len()).is_none(), "{length}");
+            assert!(SweepResult::from_bytes(&bytes[..length], result.values.len()).is_none(), "{length}");
         }
     }
 }

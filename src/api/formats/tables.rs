@@ -1,0 +1,90 @@
+//! The tables of a contact's stress, history and loop, and of a sweep.
+
+use std::sync::Arc;
+
+use serde_json::Number;
+
+use crate::simulation::SweepResult;
+use stickslip_wire::sweep::{CheckedSweep, indices};
+use stickslip_wire::{Field, HistoryPage, LoopPage, State, StressReply};
+
+use super::table::{Cells, Column, Table};
+
+/// The table of something that has another JSON document than its columns.
+fn flat(rows: usize, columns: Vec<Column<'_>>) -> Table<'_> {
+    Table::new(rows, columns, ["{".to_owned(), "}".to_owned()])
+}
+
+/// The stresses over the radius.
+#[must_use]
+pub fn stress(reply: &StressReply) -> Table<'_> {
+    let mut columns = vec![Column::floats("radius", "m", |row| reply.radius[row])];
+    for field in Field::ALL {
+        let (unit, values) = match field {
+            Field::Pressure => ("Pa", &reply.pressure),
+            Field::Shear => ("Pa", &reply.shear),
+            Field::Slip => ("m", &reply.slip),
+            Field::Displacement => ("m", &reply.displacement),
+        };
+        if let Some(values) = values {
+            let value = |row: usize| values[row].unwrap_or(f64::NAN);
+            columns.push(Column::floats(field.name(), unit, value));
+        }
+    }
+    flat(reply.radius.len(), columns)
+}
+
+/// A page of a history: the states with their numbers and times.
+#[must_use]
+pub fn history(page: &HistoryPage) -> Table<'_> {
+    let items = &page.items;
+    let state = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(&items[row].state));
+    let columns = vec![
+        Column::counts("sequence", |row| items[row].sequence),
+        Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| items[row].at))),
+        state("displacement", "m", |state| state.displacement),
+        state("force", "N", |state| state.force),
+        state("indentation", "m", |state| state.indentation),
+        state("normal_force", "N", |state| state.normal_force),
+        state("contact_radius", "m", |state| state.contact_radius),
+        state("stick_radius", "m", |state| state.stick_radius),
+        Column::new("regime", Some(""), Cells::Words(Box::new(|row| items[row].state.regime.name()))),
+        state("dissipated_energy", "J", |state| state.dissipated_energy),
+        state("elastic_energy", "J", |state| state.elastic_energy),
+        Column::counts("memory_depth", |row| items[row].state.memory_depth as u64),
+    ];
+    flat(items.len(), columns)
+}
+
+/// A page of a hysteresis loop.
+#[must_use]
+pub fn hysteresis_loop(page: &LoopPage) -> Table<'_> {
+    let columns = vec![
+        Column::counts("sequence", |row| page.sequence[row]),
+        Column::floats("part", "1", |row| page.part[row]),
+        Column::floats("displacement", "m", |row| page.displacement[row]),
+        Column::floats("force", "N", |row| page.force[row]),
+    ];
+    flat(page.sequence.len(), columns)
+}
+
+/// The table of a sweep: a row for each point, with the values of its axes and its outputs.
+#[must_use]
+pub fn sweep(sweep: &CheckedSweep, SweepResult { values, failed, failures }: SweepResult) -> Table<'static> {
+    let (axes, values) = (Arc::new(sweep.axes.clone()), Arc::new(values));
+    let (request, count) = (&sweep.request, sweep.outputs.len());
+    let mut columns = Vec::with_capacity(axes.len() + count);
+    for (index, axis) in request.axes.iter().enumerate() {
+        let axes = Arc::clone(&axes);
+        let value = move |row| indices(&axes, row).nth(index).map(|(axis, index)| axis.number(index));
+        columns.push(Column::new(&axis.pointer, None, Cells::Numbers(Box::new(value))));
+    }
+    for (index, name) in request.outputs.iter().enumerate() {
+        let values = Arc::clone(&values);
+        let value = move |row| values.get(row * count + index).and_then(|value| Number::from_f64(*value));
+        columns.push(Column::new(name, None, Cells::Numbers(Box::new(value))));
+    }
+    let failures = serde_json::to_string(&failures).unwrap_or_else(|_| "[]".to_owned());
+    let before = format!("{{\"points\":{},\"columns\":{{", sweep.points);
+    Table::new(sweep.points, columns, [before, format!("}},\"failed\":{failed},\"failures\":{failures}}}")])
+}

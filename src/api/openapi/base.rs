@@ -1,0 +1,53 @@
+//! The document before the handlers add themselves: title, introduction, tags, and schemas that no handler names.
+
+use utoipa::OpenApi;
+
+use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
+
+use crate::api::extract::BODY_LIMIT;
+use crate::api::problem::MEDIA_TYPE;
+use crate::api::query::PAGE;
+
+#[derive(OpenApi)]
+#[openapi(
+    info(title = "stickslip"),
+    // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
+    components(schemas(
+        ProblemDocument, EndEvent, JobEndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
+        profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
+        profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
+        profile::TabulatedProfile, profile::SumProfile
+    )),
+    tags(
+        (name = "simulation", description = "A path from beginning to end, in one call"),
+        (name = "protocols", description = "How to move so that little shear stress remains"),
+        (name = "contacts", description = "Contacts that live on the server and remember"),
+        (name = "jobs", description = "Sweeps that go on after they have been asked for"),
+        (name = "service", description = "Health, and this document")
+    )
+)]
+struct Base;
+
+/// The document before the handlers add themselves.
+pub fn base() -> utoipa::openapi::OpenApi {
+    let mut base = Base::openapi();
+    base.info.description = Some(introduction());
+    base
+}
+
+fn introduction() -> String {
+    format!(
+        "Frictional contact of two elastic bodies, with memory: tangential displacement, force, slip and stress along any \
+         path, exactly. All quantities are in SI units. Positive displacement gives positive force and positive shear stress. \
+         Numbers that are infinite are `null`.\n\nEvery refusal is a problem document (RFC 9457, `{MEDIA_TYPE}`) with a JSON \
+         pointer to each fault. A failed call changes nothing, and a read never does.\n\nLimits: a body has at most {} bytes, \
+         a path {} moves, a stress request {} radii, the memory of a contact {} pieces, a page {} items; the \
+         springs of the spring foundation times moves and stress points are at most {}.",
+        BODY_LIMIT,
+        limits::PATH_MOVES.end(),
+        limits::STRESS_POINTS.end(),
+        limits::MEMORY_DEPTH,
+        PAGE.end(),
+        limits::SPRING_STEPS,
+    )
+}

@@ -1,0 +1,63 @@
+//! The limits and the form of parameters.
+
+use serde_json::{Value, json};
+
+use stickslip_mechanics::range;
+use stickslip_wire::limits;
+
+use super::operations;
+use crate::api::params::KEY_LENGTH;
+use crate::api::query::{DEFAULT_PAGE, PAGE};
+use crate::api::resources::stress::QUERY_RADII;
+
+/// Completes the parameters of every operation.
+pub fn write(document: &mut Value) {
+    for (_, path, operation) in operations(document) {
+        for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
+            write_parameter(parameter);
+        }
+        if path == "/contacts/{id}/fork" {
+            operation["requestBody"]["required"] = json!(false);
+        }
+    }
+}
+
+/// The limits, and the form of lists and of headers.
+fn write_parameter(parameter: &mut Value) {
+    let name = parameter["name"].as_str().unwrap_or_default().to_owned();
+    let schema = &mut parameter["schema"];
+    let is_integer = schema["type"] == "integer";
+    match name.as_str() {
+        "limit" => {
+            set_range(schema, &PAGE);
+            schema["default"] = json!(DEFAULT_PAGE);
+        }
+        "points_per_move" => set_range(schema, &limits::LOOP_POINTS),
+        "points" => set_range(schema, &limits::STRESS_POINTS),
+        "after" | "Last-Event-ID" if is_integer => schema["maximum"] = json!(u64::MAX),
+        "If-Match" => schema["pattern"] = json!(r#"^("[0-9]{1,19}"|\*)$"#),
+        "Idempotency-Key" => {
+            schema["minLength"] = json!(1);
+            schema["maxLength"] = json!(KEY_LENGTH);
+            schema["pattern"] = json!("^[!-~]+$");
+        }
+        "radii" => {
+            let (least, most) = (range::CONTACT_RADIUS.min, range::CONTACT_RADIUS.max);
+            *schema = json!({"type": "array", "items": {"type": "number", "minimum": least, "maximum": most},
+                "minItems": QUERY_RADII.start(), "maxItems": QUERY_RADII.end()});
+        }
+        "fields" => {
+            *schema = json!({"type": "array", "items": {"$ref": "#/components/schemas/Field"}, "minItems": 1});
+        }
+        _ => {}
+    }
+    if matches!(name.as_str(), "radii" | "fields") {
+        parameter["style"] = json!("form");
+        parameter["explode"] = json!(false);
+    }
+}
+
+fn set_range(schema: &mut Value, range: &std::ops::RangeInclusive<usize>) {
+    schema["minimum"] = json!(range.start());
+    schema["maximum"] = json!(range.end());
+}

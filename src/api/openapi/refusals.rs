@@ -1,0 +1,43 @@
+//! The refusals that an operation can meet.
+
+use serde_json::{Value, json};
+
+use super::operations;
+use crate::api::problem::MEDIA_TYPE;
+use crate::server::limits::HEAD;
+
+/// Adds to every operation the refusals that it can meet.
+pub fn write(document: &mut Value) {
+    for (method, path, operation) in operations(document) {
+        let responses = &mut operation["responses"];
+        responses["431"] = json!({"description": format!("The head of the request has more than {HEAD} bytes")});
+        let job = path.starts_with("/jobs");
+        let changes = ["/move", "/path", "/relax"].iter().any(|end| path.ends_with(end));
+        let changes_contact = changes || (method == "delete" && !job);
+        let defines_contact = ["/simulate", "/accuracy", "/protocols", "/sweep"].contains(&path);
+        let about_contacts = path.starts_with("/contacts") || defines_contact || job;
+        let refusals = [
+            (method == "post", "400", "The body is not JSON"),
+            (path.contains('{') || path == "/protocols", "404", "There is no such thing"),
+            (path.contains("/{id}") && !job, "410", "The contact was idle for so long that it has expired"),
+            (method == "post", "408", "The body did not arrive in time"),
+            (changes_contact, "409", "The state of the contact forbids this"),
+            (changes_contact, "412", "The contact is not at the sequence given in If-Match"),
+            (path.ends_with("/result"), "409", "The job has not ended, or has failed"),
+            (path == "/sweep", "429", "The tenant has as many jobs as it may; try again after Retry-After"),
+            (method == "post", "413", "The body is too large"),
+            (method == "post", "415", "The body is not declared as application/json"),
+            (about_contacts, "422", "The request is invalid, or the mechanics has no answer to it"),
+            (about_contacts || path == "/readyz", "503", "The server is busy; try again after Retry-After"),
+        ];
+        for (_, status, description) in refusals.into_iter().filter(|(applies, ..)| *applies) {
+            responses[status] = refusal(description);
+        }
+    }
+}
+
+/// A refusal as a response.
+pub fn refusal(description: &str) -> Value {
+    let schema = json!({"$ref": "#/components/schemas/ProblemDocument"});
+    json!({"description": description, "content": {MEDIA_TYPE: {"schema": schema}}})
+}

@@ -1,0 +1,128 @@
+//! What comes with a response: headers, formats, links to what can be done next.
+
+use serde_json::{Map, Value, json};
+
+use super::operations;
+use super::refusals::refusal;
+use crate::api::formats::Format;
+
+/// Completes the responses.
+pub fn write(document: &mut Value) {
+    let (of_contacts, of_jobs) = (links(document, "/contacts/{id}"), links(document, "/jobs/{id}"));
+    for (method, path, operation) in operations(document) {
+        write_headers(&mut operation["responses"]);
+        for (status, links) in [("201", &of_contacts), ("202", &of_jobs)] {
+            if let Some(made) = operation["responses"].get_mut(status) {
+                made["links"] = links.clone();
+            }
+        }
+        match (method, path) {
+            ("get", "/contacts/{id}/stress" | "/contacts/{id}/history" | "/contacts/{id}/loop") => {
+                write_formats(operation, &Format::ALL);
+                write_conditional(operation, true);
+            }
+            ("get", "/contacts/{id}") => write_conditional(operation, false),
+            ("post", "/sweep") | ("get", "/jobs/{id}/result") => write_formats(operation, &Format::TABLES),
+            ("get", "/contacts/{id}/events") => write_events(operation),
+            _ => {}
+        }
+    }
+}
+
+/// Links from a new contact or job to every operation on it.
+fn links(document: &Value, place: &str) -> Value {
+    let paths = document["paths"].as_object().into_iter().flatten();
+    let operations = paths
+        .filter(|(path, _)| path.starts_with(place))
+        .filter_map(|(_, operations)| operations.as_object())
+        .flat_map(Map::values);
+    let link = |operation: &Value| {
+        let name = operation["operationId"].as_str()?.to_owned();
+        let link = json!({"operationId": name, "parameters": {"id": "$response.body#/id"}});
+        Some((name, link))
+    };
+    Value::Object(operations.filter_map(link).collect())
+}
+
+/// The headers that come with a status, whatever the operation.
+fn write_headers(responses: &mut Value) {
+    let text = |description: &str| json!({"description": description, "schema": {"type": "string"}});
+    for (status, response) in responses.as_object_mut().into_iter().flatten() {
+        let header = match status.as_str() {
+            "401" => ("WWW-Authenticate", text("`Bearer`")),
+            "503" => {
+                ("Retry-After", json!({"description": "Seconds to wait", "schema": {"type": "integer", "minimum": 0}}))
+            }
+            _ => continue,
+        };
+        response["headers"][header.0] = header.1;
+    }
+}
+
+/// The answer 304 to a client that has the current version.
+fn write_conditional(operation: &mut Value, varies: bool) {
+    let text = |description: &str| json!({"description": description, "schema": {"type": "string"}});
+    let tag = operation["responses"]["200"]["headers"]["ETag"].clone();
+    operation["responses"]["304"] = json!({
+        "description": "The client already has this version (If-None-Match)",
+        "headers": {"ETag": tag},
+    });
+    for status in ["200", "304"] {
+        let headers = &mut operation["responses"][status]["headers"];
+        headers["Cache-Control"] =
+            text("`private, no-cache`: the client may keep the reply, and asks before using it again");
+        if varies {
+            headers["Vary"] = text("`accept`: another format is another reply");
+        }
+    }
+    if let Some(parameters) = operation["parameters"].as_array_mut() {
+        parameters.push(json!({
+            "name": "If-None-Match", "in": "header", "required": false, "schema": {"type": "string"},
+            "description": "The `ETag` of the version that the client has; if it is still current, the answer is 304",
+        }));
+    }
+}
+
+/// The formats of a table.
+fn write_formats(operation: &mut Value, formats: &[Format]) {
+    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+    for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
+        if parameter["name"] == "format" {
+            parameter["schema"]["enum"] = json!(names);
+        }
+    }
+    let content = &mut operation["responses"]["200"]["content"];
+    for format in formats.iter().filter(|format| **format != Format::Columns) {
+        content[format.media_type()] = json!({"schema": match format {
+            Format::Rows => json!({"type": "array", "items": {"type": "object"}}),
+            Format::Arrow | Format::Png => json!({"type": "string", "format": "binary"}),
+            _ => json!({"type": "string"}),
+        }});
+    }
+    if ["get_history", "get_loop"].iter().any(|name| operation["operationId"] == *name) {
+        operation["responses"]["200"]["headers"]["Link"] = json!({
+            "description": "The URL of the next page (`rel=\"next\"`), if there is one", "schema": {"type": "string"},
+        });
+    }
+    operation["responses"]["406"] = refusal("Accept admits none of the formats");
+}
+
+/// A server-sent event, by its lines.
+fn write_events(operation: &mut Value) {
+    let data = |name: &str| json!({"$ref": format!("#/components/schemas/{name}")});
+    operation["responses"]["200"]["content"]["text/event-stream"]["schema"] = json!({
+        "description": "One event: the lines `event`, `id` and `data`",
+        "type": "object",
+        "required": ["event", "data"],
+        "properties": {
+            "event": {"type": "string", "enum": ["state", "end"], "description": "The kind of event"},
+            "id": {"type": "string", "description": "The sequence, with an event `state`"},
+            "data": {
+                "type": "string",
+                "description": "A `StateEvent`, or an `EndEvent` in the last event",
+                "contentMediaType": "application/json",
+                "contentSchema": {"oneOf": [data("StateEvent"), data("EndEvent")]},
+            },
+        },
+    });
+}

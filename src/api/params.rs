@@ -1,0 +1,168 @@
+//! Path and header parameters. Each type is both what a handler takes and what the OpenAPI document says of it.
+
+use std::convert::Infallible;
+
+use axum::extract::{FromRequestParts, Path};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
+use utoipa::IntoParams;
+use uuid::Uuid;
+
+use super::problem::{Kind, Problem};
+use super::state::App;
+
+/// Characters of an idempotency key.
+pub const KEY_LENGTH: usize = 255;
+
+/// The contact in the path.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Path)]
+pub struct ContactPath {
+    /// The identifier of the contact.
+    pub id: Uuid,
+}
+
+/// The job in the path.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Path)]
+pub struct JobPath {
+    /// The identifier of the job.
+    pub id: Uuid,
+}
+
+/// The condition under which a contact is changed; `None` if the client sets none, or `*`.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct IfMatch {
+    /// The sequence that the contact must have, in quotes. If it has another one, nothing changes and the answer is
+    /// 412.
+    #[param(rename = "If-Match", value_type = Option<String>, nullable = false)]
+    pub sequence: Option<u64>,
+}
+
+/// The name of a request that may have to be repeated.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct IdempotencyKey {
+    /// A name of your choice for this request. A repetition with the same name and body within 24 hours changes nothing
+    /// and gets the first reply again; with another body it is refused.
+    #[param(rename = "Idempotency-Key", nullable = false)]
+    pub key: Option<String>,
+}
+
+/// Where a stream of events continues.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct LastEventId {
+    /// The sequence of the last event that the client has received. The stream continues with the next one, without a
+    /// gap; if the header is left out, it begins with the present state.
+    #[param(rename = "Last-Event-ID", nullable = false)]
+    pub sequence: Option<u64>,
+}
+
+/// How the client wants to be answered (RFC 7240).
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+pub struct Prefer {
+    /// `respond-async` makes a job of the sweep, however small it is (RFC 7240).
+    #[param(rename = "Prefer", value_type = Option<String>, nullable = false)]
+    pub respond_async: bool,
+}
+
+impl FromRequestParts<App> for ContactPath {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        Ok(ContactPath { id: identifier(parts, app, Kind::ContactNotFound, "contact").await? })
+    }
+}
+
+impl FromRequestParts<App> for JobPath {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        Ok(JobPath { id: identifier(parts, app, Kind::JobNotFound, "job").await? })
+    }
+}
+
+/// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
+/// invalid.
+async fn identifier(parts: &mut Parts, app: &App, kind: Kind, noun: &str) -> Result<Uuid, Problem> {
+    let missing = |id: &str| Problem::new(kind, format!("there is no {noun} {id}"));
+    match Path::<String>::from_request_parts(parts, app).await {
+        Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
+        // Percent signs that do not decode.
+        Err(_) => Err(missing("of this name")),
+    }
+}
+
+impl FromRequestParts<App> for IfMatch {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Problem> {
+        let Some(value) = parts.headers.get(header::IF_MATCH) else {
+            return Ok(IfMatch { sequence: None });
+        };
+        let text = value.to_str().unwrap_or_default().trim();
+        let sequence = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map(str::parse::<u64>);
+        match (text, sequence) {
+            ("*", _) => Ok(IfMatch { sequence: None }),
+            (_, Some(Ok(sequence))) => Ok(IfMatch { sequence: Some(sequence) }),
+            _ => Err(Problem::new(Kind::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
+        }
+    }
+}
+
+impl IdempotencyKey {
+    /// Reads the header.
+    ///
+    /// # Errors
+    /// A [`Problem`] if it is empty, too long, or not visible ASCII.
+    pub fn read(headers: &HeaderMap) -> Result<IdempotencyKey, Problem> {
+        let Some(value) = headers.get("idempotency-key") else {
+            return Ok(IdempotencyKey { key: None });
+        };
+        let key = value.to_str().ok().filter(|key| (1..=KEY_LENGTH).contains(&key.len()));
+        let key = key.filter(|key| key.bytes().all(|byte| byte.is_ascii_graphic()));
+        let refusal = || format!("Idempotency-Key must be 1 to {KEY_LENGTH} visible ASCII characters");
+        let key = key.ok_or_else(|| Problem::new(Kind::InvalidInput, refusal()))?;
+        Ok(IdempotencyKey { key: Some(key.to_owned()) })
+    }
+}
+
+impl FromRequestParts<App> for LastEventId {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Problem> {
+        let Some(value) = parts.headers.get("last-event-id") else {
+            return Ok(LastEventId { sequence: None });
+        };
+        let sequence = value.to_str().ok().and_then(|text| text.trim().parse().ok());
+        let refusal = "Last-Event-ID must be the number of a move, such as 3";
+        let refused = || Problem::at(Kind::InvalidInput, "/Last-Event-ID", refusal);
+        sequence.map(|sequence| LastEventId { sequence: Some(sequence) }).ok_or_else(refused)
+    }
+}
+
+impl FromRequestParts<App> for Prefer {
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Infallible> {
+        let is_async = |preference: &str| without_parameters(preference).eq_ignore_ascii_case("respond-async");
+        Ok(Prefer { respond_async: list_members(&parts.headers, "prefer").any(is_async) })
+    }
+}
+
+/// Whether the client asks for server-sent events.
+pub fn accepts_events(headers: &HeaderMap) -> bool {
+    list_members(headers, "accept").any(|range| without_parameters(range).eq_ignore_ascii_case("text/event-stream"))
+}
+
+/// The members of a comma-separated header, which may itself occur several times.
+fn list_members<'h>(headers: &'h HeaderMap, name: &'static str) -> impl Iterator<Item = &'h str> {
+    headers.get_all(name).iter().filter_map(|line| line.to_str().ok()).flat_map(|line| line.split(','))
+}
+
+fn without_parameters(member: &str) -> &str {
+    member.split(';').next().unwrap_or_default().trim()
+}

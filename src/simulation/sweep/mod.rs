@@ -1,0 +1,87 @@
+//! Sweeps: many simulations that differ in a few numbers.
+//!
+//! A sweep is computed in slices of some milliseconds. Between two slices it has no thread, so that other requests
+//! wait for a slice and not for a sweep; its threads have a lower priority than those that serve connections.
+
+mod compute;
+mod plan;
+mod result;
+
+use serde_json::Value;
+
+use super::Failure;
+use crate::admission::{Nanoseconds, PoolError};
+use stickslip_mechanics::Setup;
+use stickslip_wire::ContactDefinition;
+use stickslip_wire::sweep::CheckedSweep;
+
+pub use compute::Workers;
+pub use result::SweepResult;
+
+/// Work that is stored at a time, and that a killed process loses.
+const CHUNK_COST: Nanoseconds = 1_000_000_000;
+/// The most numbers that are stored at a time.
+const CHUNK_NUMBERS: usize = 65_536;
+/// The most chunks that a sweep is stored in, roughly.
+const CHUNKS: usize = 10_000;
+/// A sweep whose axes stay within the ranges of their fields and whose outputs exist.
+#[derive(Debug)]
+pub struct Sweep {
+    checked: CheckedSweep,
+    base: Value,
+    /// The contact, if no axis changes it, so that a table is parsed once and not for each point.
+    contact: Option<(ContactDefinition, Setup)>,
+    cost_per_point: Nanoseconds,
+    bytes: usize,
+}
+
+/// Why a sweep was not completed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SweepError {
+    /// It was stopped, or took too long.
+    #[error(transparent)]
+    Failure(#[from] Failure),
+    /// No thread became free, or one panicked.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+}
+
+impl Sweep {
+    /// The sweep as it was asked for, with its axes.
+    #[must_use]
+    pub fn checked(&self) -> &CheckedSweep {
+        &self.checked
+    }
+
+    /// How many points.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.checked.points
+    }
+
+    /// What all of it costs at most.
+    #[must_use]
+    pub fn cost(&self) -> Nanoseconds {
+        self.cost_per_point.saturating_mul(self.checked.points as u64)
+    }
+
+    /// Numbers in the result of so many points.
+    #[must_use]
+    pub fn numbers(&self, points: usize) -> usize {
+        points * self.checked.outputs.len()
+    }
+
+    /// Bytes that computing takes on so many threads, without the result.
+    #[must_use]
+    pub fn bytes(&self, threads: usize) -> usize {
+        self.bytes.saturating_mul(threads + 1)
+    }
+
+    /// Points that are stored at a time.
+    #[must_use]
+    pub fn chunk(&self) -> usize {
+        let worth = usize::try_from(CHUNK_COST / self.cost_per_point.max(1)).unwrap_or(usize::MAX);
+        let most = CHUNK_NUMBERS / self.checked.outputs.len().max(1);
+        worth.max(self.checked.points.div_ceil(CHUNKS)).clamp(1, most)
+    }
+}

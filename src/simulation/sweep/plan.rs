@@ -1,0 +1,134 @@
+//! Checking a sweep: at its corners, where each axis is at one of its ends, its numbers are smallest and largest.
+
+use serde_json::{Value, json};
+
+use super::Sweep;
+use crate::simulation::cost;
+use crate::simulation::reply_template::reply_template;
+use stickslip_wire::check::{Fault, Faults, JsonPath};
+use stickslip_wire::json_value::{Pointer, index};
+use stickslip_wire::pointer_lookup::{Lookup, lookup};
+use stickslip_wire::simulate::Simulation;
+use stickslip_wire::sweep::CheckedSweep;
+use stickslip_wire::{Document as _, Rejection, SimulateRequest, parse_value};
+
+/// Bytes that a value in a body takes once it is parsed, for each byte that it is written with; twice, as it is turned
+/// into a request.
+const VALUE_BYTES: usize = 32;
+
+impl Sweep {
+    /// Checks the corners of a sweep, and estimates its cost.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] if an axis leaves the range of its field, the base is at fault whatever the axes say, or
+    /// an output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
+    pub fn plan(checked: CheckedSweep) -> Result<Sweep, Rejection> {
+        let mut document = checked.request.base.0.clone();
+        let mut sweep = Sweep { checked, base: Value::Null, contact: None, cost_per_point: 0, bytes: 0 };
+        let mut outputs = vec![Lookup::Nothing; sweep.checked.outputs.len()];
+        let (mut faults, mut accepted, mut refused) = (Vec::new(), 0, None);
+        for point in sweep.corners() {
+            sweep.checked.put(&mut document, point);
+            let request = parse_value::<SimulateRequest>(&document).map_err(|fault| Rejection::Invalid(vec![fault]));
+            match request.and_then(SimulateRequest::check) {
+                Ok(simulation) => {
+                    accepted += 1;
+                    sweep.inspect(simulation, &mut outputs);
+                }
+                Err(Rejection::Invalid(found)) => faults.extend(found),
+                Err(other) => refused = Some(other),
+            }
+        }
+        sweep.refuse(faults, accepted, refused)?;
+        if accepted > 0 {
+            sweep.check_outputs(&outputs)?;
+        }
+        let written = document.to_string().len();
+        if sweep.contact.is_some() {
+            document["contact"] = placeholder_contact();
+        }
+        sweep.base = document;
+        sweep.bytes += written * VALUE_BYTES;
+        Ok(sweep)
+    }
+
+    /// The points where each axis is at one of its ends.
+    fn corners(&self) -> Vec<usize> {
+        let mut corners = vec![0];
+        for axis in &self.checked.axes {
+            let with = |index: usize| corners.iter().map(move |corner| corner * axis.count() + index);
+            let [least, most] = axis.ends();
+            corners = if least == most { with(least).collect() } else { with(least).chain(with(most)).collect() };
+        }
+        corners
+    }
+
+    fn inspect(&mut self, simulation: Simulation, outputs: &mut [Lookup]) {
+        self.cost_per_point = self.cost_per_point.max(cost::of_simulation(&simulation));
+        self.bytes = self.bytes.max(cost::bytes_of_simulation(&simulation));
+        let reply = reply_template(&simulation);
+        for (output, found) in self.checked.outputs.iter().zip(outputs) {
+            if !matches!(found, Lookup::Number(_)) {
+                *found = lookup(&reply, &first_peak(output));
+            }
+        }
+        let fixed = |axis: &stickslip_wire::sweep::AxisValues| {
+            axis.pointer.segments().first().is_none_or(|first| first != "contact")
+        };
+        if self.checked.axes.iter().all(fixed) {
+            self.contact = Some((simulation.definition, simulation.setup));
+        }
+    }
+
+    /// Refuses faults that every point has, and values out of the range of their field.
+    fn refuse(&self, found: Vec<Fault>, accepted: usize, refused: Option<Rejection>) -> Result<(), Rejection> {
+        let mut faults = Faults::default();
+        let mut seen = Vec::new();
+        for fault in found {
+            let place = self.checked.place_of(&fault.pointer);
+            if (accepted == 0 || !place.starts_with("/base")) && !seen.contains(&place) {
+                faults.add(JsonPath::Pointer(&place), fault.detail);
+                seen.push(place);
+            }
+        }
+        match (faults.is_empty(), refused) {
+            (true, Some(Rejection::Refused { pointer, error })) if accepted == 0 => {
+                Err(Rejection::Refused { pointer: self.checked.place_of(&pointer), error })
+            }
+            _ => faults.done(Some(())),
+        }
+    }
+
+    fn check_outputs(&self, found: &[Lookup]) -> Result<(), Rejection> {
+        let (mut faults, at) = (Faults::default(), JsonPath::Root.member("outputs"));
+        for (index, found) in found.iter().enumerate() {
+            match found {
+                Lookup::Number(_) => {}
+                Lookup::Nothing => faults.add(at.index(index), "the reply to the base has nothing there"),
+                Lookup::Other => faults.add(at.index(index), "the reply to the base has no number there"),
+            }
+        }
+        faults.done(Some(()))
+    }
+}
+
+/// The pointer to the first peak for one to any peak: how many there are is not known before.
+fn first_peak(output: &Pointer) -> Pointer {
+    match output.segments() {
+        [residual, peaks, position, rest @ ..]
+            if residual == "residual" && peaks == "peaks" && index(position).is_some() =>
+        {
+            let first = format!("/residual/peaks/0{}", rest.iter().map(|part| format!("/{part}")).collect::<String>());
+            Pointer::parse(&first).unwrap_or_else(|| output.clone())
+        }
+        _ => output.clone(),
+    }
+}
+
+/// A contact that is cheap to parse, in place of one that has been parsed already.
+fn placeholder_contact() -> Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 1.0}, "material": {"effective": {"e_star": 1.0, "g_star": 1.0}},
+        "friction": 0.5, "preload": {"normal_force": 1.0}
+    })
+}
