@@ -149,7 +149,8 @@ struct Collector {
 #[async_trait::async_trait]
 impl HttpClient for Collector {
     async fn send_bytes(&self, request: Request<Bytes>) -> Result<Response<Bytes>, HttpError> {
-        let sent = self.runtime.spawn(timeout(PATIENCE, exchange(self.http.clone(), request))).await;
+        let http = self.http.clone();
+        let sent = self.runtime.spawn(async move { timeout(PATIENCE, exchange(http, request)).await }).await;
         let sent = sent.map_err(HttpError::from).and_then(|sent| sent.map_err(HttpError::from)).flatten();
         let problem = match &sent {
             Ok(answer) if answer.status().is_success() => None,
