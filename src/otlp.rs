@@ -21,6 +21,7 @@ use opentelemetry::trace::TracerProvider as _;
 use opentelemetry_http::{HeaderExtractor, HttpClient, HttpError};
 use opentelemetry_otlp::{Protocol, SpanExporter, WithExportConfig as _, WithHttpConfig as _};
 use opentelemetry_sdk::Resource;
+use opentelemetry_sdk::error::OTelSdkError;
 use opentelemetry_sdk::propagation::TraceContextPropagator;
 use opentelemetry_sdk::trace::{BatchConfigBuilder, BatchSpanProcessor, SdkTracerProvider};
 use rustls::crypto::ring;
@@ -112,7 +113,8 @@ impl Exporter {
     /// Sends what waits, as long as that takes no longer than a collector may. It blocks the thread, which must be none of
     /// the runtime.
     pub fn finish(self) {
-        if self.0.shutdown_with_timeout(PATIENCE).is_err() {
+        // The log knows already of a collector that is not reached.
+        if let Err(OTelSdkError::Timeout(_)) = self.0.shutdown_with_timeout(PATIENCE) {
             tracing::warn!("the last traces were not sent in time");
         }
     }
@@ -147,7 +149,8 @@ struct Collector {
 #[async_trait::async_trait]
 impl HttpClient for Collector {
     async fn send_bytes(&self, request: Request<Bytes>) -> Result<Response<Bytes>, HttpError> {
-        let sent = self.runtime.spawn(timeout(PATIENCE, exchange(self.http.clone(), request))).await;
+        let http = self.http.clone();
+        let sent = self.runtime.spawn(async move { timeout(PATIENCE, exchange(http, request)).await }).await;
         let sent = sent.map_err(HttpError::from).and_then(|sent| sent.map_err(HttpError::from)).flatten();
         let problem = match &sent {
             Ok(answer) if answer.status().is_success() => None,
