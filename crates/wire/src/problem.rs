@@ -74,7 +74,7 @@ codes! {
     MethodNotAllowed = 405 "method_not_allowed": "This path has no such method", "`Allow` says which methods there are";
     /// `Accept` admits no format that the path has.
     NotAcceptable = 406 "not_acceptable": "There is no such format",
-        "`Accept` admits no format: [those there are](session.md#formats)";
+        "`Accept` admits no format: [those there are](contacts.md#formats)";
     /// The body takes too long to arrive.
     RequestTimeout = 408 "request_timeout": "The request did not arrive in time", "the body came too slowly";
     /// The request is sound, but the present state of the contact forbids it; [`Code::StaleSequence`] if the client has
