@@ -1,4 +1,4 @@
-//! Looking at sessions. A read changes nothing, and waits for no more than the move under way.
+//! Reading sessions. A read changes nothing, and waits at most for the move under way.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ impl Sessions {
         })
     }
 
-    /// The definition of a session as it came, as JSON, and the memory that it takes.
+    /// The definition of a session as it was sent, as JSON, and the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
@@ -96,7 +96,7 @@ impl Sessions {
     /// # Errors
     /// A failure of the store.
     pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
-        // One more than asked for tells whether there is a next page.
+        // One more than requested shows whether there is a next page.
         let mut found =
             self.common.store.list(Some(self.tenant.clone()), after, limit + 1).await.map_err(SessionError::Store)?;
         let more = found.len() > limit;

@@ -1,4 +1,4 @@
-//! SweepResult of a sweep's table, and how they become bytes for a store.
+//! Results of consecutive points of a sweep, and their encoding as bytes for a store.
 
 use stickslip_wire::{PointFailure, limits};
 
