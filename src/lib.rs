@@ -1,17 +1,17 @@
 //! stickslip simulates the frictional contact of two elastic bodies: exactly, with all of its history, over HTTP or as a
-//! library. It is built in floors; a module imports only from those below it.
+//! library. Its modules are layers; a module imports only from those below it.
 //!
 //! [`simulation`] runs a checked request against the mechanics, at once or on a thread of its own.
 //!
-//! [`store`] keeps what must survive: definitions, moves, and replies that a retry is owed. It knows no physics.
+//! [`store`] saves definitions of contacts, their moves, and replies for retries. It contains no physics.
 //!
-//! [`sessions`] are contacts that live: a cache over the store, one writer at a time each, replay, and retries.
+//! [`sessions`] are stored contacts: a cache over the store, one writer at a time each, replay, and retries.
 //!
-//! [`jobs`] are sweeps over many simulations, at once or beyond the request that asks for them.
+//! [`jobs`] are sweeps over many simulations, answered at once or run after the request has been answered.
 //!
-//! [`access`] says who may do what: keys, roles and tenants.
+//! [`access`] is access control: keys, roles and tenants.
 //!
-//! [`metrics`] are the counters that every floor may use.
+//! [`metrics`] are the counters that every layer may use.
 //!
 //! [`otlp`] sends spans of requests and of their parts to an OpenTelemetry collector.
 //!

@@ -21,9 +21,8 @@ const PIECE: usize = 96;
 const POINTS: &str = "/points_per_move";
 
 impl Sessions {
-    /// The loop through earlier moves, with so many points a move; `past` are those moves, and the first follows the
-    /// move
-    /// `after`.
+    /// The loop through the earlier moves `past`, of which the first follows the move `after`, with `points` points per
+    /// move.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or

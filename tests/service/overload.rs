@@ -278,7 +278,7 @@ async fn many_moves_of_one_contact_queue_up_to_a_bound() {
     until("the contact is at work", async || !served(&service, FLOOD, &look).await).await;
     let step = post(&format!("/contacts/{contact}/move"), r#"{"displacement": 1e-8}"#);
     let answers = join_all((0..40).map(|_| service.ask(FLOOD, &step))).await;
-    let full = answers.iter().flatten().filter(|answer| answer.text.contains("as many requests wait as may")).count();
+    let full = answers.iter().flatten().filter(|answer| answer.text.contains("its queue is full")).count();
     assert!(full >= 30, "{full}");
     assert!(answers.iter().flatten().all(|answer| answer.statuses == [503]));
     // Other contacts do not wait for this one.
