@@ -190,7 +190,7 @@ mod tests {
     use opentelemetry::trace::TraceContextExt as _;
 
     #[test]
-    fn a_parent_is_taken_as_the_standard_has_it() {
+    fn a_parent_is_accepted_as_the_standard_defines_it() {
         let of = |header: &str| {
             let headers =
                 HeaderMap::from_iter([("traceparent".parse().unwrap(), HeaderValue::from_str(header).unwrap())]);

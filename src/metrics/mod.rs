@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_is_counted_leaves_even_by_a_panic() {
+    fn a_gauge_falls_even_after_a_panic() {
         let gauge = gauge(Opts::new("connections", "Connections."));
         let caught = std::panic::catch_unwind(|| {
             let _counted = Counted::by(&gauge);

@@ -66,7 +66,7 @@ mod tests {
     use stickslip_wire::{PointFailure, limits};
 
     #[test]
-    fn rows_come_back_to_the_last_bit_and_what_is_cut_off_does_not() {
+    fn rows_are_read_to_the_last_bit_and_truncated_ones_are_not() {
         let failure = PointFailure {
             index: 7,
             code: "beyond_profile".to_owned(),
