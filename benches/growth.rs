@@ -16,7 +16,7 @@ use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sp
 const MIN_TIME: Duration = Duration::from_millis(20);
 const MEASUREMENTS: usize = 7;
 const CONNECTIONS: usize = 16;
-/// How long moves are made on so many contacts.
+/// How long moves are made on each number of contacts.
 const ROUND: Duration = Duration::from_secs(2);
 const CONTACT_COUNTS: [usize; 6] = [1, 10, 100, 1_000, 10_000, 100_000];
 
@@ -50,7 +50,7 @@ fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
     }
 }
 
-/// The contact after so many reversals of falling amplitude: about as many pieces of slip history.
+/// The contact after `reversals` reversals of falling amplitude: about as many pieces of slip history.
 fn after_reversals(reversals: usize) -> Contact {
     let mut contact = virgin();
     let amplitude = contact.summary().gross_slip_displacement;
@@ -90,7 +90,7 @@ fn radii() {
     println!("\nA contact takes {} bytes, and {bytes:.0} for each piece more.", shallow.memory_bytes());
 }
 
-/// Creates so many contacts; the paths of their moves.
+/// Creates contacts; returns the paths of their moves.
 async fn create_contacts(address: &str, count: usize) -> Vec<String> {
     let workers = (0..CONNECTIONS).map(|worker| {
         let (address, own) = (address.to_owned(), (count + worker) / CONNECTIONS);

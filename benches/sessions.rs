@@ -1,9 +1,9 @@
-//! What it takes to open a session that is not at hand, by each store: `cargo bench --bench sessions`. Needs PostgreSQL, as the
-//! tests do.
+//! The time to open a session that is not cached, by each store: `cargo bench --bench sessions`. Needs PostgreSQL, as
+//! the tests do.
 //!
-//! A session of a million moves, its memory some ten pieces deep and a hundred thousand, opened from its snapshot and the
+//! A session of a million moves, its slip history some ten pieces deep and a hundred thousand, opened from its snapshot and the
 //! moves beyond it, half as many as there can be; and the same without a snapshot, from the first move on. Before that, how
-//! much the process grows by sessions that are stored and not at hand.
+//! much the process grows by sessions that are stored and not cached.
 
 // Made for the tests, of which this uses a part.
 #[allow(dead_code)]
@@ -27,11 +27,11 @@ use uuid::Uuid;
 const MOVES: usize = 1_000_000;
 /// Moves of one path.
 const PATH: usize = 100_000;
-/// Moves after the last snapshot: so few that not even a busy machine finds another worth its while.
+/// Moves after the last snapshot: so few that not even a busy machine stores another one.
 const TAIL: usize = 5_000;
 /// Displacement of gross slip, m, roughly.
 const SLIDE: f64 = 2e-7;
-/// Sessions at rest, at which the memory of the process is looked at.
+/// Idle sessions, at which the memory of the process is measured.
 const AT_REST: [usize; 3] = [20_000, 120_000, 320_000];
 /// Sessions that are made at a time.
 const AT_ONCE: usize = 500;
@@ -42,7 +42,7 @@ fn sessions(store: &Arc<dyn Store>) -> Sessions {
     Sessions::new(store.clone(), Pool::with_defaults(), 0)
 }
 
-/// To and fro at random, the first `turns` of the turning points ever closer together and the rest within them.
+/// Back and forth at random, the first `turns` of the turning points ever closer together and the rest within them.
 fn displacements(turns: usize) -> Vec<f64> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = || {

@@ -49,7 +49,7 @@ fn time_of_sweep(threads: usize) -> (SweepResult, Duration) {
     let (mut rows, begin) = (SweepResult::default(), Instant::now());
     while rows.values.len() < POINTS {
         let rest = rows.values.len()..POINTS;
-        rows.append(plan.slice(rest, &workers, threads, &Stop::default(), None).expect("nobody stops it"));
+        rows.append(plan.slice(rest, &workers, threads, &Stop::default(), None).expect("it is not stopped"));
     }
     (rows, begin.elapsed())
 }

@@ -1,8 +1,8 @@
 //! Traces for OpenTelemetry: a span for each request, with spans of its parts, sent to a collector by OTLP over HTTP.
 //!
-//! All spans have the target [`SPANS`]. Without a collector no filter admits it, and a span costs a check of a flag. With
-//! one, spans wait in the bounded queue of a batch processor that has a thread of its own: a span that finds the queue
-//! full is lost, so that a slow or unreachable collector costs spans, but neither requests nor memory.
+//! All spans have the target [`SPANS`]. Without a collector no filter admits it, and a span costs a check of a flag.
+//! With one, spans wait in the bounded queue of a batch processor that has a thread of its own: a span that finds the
+//! queue full is lost, so that a slow or unreachable collector costs spans, but neither requests nor memory.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

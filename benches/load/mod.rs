@@ -43,7 +43,7 @@ impl Process {
     /// Processor time that the process has used, in seconds.
     pub fn processor_seconds(&self) -> f64 {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).expect("a process that runs");
-        // The name of the program stands in brackets, and may hold blanks.
+        // The name of the program is in parentheses, and may contain spaces.
         let fields = stat.rsplit_once(')').expect("a name in brackets").1.split_ascii_whitespace();
         let ticks: f64 = fields.skip(11).take(2).map(|ticks| ticks.parse::<f64>().expect("a number")).sum();
         ticks / TICKS_PER_SECOND

@@ -1,4 +1,4 @@
-"""Follow a contact live: a row of CSV for each new state, whoever moves it.
+"""Follow a contact live: a row of CSV for each new state, whichever client moves it.
 
     python follow.py URL ID [STATES]
 

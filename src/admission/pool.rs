@@ -1,7 +1,7 @@
 //! The resources of the server and their permits: threads for the solver, places for requests, bytes of memory.
 //!
-//! A request for resources that are in use waits for a bounded time in a queue of bounded length, and is then refused. So the memory of
-//! requests is bounded too, however many arrive.
+//! A request for resources that are in use waits for a bounded time in a queue of bounded length, and is then refused.
+//! So the memory of requests is bounded too, however many arrive.
 
 use std::future::Future;
 use std::pin::pin;

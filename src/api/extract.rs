@@ -31,7 +31,8 @@ const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
 /// series.
 const EXPANSION: usize = 100;
 
-/// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as `{}`.
+/// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as
+/// `{}`.
 pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
     /// The body.
     pub body: T::Checked,

@@ -111,7 +111,8 @@ impl Sessions {
     ) -> Result<(Box<LoadedSession>, Done), SessionError> {
         let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
-        // copy costs as much as the slip history is deep. A move that another process may have overtaken needs the copy.
+        // copy costs as much as the slip history is deep. A move that another process may have overtaken needs the
+        // copy.
         let in_place = matches!(advance.plan, Plan::Single(step) if !step.is_curved())
             && advance.stress.is_none()
             && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH

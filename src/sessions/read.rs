@@ -50,8 +50,8 @@ impl Sessions {
         Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// The reply that `write` makes of the stresses of a session, with the sequence and the reserved memory. Writing takes
-    /// at most `more` bytes beyond JSON's columns, and `longer` time.
+    /// The reply that `write` makes of the stresses of a session, with the sequence and the reserved memory. Writing
+    /// takes at most `more` bytes beyond JSON's columns, and `longer` time.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.

@@ -30,7 +30,7 @@ const REASON_EXACT: &str =
     "every move of this path has an exact solution: what is left is rounding, or the points of a table";
 const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
 const REASON_UNREFINED: &str =
-    "the exact solver, held to the tolerance where moves are curved: a smaller one would exceed the limit of the slip history";
+    "the exact solver, held to the tolerance where moves are curved: a smaller one needs too long a slip history";
 
 /// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
 struct Answer {

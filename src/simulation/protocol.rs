@@ -226,7 +226,7 @@ fn objective(judged: &EvaluationRange) -> String {
              load there"
         ),
         (true, true) => format!(
-            "the largest shear stress between the radii {from:e} m and {to:e} m: further in it is infinite for every path, and\
+            "the largest shear stress between the radii {from:e} m and {to:e} m: further in it is always infinite, and \
              at the vertical edge unless the path ends with no load there"
         ),
     }

@@ -41,7 +41,7 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
         None => {
             let reason = match simulation.plan.curved() {
                 0 => "every move of this path has an exact solution, which is also the cheapest",
-                _ => "only this solver follows moves that are linear in force while the load changes, within the tolerance",
+                _ => "only this solver follows moves straight in a force under changing load, to the tolerance",
             };
             run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, reason, stop)
         }

@@ -77,7 +77,7 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed)
         warn(
             "slip_direction",
             format!(
-                "with a Poisson's ratio of {nu} the true slip is not exactly parallel to the motion, as the model assumes"
+                "with a Poisson's ratio of {nu} the true slip is not quite parallel to the motion, as the model assumes"
             ),
         );
     }

@@ -1,9 +1,9 @@
 //! Stores: definitions of contacts, their moves, and the replies that retries get again.
 //!
-//! A store returns definitions and moves as they were saved, and contains no physics. Every call is atomic, and what it has
-//! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
-//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by
-//! the URL.
+//! A store returns definitions and moves as they were saved, and contains no physics. Every call is atomic, and what it
+//! has acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
+//! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by the
+//! URL.
 
 pub mod changes;
 pub mod commits;

@@ -112,7 +112,8 @@ async fn every_reply_says_what_browsers_must_not_do_with_it() {
         assert_eq!(header(headers, "x-frame-options"), Some("DENY"), "{path}");
         assert_eq!(header(headers, "referrer-policy"), Some("no-referrer"), "{path}");
         assert_eq!(header(headers, "cross-origin-resource-policy"), Some("same-origin"), "{path}");
-        // The API docs may be cached; the web page is revalidated each time, so that no old file is used with a new one.
+        // The API docs may be cached; the web page is revalidated each time, so that no old file is used with a new
+        // one.
         let own = status == 200 && (path == "/" || path.starts_with("/page/"));
         let kept = if own { Some("no-cache") } else { (!page).then_some("no-store") };
         assert_eq!(header(headers, "cache-control"), kept, "{path}");

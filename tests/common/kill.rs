@@ -1,4 +1,4 @@
-//! Killing a server under load, again and again, and looking for what it lost.
+//! Kills a server under load repeatedly, and checks that no acknowledged move is lost.
 //!
 //! Clients move sessions, each move with an idempotency key, and repeat a move with its key until it is acknowledged. So in
 //! the end every session must hold exactly the moves that were acknowledged for it: one more would be a move made twice, one
@@ -62,7 +62,7 @@ impl Random {
 /// The confirmed moves: by session and sequence, the move and the state after it.
 type Acknowledged = BTreeMap<(Uuid, u64), (Move, State)>;
 
-/// Kills and restarts a server over a store, so many times, and checks that nothing is lost and nothing is there twice.
+/// Kills and restarts a server over a store repeatedly, and checks that no move is lost and none is stored twice.
 pub async fn survives(store: &str, rounds: usize, seed: u64) {
     let mut random = Random(seed);
     let mut process = Process::start(store).await;

@@ -52,7 +52,7 @@ impl Server {
         Server::with(Arc::new(MemoryStore::new()), CAPACITY).await
     }
 
-    /// A server over a store, with so many bytes of cached states.
+    /// A server over a store, with at most `bytes` bytes of cached states.
     pub async fn with(store: Arc<dyn Store>, capacity: usize) -> Server {
         let pool = Pool::with_defaults();
         let jobs = Jobs::new(Arc::clone(&store), pool.clone());
@@ -131,7 +131,7 @@ impl Binary {
     }
 }
 
-/// What the binary does when called so, once it has ended by itself.
+/// The output of the binary with these arguments, after it has exited by itself.
 pub fn run(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_stickslip")).args(arguments).output().unwrap()
 }

@@ -1,4 +1,4 @@
-//! A real PostgreSQL in a temporary directory, gone with the process that started it, however that ends.
+//! A real PostgreSQL in a temporary directory, removed when the process that started it ends in any way.
 
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ impl Cluster {
         self.run("pg_ctl", &["-D", &self.data(), "-l", log.to_str().unwrap(), "-o", &options, "-w", "-s", "start"]);
     }
 
-    /// Stops the server as a power cut would: nothing is written any more.
+    /// Stops the server as a power failure would: nothing more is written.
     pub fn crash(&self) {
         self.run("pg_ctl", &["-D", &self.data(), "-m", "immediate", "-w", "-s", "stop"]);
     }
@@ -99,7 +99,7 @@ impl Cluster {
         self.url(&name)
     }
 
-    /// Statements on a database, by the hand of its owner.
+    /// Runs statements on a database as its owner.
     pub async fn execute(&self, database: &str, statements: &str) {
         let (client, connection) = tokio_postgres::connect(&self.url(database), NoTls).await.unwrap();
         let connection = tokio::spawn(connection);

@@ -82,7 +82,7 @@ impl Drop for Process {
     }
 }
 
-/// What a server says that cannot start: its output, once it has ended by itself.
+/// The output of a server that cannot start, after it has exited by itself.
 pub fn refused(store: &str) -> Output {
     ended(&mut command(&[], store))
 }

@@ -1,11 +1,11 @@
-//! A Prometheus of a test's own.
+//! A Prometheus server for a test.
 
 use std::process::{Child, Command, Stdio};
 
 use serde_json::json;
 use tempfile::TempDir;
 
-/// What to do without one.
+/// The message if it is not installed.
 pub const MISSING: &str =
     "this test needs Prometheus: `./check` installs it, or on Debian `apt-get install prometheus`";
 

@@ -1,4 +1,4 @@
-//! The real binary under hostile clients: raw sockets, and what the process takes of memory and processors.
+//! The real binary under hostile clients: raw sockets, and the memory and processor time of the process.
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
@@ -152,7 +152,7 @@ pub fn get(path: &str) -> String {
     format!("GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n")
 }
 
-/// Sees to it that this process may have so many connections.
+/// Raises the limit of open files of this process for this many connections.
 pub fn room_for(connections: usize) {
     let room = stickslip::server::fd_limit::room_for(connections);
     assert!(room >= connections, "this test needs {connections} connections: ulimit -Hn 8192");

@@ -1,4 +1,4 @@
-//! Programs that others have written go by the document alone: a generated client, and a tester of APIs.
+//! Third-party programs use the OpenAPI document alone: a generated client, and a tester of APIs.
 
 use crate::common::process::Process;
 use crate::python::{file, program, succeed};
@@ -18,7 +18,7 @@ async fn a_client_generated_from_the_document_works() {
 #[tokio::test(flavor = "multi_thread")]
 async fn schemathesis_finds_nothing() {
     let server = Process::start("memory:").await;
-    // It wants something to be there, and goes on from it.
+    // It needs existing contacts to start from.
     server.client.create(&crate::common::create(), &Default::default()).await.unwrap();
     let folder = tempfile::tempdir().unwrap();
     let mut ask = program("schemathesis");

@@ -1,4 +1,4 @@
-//! The dashboards of `deploy/`: each of their queries is run by the program that it is for.
+//! The dashboards of `deploy/`: each of their queries is run by its data source.
 
 use std::collections::BTreeMap;
 use std::process::Command;

@@ -23,7 +23,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
         let said = succeed(&mut run, "bash is there");
         assert!(name == "gallery.md" || said.contains('{'), "{name}: {said}");
     }
-    // Nothing that a page makes is left behind but the contact of the gallery, and what was forked to show how.
+    // The pages leave nothing behind but the contact of the gallery and a fork.
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 2);
 }
 

@@ -60,7 +60,7 @@ async fn the_notebook_runs_from_its_first_cell_to_its_last() {
     let code: Vec<&str> =
         cells.filter(|cell| cell["cell_type"] == "code").map(|cell| cell["source"].as_str().unwrap()).collect();
     assert!(code.len() > 6, "{}", code.len());
-    // The law is a column of the table: what it says is held against what was found.
+    // The law is a column of the table: compare it with the results.
     let held = "assert (abs(reduction['max'] / reduction['law'] - 1)[1:] < 1e-9).all() and len(history) == 3\n\
                 assert len(stress) == 200 and plot.startswith('<svg') and list(live['sequence']) == [3]\n\
                 assert requests.get(contact).status_code == 404";

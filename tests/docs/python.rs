@@ -1,4 +1,4 @@
-//! Python with exact versions of what the tests run, in a folder of its own under the target directory.
+//! A virtual environment of Python with pinned packages, under the target directory.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -41,7 +41,7 @@ fn environment() -> PathBuf {
     folder
 }
 
-/// What a program says that must succeed.
+/// The output of a program that must succeed.
 pub fn succeed(command: &mut Command, expected: &str) -> String {
     let Output { status, stdout, stderr } = command.output().expect(expected);
     let (said, errors) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));

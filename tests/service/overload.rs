@@ -1,5 +1,5 @@
-//! Overload, on the real binary: memory stays within the bound that `server::memory_budget` states, health checks succeed,
-//! honest clients are served while it lasts as far as they can be, and all of them when it is over.
+//! Overload, on the real binary: memory stays within the bound that `server::memory_budget` states, health checks
+//! succeed, honest clients are served while it lasts as far as they can be, and all of them when it is over.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

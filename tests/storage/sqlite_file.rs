@@ -1,4 +1,5 @@
-//! The file of the SQLite store: what is refused at start and left unchanged, what is recovered, and what people can read.
+//! The file of the SQLite store: what is refused at start and left unchanged, what is recovered, and what people can
+//! read.
 
 use crate::common;
 use crate::fixtures::{along, keyed, url};

@@ -119,8 +119,8 @@ impl Faults {
         fits
     }
 
-    /// The result of `check` for a part of the document, unless it notes a fault: nothing is computed from numbers that are
-    /// out of range.
+    /// The result of `check` for a part of the document, unless it notes a fault: nothing is computed from numbers that
+    /// are out of range.
     pub fn part<T>(&mut self, check: impl FnOnce(&mut Faults) -> T) -> Option<T> {
         let before = self.count;
         let part = check(self);

@@ -1,5 +1,5 @@
-//! A deserializer that accepts only an object for a struct: serde's own also accepts an array of the members' values, in
-//! the order of their declaration.
+//! A deserializer that accepts only an object for a struct: serde's own also accepts an array of the members' values,
+//! in the order of their declaration.
 //!
 //! It delegates to another deserializer, and wraps the deserializers of nested values.
 

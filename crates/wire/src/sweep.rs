@@ -345,8 +345,8 @@ pub fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&Axis
     })
 }
 
-/// Determines by trial which fields take whole numbers; this also finds fields that are no numbers, and faults of the base
-/// that do not depend on the numbers.
+/// Determines by trial which fields take whole numbers; this also finds fields that are no numbers, and faults of the
+/// base that do not depend on the numbers.
 fn find_kinds(base: &Value, axes: &mut [AxisValues], faults: &mut Faults) {
     let at = JsonPath::Root.member("axes");
     let fraction = Number::from_f64(0.5).unwrap_or_else(|| Number::from(1));

@@ -84,7 +84,8 @@ pub async fn tag(mut request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let offer = response.extensions_mut().remove::<Offer>();
     if let Some(offer) = offer {
-        // The layer refuses a client that accepts no available coding, but the work is done: send the reply uncompressed.
+        // The layer refuses a client that accepts no available coding, but the work is done: send the reply
+        // uncompressed.
         *response.status_mut() = offer.status;
     }
     let Some(plain) = response.headers().get(header::ETAG).and_then(|tag| tag.to_str().ok()) else {

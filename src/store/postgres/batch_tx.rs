@@ -63,7 +63,8 @@ impl WriterConnection {
         let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
         let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
-        // The first column of a receipt names the session whose change must succeed for it; that of a new one always does.
+        // The first column of a receipt names the session whose change must succeed for it; that of a new one always
+        // does.
         let first_receipts = columns.first_receipts.parameters().into_iter().skip(1);
         let created: Vec<_> = columns.sessions.parameters().into_iter().chain(first_receipts).collect();
 

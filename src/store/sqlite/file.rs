@@ -1,4 +1,5 @@
-//! Opening the file: created completely or not at all, used by one process at a time, and not modified if it is damaged.
+//! Opening the file: created completely or not at all, used by one process at a time, and not modified if it is
+//! damaged.
 
 use std::ffi::OsString;
 use std::fs::{File, OpenOptions, TryLockError};

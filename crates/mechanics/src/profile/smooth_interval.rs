@@ -44,7 +44,8 @@ impl SmoothInterval {
         let (low, high) = span.excess(DoubleDouble::square_of(base));
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
-        // Far beyond the ceiling there is no contact, only steps of a search that has left the range: any finite value will do.
+        // Far beyond the ceiling there is no contact, only steps of a search that has left the range: any finite value
+        // will do.
         let above = ((ceiling - base) * (ceiling + base)).sqrt();
         let above = if above > 0.99 * high { above } else { f64::INFINITY };
         let singular = Singular { below: singularity, above };
@@ -81,7 +82,8 @@ impl SmoothInterval {
             if self.power > 10.0 && done * (rate + 0.5 * bend * done) < 40.0 {
                 // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
                 let steep = rate + bend * done;
-                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the loop would not advance.
+                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the loop would not
+                // advance.
                 let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
                 if width > 0.0 && width < panel.width {
                     panel = Panel::fine(width);

@@ -27,7 +27,8 @@ const STEPS: usize = 4_096;
 /// Halvings of the bracket of E.
 const HALVINGS: usize = 40;
 
-/// The shear stress, Pa, that some point of the evaluation range DUM whatever their displacements; zero where nothing is known, as at a vertical edge.
+/// The shear stress, Pa, that some point of the evaluation range carries at least after gross slip and this many
+/// reversals, whatever their displacements; zero where nothing is known, as at a vertical edge.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]

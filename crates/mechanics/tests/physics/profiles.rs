@@ -55,7 +55,7 @@ fn evaluate(profile: &Profile, function: &str, a: &[f64]) -> f64 {
 }
 
 /// What a relative change of one in the squares of the ring's radii would change, where r is near to one of them: x^2 is known
-/// no better than the parameters of the profile are, and the root of x^2 - r^2 feels it.
+/// no better than the parameters of the profile are, and the root of x^2 - r^2 depends on it.
 fn cusp(profile: &Profile, function: &str, a: &[f64]) -> f64 {
     let [y, depth, r] = *a else { return 0.0 };
     let ring = ring(profile, y, depth);

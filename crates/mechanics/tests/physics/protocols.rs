@@ -52,7 +52,7 @@ fn the_linear_fall_on_a_sphere_has_its_asymptotes() {
     }
 }
 
-/// Far from the edge and the centre the memory is a square wave over (r/a)^2, and the stress its half-integral. With a
+/// Far from the edge and the centre the slip history is a square wave over (r/a)^2, and the stress its half-integral. With a
 /// distance of one between reversals that is, term by term of the wave's Fourier series, 2/pi sum sin(pi n t + pi/4) /
 /// n^(3/2) over the odd n.
 #[test]

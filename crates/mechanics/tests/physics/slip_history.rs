@@ -198,7 +198,7 @@ fn moves_of_one_unit_in_the_last_place() {
 
 #[test]
 fn a_load_that_creeps_up_by_single_ulps_is_one_rise() {
-    // Three up, two down: nothing below the present load survives, so that nothing of it may be remembered. Joining
+    // Three up, two down: nothing below the present load survives, so that the history may keep nothing of it. Joining
     // what differs by the rounding of d and W may cost as much as that rounding, some 1e-15.
     let forces = Worst::new("force while the load creeps / mu F_N", 3e-15);
     for slide in [0.0, 0.3, -0.9] {

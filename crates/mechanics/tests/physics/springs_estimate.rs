@@ -1,4 +1,4 @@
-//! What springs say of their own error, held against the exact solver over random scenes of every kind of profile.
+//! The error estimates of springs against the exact solver, over random scenes of every kind of profile.
 
 use crate::support::{Random, cases, displace};
 use stickslip_mechanics::profile::{

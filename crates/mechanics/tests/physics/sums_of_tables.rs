@@ -1,4 +1,4 @@
-//! A sum with tables in it says how far they may put it off: against the sum of the bodies that they were taken from. The g of
+//! Error estimates of sums with tables, against the sum of the bodies that the tables were taken from. The g of
 //! a table may fall in a sum, as long as that of the sum does not.
 
 use crate::support::{Random, displace};

@@ -1,4 +1,4 @@
-//! What a table costs in accuracy: against the body that it was taken from. `--nocapture` prints the numbers of `docs/tables.md`.
+//! The error of a table against the body that it was taken from. `--nocapture` prints the numbers of `docs/tables.md`.
 
 use crate::support::displace;
 use stickslip_mechanics::profile::{ExactSphere, Tabulated};

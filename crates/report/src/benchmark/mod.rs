@@ -38,7 +38,7 @@ pub struct Options {
     pub max_springs: usize,
     /// How long one solver on one scene is repeated once there are three runs.
     pub repetition_time: Duration,
-    /// About how long all of it may take; solvers that would take longer are listed as missing.
+    /// About how long the report may take; solvers that would take longer are listed as missing.
     pub budget: Option<Duration>,
     /// The version of the compiler that built this, for the description of the machine.
     pub compiler: &'static str,

@@ -38,7 +38,7 @@ pub(super) struct Scene {
     pub(super) setup: Setup,
     pub(super) shape: Shape,
     pub(super) path: Vec<(f64, f64)>,
-    /// The profile as external solvers know it.
+    /// The profile in the format of external solvers.
     profile_name: &'static str,
 }
 

@@ -22,7 +22,7 @@ pub struct Plot {
 
 /// A quantity and its unit; a count has none.
 pub struct Axis {
-    /// What is shown.
+    /// The quantity.
     pub name: &'static str,
     /// SI unit.
     pub unit: Option<&'static str>,
@@ -67,7 +67,7 @@ pub enum Colour {
     Blue,
     /// The second.
     Red,
-    /// For what matters less.
+    /// For secondary curves.
     Grey,
 }
 

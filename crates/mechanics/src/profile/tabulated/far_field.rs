@@ -1,4 +1,5 @@
-//! Sums of w/sqrt(|X - Y|) over many sources Y, far from X: sources in clusters, each replaced by a few at fixed points.
+//! Sums of w/sqrt(|X - Y|) over many sources Y, far from X: sources in clusters, each replaced by a few at fixed
+//! points.
 //!
 //! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
 //! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table

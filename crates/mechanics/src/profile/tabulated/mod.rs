@@ -2,10 +2,10 @@
 //! punches (Schubert 1942) of strength half the jump. It is not summed that way: between two knots g is analytic in
 //! t = sqrt(x^2 - k^2), and one short series there replaces the thousand terms.
 //!
-//! f'(0) = 0: a sharp tip would come from the noise of the first two points, with a log-infinite pressure; to model one, add a cone.
-//! With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up to r = 1.5: 3e-5 of g at
-//! n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the first at which g falls, exist:
-//! but for the part of a sum, whose g may fall as long as that of the sum does not.
+//! f'(0) = 0: a sharp tip would come from the noise of the first two points, with a log-infinite pressure; to model
+//! one, add a cone. With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up
+//! to r = 1.5: 3e-5 of g at n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the
+//! first at which g falls, exist: but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
 mod far_field;
@@ -58,8 +58,8 @@ impl Tabulated {
         Tabulated::through(radii, heights, false)
     }
 
-    /// The part of a sum through the points (r, z), m, whose g may fall: for example the deviation of a body from a sphere. On its own, g
-    /// has no inverse from there on, and contacts end there.
+    /// The part of a sum through the points (r, z), m, whose g may fall: for example the deviation of a body from a
+    /// sphere. On its own, g has no inverse from there on, and contacts end there.
     ///
     /// # Errors
     /// As [`Tabulated::new`], but for a g that falls.

@@ -4,7 +4,7 @@
 //! u, F = 1 - (1 - u)^(3/2) and tau = sqrt(1 - s) - sqrt(1 - u - s). Every later stroke adds twice that of half its
 //! length.
 
-/// A contact at constant load known by its surviving turning points, in the units of the displacement given.
+/// A contact at constant load, given by its surviving turning points, in the units of the displacement given.
 #[derive(Clone, Debug)]
 pub struct Masing {
     /// u_max.

@@ -1,4 +1,5 @@
-//! What the physics tests share: references that are independent of the solver, random paths, and bookkeeping of errors.
+//! What the physics tests share: references that are independent of the solver, random paths, and bookkeeping of
+//! errors.
 
 pub mod masing;
 pub mod paths;

@@ -66,7 +66,7 @@ pub fn rises(longest: usize) -> impl Strategy<Value = Vec<Step>> {
     prop::collection::vec(rise, 2..longest)
 }
 
-/// The waypoints (d, U) of the steps, the start (1, 0) first.
+/// The target points (d, U) of the steps, the start (1, 0) first.
 pub fn waypoints(steps: &[Step]) -> Vec<(f64, f64)> {
     let mut path = vec![(1.0, 0.0)];
     for step in steps {
@@ -89,7 +89,7 @@ pub fn waypoints(steps: &[Step]) -> Vec<(f64, f64)> {
     path
 }
 
-/// The waypoints on a grid of 2^-bits: on one of 2^-20, halves and quarters of a move between them are exact.
+/// The target points on a grid of 2^-bits: on one of 2^-20, halves and quarters of a move between them are exact.
 pub fn on_grid(path: &[(f64, f64)], bits: u32) -> Vec<(f64, f64)> {
     let grid = f64::from(bits).exp2();
     path.iter().map(|&(depth, slide)| ((depth * grid).round() / grid, (slide * grid).round() / grid)).collect()

@@ -6,7 +6,7 @@
 //! straight parts by bisection, down to the last digits, wherever three points are out of line; no kink is known
 //! beforehand. Unit of length: d at the start. Radii: x^2 = y, which makes them units of the first contact radius.
 
-/// A path of waypoints (d, W), the start included.
+/// A path of points (d, W), the start included.
 #[derive(Clone, Debug)]
 pub struct Points {
     path: Vec<(f64, f64)>,
