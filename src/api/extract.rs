@@ -52,7 +52,7 @@ impl HeldResources {
     /// Changes the reservation to this much memory.
     ///
     /// # Errors
-    /// A [`Problem`] if so much is not available.
+    /// A [`Problem`] if this much is not available.
     pub async fn resize(&mut self, pool: &Pool, bytes: usize) -> Result<(), Problem> {
         Ok(pool.resize(&mut self.memory, bytes).await?)
     }

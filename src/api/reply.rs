@@ -85,7 +85,7 @@ pub fn written(value: &impl serde::Serialize) -> Result<Vec<u8>, Problem> {
     written_in(ROOM, value)
 }
 
-/// As [`written`], with room for so many bytes from the start: a text that grows is copied again and again.
+/// As [`written`], with this capacity from the start: a text that grows is copied repeatedly.
 ///
 /// # Errors
 /// As [`written`].

@@ -1,4 +1,4 @@
-//! Why a job, or a sweep at once, did not do what it was asked for.
+//! Errors of jobs and sweeps.
 
 use uuid::Uuid;
 

@@ -45,7 +45,7 @@ impl Sessions {
         key: Option<RequestKey>,
     ) -> Result<Reply, SessionError> {
         let request = self.request(key);
-        // Before anything else: a retry is owed its reply even when the session is gone or has moved on.
+        // Before anything else: a retry gets its reply even if the session has been deleted or has moved on.
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }

@@ -34,7 +34,7 @@ pub(super) struct Cache {
     hits: IntCounter,
 }
 
-/// The lock of a session that requests use or wait for. It goes with the last of them, so that a session has one lock
+/// The lock of a session that requests use or wait for. It is dropped with the last of them, so that a session has one lock
 /// at a time.
 #[derive(Default)]
 struct LockEntry {
@@ -68,7 +68,7 @@ struct LockUser {
 }
 
 impl Cache {
-    /// A cache of at most so many bytes.
+    /// A cache of at most this many bytes.
     pub(super) fn new(capacity: usize) -> Cache {
         let hits = Opts::new("stickslip_cache_hits_total", "Times that a contact that was asked for was in memory.");
         let hits = counter(hits);

@@ -15,7 +15,7 @@ pub enum SessionError {
     /// There was such a session, and it has expired.
     #[error("the contact {0} has expired")]
     Expired(Uuid),
-    /// It is another contact than the client says.
+    /// The definition differs from the one that the client gave.
     #[error("the contact {0} has another definition: leave `contact` out, or give it as it was made")]
     OtherDefinition(Uuid),
     /// The sequence is not the one that the client expects.
@@ -35,7 +35,7 @@ pub enum SessionError {
     /// Events are asked for from a move on that has not been made.
     #[error("the contact is at sequence {found}: there is no event {after} yet")]
     Ahead {
-        /// The event that the client says it has seen.
+        /// The last event that the client has received.
         after: u64,
         /// The sequence of the session.
         found: u64,

@@ -19,7 +19,7 @@ use super::{SessionError, Sessions};
 pub const STREAMS: usize = 1_000;
 /// Moves that a listener reads at a time.
 const PAGE: usize = 100;
-/// How long a listener waits for a store that is out of reach before it tries again.
+/// How long a listener waits for an unreachable store before it tries again.
 const RETRY_DELAY: Duration = Duration::from_secs(1);
 
 /// A client that follows a session.

@@ -37,7 +37,7 @@ impl ReplayCost {
         self.work = self.work.saturating_add(work);
     }
 
-    /// Whether a snapshot of so many bytes costs less than the replay that it spares.
+    /// Whether a snapshot of this many bytes costs less than the replay that it spares.
     fn is_worth_snapshot(self, bytes: usize) -> bool {
         let spared = self.work.saturating_add(FETCH.saturating_mul(self.moves));
         spared >= LEAST.max(BYTE.saturating_mul(u32::try_from(bytes).unwrap_or(u32::MAX)))

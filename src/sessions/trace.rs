@@ -78,7 +78,7 @@ impl Sessions {
         Ok(page)
     }
 
-    /// Bytes that a loop of so many points takes.
+    /// Bytes that a loop of this many points takes.
     #[must_use]
     pub fn bytes_of_trace(points: usize) -> usize {
         points * POINT

@@ -133,7 +133,7 @@ fn relative_cost(profile: &Profile) -> u64 {
     }
 }
 
-/// Bytes that stresses at so many radii take, as numbers and as JSON.
+/// Bytes that stresses at this many radii take, as numbers and as JSON.
 #[must_use]
 pub fn bytes_of_stress(radii: usize) -> usize {
     radii * RADIUS_BYTES

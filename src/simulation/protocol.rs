@@ -18,7 +18,7 @@ use super::run::{Timer, accuracy, contact};
 use super::{Failure, Observed, warnings};
 use crate::admission::Stop;
 
-/// A contact for which a protocol is sought, and what the reversals begin from.
+/// A contact for which a protocol is designed, and the start of the reversals.
 pub struct Subject<'a> {
     /// The contact.
     pub contact: &'a Contact,
@@ -122,7 +122,7 @@ const FEWER: usize = 3;
 /// The requested protocol, with the stress that it leaves and what the other laws would leave.
 ///
 /// # Errors
-/// [`Failure`] if there is no friction to move against, the target is out of reach, or the time limit is reached.
+/// [`Failure`] if there is no friction to move against, the target cannot be reached, or the time limit is reached.
 pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
     let timer = Timer::start();
     let contact = subject.contact;

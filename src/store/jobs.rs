@@ -77,7 +77,7 @@ pub struct JobLimits {
 }
 
 impl JobLimits {
-    /// Whether a tenant with so many jobs, bytes and work to do may have another job.
+    /// Checks whether a tenant with these jobs, bytes and remaining work may have another job.
     pub(super) fn check(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<()> {
         if jobs >= self.jobs {
             return Err(StoreError::TooManyJobs(format!("{jobs} jobs are stored, which is the limit")));

@@ -166,7 +166,7 @@ pub enum StoreError {
     #[error("the storage is full: {0}")]
     Full(String),
     /// The storage cannot be reached for now; whether the change was made is unknown.
-    #[error("the storage is out of reach: {0}")]
+    #[error("the storage is unreachable: {0}")]
     Unavailable(String),
     /// The storage itself failed; whether the change was made is unknown.
     #[error("the storage failed: {0}")]

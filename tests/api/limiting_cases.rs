@@ -1,4 +1,4 @@
-//! Limiting cases: moves out of reach for either solver, contacts without friction, and zeros without a sign.
+//! Limiting cases: moves that either solver refuses, contacts without friction, and zeros without a sign.
 
 use crate::common;
 

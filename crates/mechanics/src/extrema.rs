@@ -51,7 +51,7 @@ struct SmoothInterval {
     start: (EndBehaviour, f64),
     /// How it ends, likewise.
     end: (EndBehaviour, f64),
-    /// One of so many intervals that each gets a few samples only.
+    /// Smooth, one of many intervals: it gets a few samples only.
     sparse: bool,
 }
 

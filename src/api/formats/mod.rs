@@ -84,7 +84,7 @@ impl Format {
         matches!(self, Format::Svg | Format::Png)
     }
 
-    /// Bytes that writing takes beyond the columns, for so many rows of so many bytes each.
+    /// Bytes that writing takes beyond the columns, for `rows` rows of `row` bytes each.
     #[must_use]
     pub fn bytes(self, rows: usize, row: usize) -> usize {
         match self {

@@ -113,7 +113,7 @@ impl<'a> Column<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// A table of so many rows; `envelope` is the JSON before and after its columns.
+    /// A table of `rows` rows; `envelope` is the JSON before and after its columns.
     #[must_use]
     pub fn new(rows: usize, columns: Vec<Column<'a>>, envelope: [String; 2]) -> Table<'a> {
         Table { rows, columns, envelope }

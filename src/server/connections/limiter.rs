@@ -12,7 +12,7 @@ use tokio::time::Instant;
 use super::{ConnectionActivity, ConnectionLimits};
 use crate::server::limits::{LEAST_WAIT, SPARE_CONNECTIONS};
 
-/// One part in so many of all connections is freed at a time, so that the search costs little for each.
+/// The divisor of all connections that gives the number freed at a time, so that the search costs little for each.
 const FREED_SHARE: usize = 16;
 /// How long a search that found nothing is not repeated.
 const SEARCH_PAUSE: Duration = Duration::from_millis(100);

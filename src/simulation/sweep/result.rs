@@ -44,7 +44,7 @@ impl SweepResult {
         bytes
     }
 
-    /// The result with so many numbers from its bytes; `None` if they are something else.
+    /// The result with this many numbers from its bytes; `None` if they are something else.
     #[must_use]
     pub fn from_bytes(bytes: &[u8], numbers: usize) -> Option<SweepResult> {
         let (failed, rest) = bytes.split_first_chunk()?;

@@ -19,7 +19,7 @@ use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::sql;
 
-/// How long a connection may take to come about, unless the URL says otherwise.
+/// How long connecting may take, unless the URL says otherwise.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 /// How long sent bytes may stay unconfirmed before a connection counts as lost, and how long one may be silent before
 /// it is tested.

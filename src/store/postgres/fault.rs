@@ -124,7 +124,7 @@ impl Outage {
     pub(super) fn worth_waiting(&self, fault: &str) -> bool {
         let mut since = self.lock();
         if since.is_none() {
-            tracing::warn!(error = fault, "the database is out of reach");
+            tracing::warn!(error = fault, "the database is unreachable");
         }
         since.get_or_insert_with(Instant::now).elapsed() < PATIENCE
     }

@@ -1,7 +1,7 @@
 //! Changes that take a transaction of their own: they are rare, or they are long.
 //!
-//! A change whose connection is lost during its commit is repeated. Once a commit has been sent, what is gone already
-//! counts as deleted and what is there already as made.
+//! A change whose connection is lost during its commit is repeated. Once a commit has been sent, a contact that is
+//! missing counts as deleted, and one that exists as created.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -193,7 +193,7 @@ impl JobStore for SqliteStore {
     async fn delete_job(&self, id: Uuid) -> Result<()> {
         self.change(1, [id], move |transaction| transaction.delete_job(id)).await?;
         self.queue.remove_job(id);
-        // The writer has woken the listeners before the claims were gone.
+        // The writer has woken the listeners before the claims were removed.
         self.changes.wake(id);
         Ok(())
     }

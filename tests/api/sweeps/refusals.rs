@@ -66,10 +66,10 @@ async fn every_fault_is_named_with_its_place() {
         (sweep(friction(), json!(["residual"])), "/outputs/0", "JSON pointer"),
         (sweep(friction(), json!(["/residual/max", "/residual/max"])), "/outputs/1", "same pointer"),
         (sweep(friction(), json!(["/residual"])), "/outputs/0", "no number there"),
-        (sweep(friction(), json!(["/residual/largest"])), "/outputs/0", "nothing there"),
+        (sweep(friction(), json!(["/residual/largest"])), "/outputs/0", "no such member"),
         (sweep(friction(), json!(["/accuracy/solver"])), "/outputs/0", "no number there"),
-        (sweep(friction(), json!(["/stress/shear/0"])), "/outputs/0", "nothing there"),
-        (sweep(friction(), json!(["/steps/1/force"])), "/outputs/0", "nothing there"),
+        (sweep(friction(), json!(["/stress/shear/0"])), "/outputs/0", "no such member"),
+        (sweep(friction(), json!(["/steps/1/force"])), "/outputs/0", "no such member"),
         (sweep(friction(), json!(["/residual/peaks/900/shear"])), "", ""),
         // The base.
         (changed("/base/contact/profile", json!({"type": "sphere"})), "/base/contact/profile/radius", "missing"),
