@@ -10,6 +10,7 @@ use axum::response::{IntoResponse as _, Response};
 use crate::access::{Keys, Role};
 
 use crate::api::problem::{Kind, Problem};
+use crate::api::routes;
 
 /// What a request needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,13 +46,13 @@ const ROUTE_ROLES: &[(&str, &str, Need)] = &[
     ("GET", "/contacts/{id}/history", Key(Role::Read)),
     ("GET", "/contacts/{id}/loop", Key(Role::Read)),
     ("GET", "/contacts/{id}/events", Key(Role::Read)),
-    ("GET", "/metrics", Key(Role::Metrics)),
+    ("GET", routes::METRICS, Key(Role::Metrics)),
     ("GET", "/healthz", Nothing),
     ("GET", "/readyz", Nothing),
     ("GET", "/openapi.json", Nothing),
     ("GET", "/problems/{code}", Nothing),
-    ("GET", "/", Nothing),
-    ("GET", crate::api::resources::page::FOLDER, Nothing),
+    ("GET", routes::PAGE, Nothing),
+    ("GET", routes::PAGE_FILES, Nothing),
     ("GET", "/docs", Nothing),
     ("GET", "/docs/{*rest}", Nothing),
 ];

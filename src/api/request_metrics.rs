@@ -1,6 +1,6 @@
-//! What passes through the service, by route, method and status.
+//! Metrics of requests by route, method and status.
 //!
-//! The labels are bounded: routes are our own, methods those of HTTP. Whatever else a client makes up is `none` or `other`.
+//! The labels are bounded: routes are our own, methods those of HTTP. Whatever else a client invents is `none` or `other`.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -15,9 +15,9 @@ use crate::metrics::{OWN_NAME, SECONDS};
 
 /// The methods that are distinguished; the last stands for all others.
 const METHODS: [&str; 8] = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "other"];
-/// The route of what we serve without describing it: the page at `/docs`.
+/// The label of routes that the document does not describe, such as `/docs`.
 const OTHER: &str = "other";
-/// The route of what is nowhere.
+/// The label of paths without a route.
 const NONE: &str = "none";
 /// The status of a request whose client did not wait for the answer. It is never sent.
 pub const ABANDONED: u16 = 499;
