@@ -1,5 +1,5 @@
 //! Errors as clients see them: every refusal is a problem document (RFC 9457). Which code to use when stands in the table
-//! of [`Code`](stickslip_wire::Code).
+//! of [`Code`].
 //!
 //! The errors of the lower layers know no status codes; the `From` implementations here are the one place that gives them.
 
@@ -15,7 +15,7 @@ use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
 use crate::api::limits;
 
-pub use stickslip_wire::{Code, Code as Kind};
+pub use stickslip_wire::Code;
 
 /// The media type of a problem document.
 pub const MEDIA_TYPE: &str = "application/problem+json";

@@ -9,7 +9,7 @@ use axum::response::{IntoResponse as _, Response};
 
 use crate::access::{Keys, Role};
 
-use crate::api::problem::{Kind, Problem};
+use crate::api::problem::{Code, Problem};
 use crate::api::routes;
 
 /// What a request needs.
@@ -74,11 +74,11 @@ pub async fn admit(State(keys): State<Arc<Keys>>, mut request: Request, next: Ne
     };
     let Some(holder) = presented(request.headers()).and_then(|key| keys.holder(key)) else {
         let detail = "send a key of this service as `Authorization: Bearer KEY`";
-        return Problem::new(Kind::Unauthorized, detail).into_response();
+        return Problem::new(Code::Unauthorized, detail).into_response();
     };
     if !holder.roles.allow(role) {
         let detail = format!("this needs a key with the role `{}`", role.name());
-        return Problem::new(Kind::Forbidden, detail).into_response();
+        return Problem::new(Code::Forbidden, detail).into_response();
     }
     tracing::debug!(key = &*holder.name, tenant = holder.tenant.name(), "a key was accepted");
     request.extensions_mut().insert(holder.tenant.clone());

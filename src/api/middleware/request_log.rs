@@ -15,7 +15,7 @@ use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 
 use crate::api::limits;
 use crate::api::middleware::security_headers;
-use crate::api::problem::{Kind, MEDIA_TYPE, Problem};
+use crate::api::problem::{Code, MEDIA_TYPE, Problem};
 use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::routes;
 use crate::metrics::Counted;
@@ -143,12 +143,12 @@ impl Drop for RequestGuard<'_> {
 fn foreign(response: &Response) -> Option<Problem> {
     let status = response.status();
     let kind = match status {
-        StatusCode::METHOD_NOT_ALLOWED => Kind::MethodNotAllowed,
-        StatusCode::NOT_FOUND => Kind::NotFound,
-        StatusCode::PAYLOAD_TOO_LARGE => Kind::TooLarge,
-        StatusCode::UNSUPPORTED_MEDIA_TYPE => Kind::UnsupportedMediaType,
+        StatusCode::METHOD_NOT_ALLOWED => Code::MethodNotAllowed,
+        StatusCode::NOT_FOUND => Code::NotFound,
+        StatusCode::PAYLOAD_TOO_LARGE => Code::TooLarge,
+        StatusCode::UNSUPPORTED_MEDIA_TYPE => Code::UnsupportedMediaType,
         _ if status.is_server_error() => return Some(Problem::internal(format!("the framework answered {status}"))),
-        _ if status.is_client_error() => Kind::InvalidInput,
+        _ if status.is_client_error() => Code::InvalidInput,
         _ => return None,
     };
     Some(Problem::new(kind, kind.title()))
