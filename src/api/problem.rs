@@ -78,7 +78,7 @@ impl Problem {
 }
 
 impl IntoResponse for Problem {
-    /// The status alone: the document waits in the extensions for `observe`, which knows the request's identifier.
+    /// The status alone: the document waits in the extensions for `log_request`, which knows the request's identifier.
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.code.status()).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let mut response = status.into_response();
