@@ -24,13 +24,13 @@ fn main() {
 
     let out = std::env::var_os("OUT_DIR").expect("Cargo names the folder for what is built");
     let out = Path::new(&out);
-    let files = fs::read_dir(PAGE).expect("the files of the page are there");
+    let files = fs::read_dir(PAGE).expect("the folder of the page exists");
     let mut paths: Vec<PathBuf> =
         files.map(|entry| entry.expect("the folder of the page can be read").path()).collect();
     paths.sort();
     let mut list = String::from("[");
     for path in paths {
-        let plain = path.canonicalize().expect("a file of the page is there");
+        let plain = path.canonicalize().expect("a file of the page exists");
         let name = plain.file_name().and_then(OsStr::to_str).expect("the files of the page have plain names");
         let packed = out.join(format!("{name}.gz"));
         pack(&packed, &fs::read(&plain).expect("a file of the page can be read"));

@@ -1,8 +1,8 @@
 //! Traces for OpenTelemetry: a span for each request, with spans of its parts, sent to a collector by OTLP over HTTP.
 //!
-//! All spans have the target [`SPANS`]. Without a collector no filter admits it, and a span costs a look at a flag. With
+//! All spans have the target [`SPANS`]. Without a collector no filter admits it, and a span costs a check of a flag. With
 //! one, spans wait in the bounded queue of a batch processor that has a thread of its own: a span that finds the queue
-//! full is lost, so that a collector that is slow or away costs spans, and neither requests nor memory.
+//! full is lost, so that a slow or unreachable collector costs spans, but neither requests nor memory.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -36,7 +36,7 @@ use tracing_subscriber::registry::LookupSpan;
 
 /// The target of all spans that are sent; the log leaves it out.
 pub const SPANS: &str = "stickslip::spans";
-/// The name of the span that a request is, which the others are parts of.
+/// The name of the span of a request, the parent of the others.
 pub const REQUEST: &str = "request";
 
 /// A span of a part of a request, such as `store`.
@@ -51,7 +51,7 @@ pub(crate) use part;
 const QUEUE: usize = 8_192;
 /// Spans that are sent together.
 const BATCH: usize = 512;
-/// How long spans wait for others to go with.
+/// How long spans wait to be sent together.
 const PERIOD: Duration = Duration::from_secs(1);
 /// How long a collector may take for a batch, and for all that waits at the end.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -113,7 +113,7 @@ impl Exporter {
     /// Sends what waits, as long as that takes no longer than a collector may. It blocks the thread, which must be none of
     /// the runtime.
     pub fn finish(self) {
-        // The log knows already of a collector that is not reached.
+        // An unreachable collector has been logged already.
         if let Err(OTelSdkError::Timeout(_)) = self.0.shutdown_with_timeout(PATIENCE) {
             tracing::warn!("the last traces were not sent in time");
         }
@@ -137,12 +137,12 @@ fn client(endpoint: &str) -> Result<Http, String> {
     Ok(Client::builder(TokioExecutor::new()).build(connector))
 }
 
-/// The way to a collector. The thread of the batches has no runtime, and HTTP needs one.
+/// The HTTP client of a collector. The thread of the batches has no runtime, and HTTP needs one.
 #[derive(Debug)]
 struct Collector {
     http: Http,
     runtime: Handle,
-    /// Whether the last batch arrived: the log is told of changes alone.
+    /// Whether the last batch arrived: only changes are logged.
     reached: Arc<AtomicBool>,
 }
 
@@ -171,7 +171,7 @@ async fn exchange(http: Http, request: Request<Bytes>) -> Result<Response<Bytes>
     Ok(Response::from_parts(parts, Limited::new(body, ANSWER).collect().await?.to_bytes()))
 }
 
-/// The span that a request belongs to, by its `traceparent` (W3C Trace Context); none if that is not as the standard has it.
+/// The span that a request belongs to, by its `traceparent` (W3C Trace Context); none if that is malformed.
 #[must_use]
 pub fn parent(headers: &HeaderMap) -> Option<Context> {
     let header = headers.get("traceparent")?.to_str().ok()?;
@@ -190,7 +190,7 @@ mod tests {
     use opentelemetry::trace::TraceContextExt as _;
 
     #[test]
-    fn a_parent_is_taken_as_the_standard_has_it() {
+    fn a_parent_is_accepted_as_the_standard_defines_it() {
         let of = |header: &str| {
             let headers =
                 HeaderMap::from_iter([("traceparent".parse().unwrap(), HeaderValue::from_str(header).unwrap())]);

@@ -1,4 +1,4 @@
-//! Access control: keys, their roles and tenants. It knows no HTTP.
+//! Access control: keys, their roles and tenants, independent of HTTP.
 //!
 //! Only the SHA-256 hash of a key is kept. A slow hash protects passwords, which can be guessed; a key is 256 random bits, which
 //! cannot, and it is hashed for every request.

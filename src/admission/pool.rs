@@ -1,6 +1,6 @@
 //! The resources of the server and their permits: threads for the solver, places for requests, bytes of memory.
 //!
-//! A request for what is taken waits for a bounded time in a queue of bounded length, and is then refused. So the memory of
+//! A request for resources that are in use waits for a bounded time in a queue of bounded length, and is then refused. So the memory of
 //! requests is bounded too, however many arrive.
 
 use std::future::Future;
@@ -125,7 +125,7 @@ pub enum PoolError {
     #[error("the server is busy, and nothing became free in time")]
     Busy,
     /// The queue is full.
-    #[error("the server is busy, and as many requests wait as may")]
+    #[error("the server is busy, and its queue is full")]
     QueueFull,
     /// The work panicked, which is a bug of this program.
     #[error("the solver panicked")]
@@ -197,7 +197,7 @@ impl Pool {
         Stop::within(self.0.capacity.deadline)
     }
 
-    /// Waits for `request` within the bounds of time and of the queue.
+    /// Waits for `request` within the limits of time and of the queue.
     ///
     /// # Errors
     /// [`PoolError::Busy`] if it was not ready in time, [`PoolError::QueueFull`] if too many wait already.

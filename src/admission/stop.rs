@@ -10,8 +10,8 @@ pub const LONGEST_WORK: Duration = Duration::from_secs(60);
 /// Why work was broken off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Interrupted {
-    /// Nobody waits for the result any longer.
-    #[error("stopped, as nobody waits for the result any longer")]
+    /// The client no longer waits for the result.
+    #[error("stopped: the client no longer waits for the result")]
     Abandoned,
     /// The work has taken as long as it may.
     #[error("this takes longer than the {} s that are allowed", .0.as_secs_f64())]

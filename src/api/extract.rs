@@ -25,13 +25,13 @@ use super::state::App;
 
 /// Bytes of a body.
 pub const BODY_LIMIT: usize = 8 * 1024 * 1024;
-/// Bytes of a body that is too large which are read and thrown away, so that the client gets to read the answer.
+/// Bytes of a body above the limit that are read and discarded, so that the client can read the answer.
 const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
 /// Bytes that a byte of a long body may become while it is parsed: a point of a table is a few digits, and then a
 /// series.
 const EXPANSION: usize = 100;
 
-/// A checked body, and the headers that make it safe to repeat. If it is `OPTIONAL`, no body at all counts as `{}`.
+/// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as `{}`.
 pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
     /// The body.
     pub body: T::Checked,
@@ -48,7 +48,7 @@ pub struct HeldResources {
 }
 
 impl HeldResources {
-    /// Holds so much memory from now on.
+    /// Changes the reservation to this much memory.
     ///
     /// # Errors
     /// A [`Problem`] if so much is not available.
@@ -56,7 +56,7 @@ impl HeldResources {
         Ok(pool.resize(&mut self.memory, bytes).await?)
     }
 
-    /// Hands the memory on to the reply.
+    /// Transfers the memory to the reply.
     pub fn on(self, response: Response) -> Response {
         reply::holding(response, self.memory)
     }
@@ -78,7 +78,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<App> for CheckedBo
             parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes()))
         {
             let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
-            let detail = format!("Content-Encoding `{coding}` is not taken: send the body as it is");
+            let detail = format!("Content-Encoding `{coding}` is not supported: send the body unencoded");
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
         let (mut bytes, mut memory) = read(body, &app.pool).await?;
@@ -147,7 +147,7 @@ fn broken(error: axum::Error) -> Problem {
     if error.source().is_some_and(|source| source.is::<SlowBody>()) {
         Problem::new(Code::RequestTimeout, "the body did not arrive in time")
     } else {
-        Problem::new(Code::NotJson, "the body broke off")
+        Problem::new(Code::NotJson, "the connection ended before the body was complete")
     }
 }
 

@@ -64,12 +64,12 @@ pub async fn serve_within(
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> io::Result<()> {
     let (sessions, jobs, pool) = (app.sessions.clone(), app.jobs.clone(), app.pool.clone());
-    // Our own document is sound; without it, endpoints would be shown from their first request on.
+    // The document always parses; without it, metrics of endpoints would appear with their first request.
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
     let (router, refusals) = (router(app, Arc::clone(&metrics)), refusals(metrics, pool.clone()));
     let service = Service { router, refusals, pool, body_time: limiter.limits().body };
     server::serve(limiter, listener, service, stop, || {
-        // A client that follows a contact or a job would never be done.
+        // The event streams would never end by themselves.
         sessions.end_events();
         jobs.end();
     })
@@ -91,7 +91,7 @@ fn refusals(metrics: Arc<RequestMetrics>, pool: Pool) -> Router {
     with_middleware(Router::new().fallback(meta::refused), Access::default(), metrics, pool)
 }
 
-/// What is common to all replies, from the outside to the inside.
+/// Adds the middleware, from the outermost layer to the innermost.
 fn with_middleware(routes: Router, access: Access, metrics: Arc<RequestMetrics>, pool: Pool) -> Router {
     let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
     let keys = access.keys.map(|keys| from_fn_with_state(keys, access_control::admit));

@@ -1,7 +1,7 @@
-//! Errors as clients see them: every refusal is a problem document (RFC 9457). Which code to use when stands in the table
-//! of [`Code`].
+//! Errors as clients see them: every refusal is a problem document (RFC 9457). The table of [`Code`] says when to use
+//! which code.
 //!
-//! The errors of the lower layers know no status codes; the `From` implementations here are the one place that gives them.
+//! The errors of the lower layers have no status codes; only the `From` implementations here assign them.
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -26,7 +26,7 @@ pub struct Problem {
     code: Code,
     detail: String,
     errors: Vec<Fault>,
-    /// What goes to the log, and not to the client.
+    /// The cause for the log, which the client does not see.
     cause: Option<String>,
 }
 
@@ -58,7 +58,7 @@ impl Problem {
         Problem { cause: Some(cause), ..self }
     }
 
-    /// What goes to the log, and not to the client.
+    /// The cause for the log, which the client does not see.
     #[must_use]
     pub fn cause(&self) -> Option<&str> {
         self.cause.as_deref()
@@ -78,7 +78,7 @@ impl Problem {
 }
 
 impl IntoResponse for Problem {
-    /// The status alone: the document waits in the extensions for `log_request`, which knows the request's identifier.
+    /// The status alone: `request_log` writes the document from the extensions, with the identifier of the request.
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.code.status()).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let mut response = status.into_response();

@@ -1,4 +1,4 @@
-//! Replies: JSON bodies, versions, and the memory that a reply holds until the client has it.
+//! Replies: JSON bodies, versions, and the memory that a reply holds until it is sent.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::store::Reply;
 
 use super::problem::Problem;
 
-/// Headers that a reply has in the end, so that the map need not grow step by step.
+/// Number of headers of a finished reply, so that the map need not grow step by step.
 const HEADERS: usize = 12;
 
 /// Capacity that a text begins with if its length is not known.
@@ -56,7 +56,7 @@ pub fn not_modified(tag: &str) -> Response {
     tagged(response, tag)
 }
 
-/// The reply to a change: 201 with the place of what it made, or 200.
+/// The reply to a change: 201 with the path of the new resource, or 200.
 pub fn of_change(reply: Reply) -> Response {
     let mut response = at_sequence(reply.sequence, reply.body);
     if let Some(id) = reply.created {
@@ -68,7 +68,7 @@ pub fn of_change(reply: Reply) -> Response {
     response
 }
 
-/// A reply whose memory stays reserved until the client has it.
+/// A reply whose memory stays reserved until it is sent.
 pub fn holding(mut response: Response, held: Reservation) -> Response {
     if held.is_counted() {
         // In an `Arc`, because extensions must be `Clone`.

@@ -1,6 +1,6 @@
 //! Metrics of requests by route, method and status.
 //!
-//! The labels are bounded: routes are our own, methods those of HTTP. Whatever else a client invents is `none` or `other`.
+//! The labels are bounded: the routes of the service and the methods of HTTP. Anything else is `none` or `other`.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -13,11 +13,11 @@ use serde_json::Value;
 
 use crate::metrics::{OWN_NAME, SECONDS};
 
-/// The methods that are distinguished; the last stands for all others.
+/// The methods that are distinguished; the last is for all others.
 const METHODS: [&str; 8] = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "other"];
-/// The label of routes that the document does not describe, such as `/docs`.
+/// The route label of pages that the OpenAPI document does not describe, such as `/docs`.
 const OTHER: &str = "other";
-/// The label of paths without a route.
+/// The route label of requests that match no route.
 const NONE: &str = "none";
 /// The status of a request whose client did not wait for the answer. It is never sent.
 pub const ABANDONED: u16 = 499;
@@ -154,7 +154,7 @@ mod tests {
         traffic.collectors().iter().flat_map(|collector| collector.collect()).collect()
     }
 
-    /// How many requests got a status, if that is shown.
+    /// The number of requests with a status, if it is shown.
     fn shown(traffic: &RequestMetrics, route: &str, method: &str, status: &str) -> Option<f64> {
         let families = families(traffic);
         let mut found = families[0].get_metric().iter().filter(|metric| {

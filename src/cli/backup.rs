@@ -24,6 +24,6 @@ impl Backup {
     /// Copies the store.
     pub fn run(&self) -> Result<(), String> {
         let bytes = store::backup(&self.store, &self.file).map_err(|error| error.to_string())?;
-        print(format_args!("{} holds the store, {bytes} bytes", self.file.display()))
+        print(format_args!("copied the store to {}, {bytes} bytes", self.file.display()))
     }
 }

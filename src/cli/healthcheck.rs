@@ -35,7 +35,7 @@ pub fn healthcheck(options: &Healthcheck) -> Result<(), String> {
     let answer = runtime.block_on(async { tokio::time::timeout(REPLY_TIMEOUT, client.healthz()).await });
     match answer {
         Ok(Ok(())) => Ok(()),
-        Ok(Err(error)) => Err(format!("{address} is not well: {error}")),
+        Ok(Err(error)) => Err(format!("{address} is not healthy: {error}")),
         Err(_) => Err(format!("{address} does not answer")),
     }
 }

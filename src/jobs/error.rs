@@ -6,10 +6,10 @@ use crate::admission::PoolError;
 use crate::simulation::SweepError;
 use crate::store::{RetryError, StoreError};
 
-/// Why nothing came of a sweep or a job.
+/// Why a sweep or a job has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
-    /// There is no such job, or it has gone.
+    /// There is no such job, or it has been deleted.
     #[error("there is no job {0}")]
     NotFound(Uuid),
     /// It has not ended.
@@ -23,19 +23,19 @@ pub enum JobError {
     /// It has failed.
     #[error("the job has failed: {0}")]
     Failed(String),
-    /// The work is more than a server takes on.
-    #[error("this is about {wanted} s of work for one core: allowed are {allowed} s")]
+    /// The work exceeds the limit of one job.
+    #[error("the sweep needs about {wanted} s of work of one core: allowed are {allowed} s")]
     TooMuch {
-        /// What it is, s.
+        /// The estimated work, s.
         wanted: u64,
-        /// What is allowed, s.
+        /// The allowed work, s.
         allowed: u64,
     },
     /// The idempotency key belongs to another request.
     #[error("the idempotency key has been used for another request")]
     KeyReused,
-    /// As many clients follow jobs as may.
-    #[error("{} clients follow jobs, and no more may", super::STREAMS)]
+    /// The limit of clients that follow jobs is reached.
+    #[error("{} clients follow jobs, which is the limit", super::STREAMS)]
     TooManyStreams,
     /// It was stopped, or took too long.
     #[error(transparent)]
@@ -46,7 +46,7 @@ pub enum JobError {
     /// The storage refused or failed.
     #[error(transparent)]
     Store(StoreError),
-    /// What is stored cannot be read: a fault of this program.
+    /// Stored data cannot be read: a fault of this program.
     #[error("{0}")]
     Broken(String),
 }

@@ -13,7 +13,7 @@ use super::{JobError, Jobs};
 
 /// How long a follower waits at most before it reads again: not every change by another process is announced.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
-/// How long a follower rests after each event: chunks may be done faster than a client reads.
+/// The shortest time between two events: chunks may be finished faster than a client reads.
 const REST: Duration = Duration::from_millis(100);
 
 /// A client that follows a job.

@@ -1,8 +1,8 @@
-//! Sweeps, at once or as jobs that go on after their request has been answered.
+//! Sweeps, answered at once or run as jobs that continue after their request has been answered.
 //!
 //! A job is done in chunks whose results are stored as they come, so that a process which is killed loses the chunks
-//! under way and no others, and any process on the same store goes on with the rest. Jobs take turns, chunk by chunk.
-//! What a tenant may ask for is bounded in number, bytes and work.
+//! under way and no others, and any process on the same store continues with the rest. Jobs take turns, chunk by chunk.
+//! The jobs of a tenant are bounded in number, bytes and work.
 
 mod error;
 mod events;
@@ -30,9 +30,9 @@ pub use error::JobError;
 pub const STREAMS: usize = 250;
 /// A sweep of more work than this becomes a job.
 pub const AT_ONCE: Nanoseconds = 1_000_000_000;
-/// What the jobs of a tenant may come to.
+/// The limits of the jobs of a tenant.
 pub const LIMITS: JobLimits = JobLimits { jobs: 50, bytes: 512 * 1024 * 1024, cost: 48 * HOUR };
-/// What one job may cost.
+/// The largest cost of one job.
 pub const LARGEST_JOB: Nanoseconds = 12 * HOUR;
 /// How long a process may be silent before others claim its chunks.
 pub const LEASE: Duration = Duration::from_secs(30);
@@ -40,7 +40,7 @@ pub const LEASE: Duration = Duration::from_secs(30);
 const HOUR: Nanoseconds = 3_600_000_000_000;
 /// Bytes of a number in a result, stored or in memory.
 const NUMBER_BYTES: usize = 8;
-/// What a job takes beside its request and its result.
+/// Bytes of a job besides its request and its result.
 const JOB_BYTES: usize = 4_096;
 /// Chunks that are read from the store at a time.
 const CHUNKS_AT_ONCE: usize = 16;
@@ -61,21 +61,21 @@ struct Common {
     new: Notify,
     // The name of this process in its claims.
     owner: Uuid,
-    // Those who follow jobs; their end is also that of the work on jobs.
+    // Clients that follow jobs; when they end, the work on jobs ends too.
     listeners: Listeners,
     meters: JobMeters,
 }
 
-/// What this process has done for sweeps since its start.
+/// Metrics of the sweeps that this process has computed since its start.
 #[derive(Debug)]
 pub struct JobMeters {
     /// Points computed, at once and for jobs; those without an answer too.
     pub points: IntCounter,
     /// Chunks of jobs whose results are stored.
     pub chunks: IntCounter,
-    /// Chunks that were given back, for this process or another one to do.
+    /// Chunks that were released, for this process or another one to compute.
     pub returned: IntCounter,
-    /// Jobs that were given up.
+    /// Jobs that failed.
     pub failed: IntCounter,
     /// Chunks under way.
     pub running: IntGauge,
@@ -90,8 +90,8 @@ impl Default for JobMeters {
                 "Points of sweeps computed by this process, at once or for jobs.",
             ),
             chunks: count("stickslip_job_chunks_total", "Chunks of jobs that this process has computed and stored."),
-            returned: count("stickslip_job_chunks_returned_total", "Chunks that this process gave back undone."),
-            failed: count("stickslip_jobs_failed_total", "Jobs that this process gave up; the log says why."),
+            returned: count("stickslip_job_chunks_returned_total", "Chunks that this process released unfinished."),
+            failed: count("stickslip_jobs_failed_total", "Jobs that failed in this process; the log says why."),
             running: gauge(Opts::new("stickslip_job_chunks_running", "Chunks under way in this process.")),
         }
     }
@@ -129,7 +129,7 @@ impl Jobs {
         Ok(rows)
     }
 
-    /// What this process has done, for all tenants.
+    /// The metrics of this process, for all tenants.
     #[must_use]
     pub fn meters(&self) -> &JobMeters {
         &self.common.meters
@@ -140,7 +140,7 @@ impl Jobs {
         made.as_ref().map_err(|why| JobError::Broken(format!("no threads for sweeps: {why}")))
     }
 
-    /// Makes a job of a sweep. The reply is the job as it is then.
+    /// Makes a job of a sweep. The reply describes the new job.
     ///
     /// # Errors
     /// [`JobError`]; no job has been made then.
@@ -204,7 +204,7 @@ impl Jobs {
         }
     }
 
-    /// What was asked for, and what came of it.
+    /// The request and the result of a job.
     ///
     /// # Errors
     /// As [`Jobs::size`].
@@ -244,7 +244,7 @@ impl Jobs {
     }
 }
 
-/// What an error of the store means for a job.
+/// Converts an error of the store.
 fn store_error(id: Uuid) -> impl Fn(StoreError) -> JobError {
     move |error| match error {
         StoreError::NotFound => JobError::NotFound(id),
@@ -252,7 +252,7 @@ fn store_error(id: Uuid) -> impl Fn(StoreError) -> JobError {
     }
 }
 
-/// A job as its owner sees it.
+/// The public view of a job.
 fn job_reply(job: &Job) -> JobReply {
     let state = match (job.finished_at, &job.error) {
         (_, Some(_)) => JobState::Failed,

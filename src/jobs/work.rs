@@ -17,7 +17,7 @@ use super::{JobError, Jobs, NUMBER_BYTES, store_error};
 
 /// Chunks that a process works on at a time: while one is being stored, the threads compute the other.
 const CHUNKS_AT_A_TIME: usize = 2;
-/// How long to wait where there is nothing to do, or the store or the pool refuses.
+/// How long to wait if there is no work, or if the store or the pool refuses.
 const PAUSE: Duration = Duration::from_secs(1);
 /// How often a claim is renewed within a lease.
 const RENEWALS: u32 = 3;
@@ -28,8 +28,8 @@ const SAVE_ATTEMPTS: usize = 30;
 type OpenJob = Option<(Job, Arc<Sweep>)>;
 
 impl Jobs {
-    /// Works on the jobs of all tenants until [`Jobs::end`], and gives back what is not done then. The chunks of a
-    /// process that has not been heard of for the time of a lease are taken by others.
+    /// Works on the jobs of all tenants until [`Jobs::end`], and releases unfinished chunks then. The chunks of a
+    /// process whose lease has run out are claimed by others.
     pub async fn work(self, lease: Duration) {
         futures::future::join_all((0..CHUNKS_AT_A_TIME).map(|_| self.clone().work_on_chunks(lease))).await;
     }
@@ -117,14 +117,14 @@ impl Jobs {
         Ok(())
     }
 
-    /// What a job asks for.
+    /// The request of a job.
     async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
         let job = self.common.store.job(id).await.map_err(store_error(id))?;
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
         let plan = move || wire::read::<SweepRequest>(request.as_bytes()).and_then(Sweep::plan);
         let sweep = self.common.pool.run(INLINE, plan).await?;
-        let sweep =
-            sweep.map_err(|error| JobError::Broken(format!("this version does not take the request: {error}")))?;
+        let sweep = sweep
+            .map_err(|error| JobError::Broken(format!("this version does not accept the stored request: {error}")))?;
         Ok((job, Arc::new(sweep)))
     }
 
@@ -150,7 +150,7 @@ impl Jobs {
                 _ = changed.changed() => {}
                 () = tokio::time::sleep(lease / RENEWALS) => {}
             }
-            // A store that is out of reach says nothing about the claim.
+            // An unreachable store says nothing about the claim.
             if matches!(self.common.store.renew(claim, lease).await, Ok(false)) {
                 drop(guard.take());
             }
@@ -164,13 +164,13 @@ impl Jobs {
                 Ok(()) => return Ok(()),
                 Err(StoreError::Full(_) | StoreError::Unavailable(_)) => {
                     tokio::time::sleep(PAUSE).await;
-                    // In vain while the store is out of reach.
+                    // Fails while the store is unreachable.
                     let _ = self.common.store.renew(claim, lease).await;
                 }
                 Err(error) => return Err(store_error(claim.job)(error)),
             }
         }
-        Err(JobError::Store(StoreError::Unavailable("the storage does not take the result".to_owned())))
+        Err(JobError::Store(StoreError::Unavailable("the storage does not accept the result".to_owned())))
     }
 }
 

@@ -1,22 +1,22 @@
-//! Numbers that tell how the service is doing: counters, gauges and histograms of the library `prometheus`.
+//! Metrics of the service: counters, gauges and histograms of the library `prometheus`.
 //!
-//! To count something takes a few atomic operations, no lock and no memory: whoever counts keeps a handle.
+//! Counting takes a few atomic operations, no lock and no allocation: each user of a metric keeps a handle.
 //! `api/resources/metrics.rs` puts all of them on the page that Prometheus reads.
 
 pub mod process;
 
 use prometheus::{Histogram, HistogramOpts, IntCounter, IntGauge, Opts};
 
-/// Bounds for what takes from a tenth of a millisecond to ten seconds, s.
+/// Buckets for durations from a tenth of a millisecond to ten seconds, s.
 pub const SECONDS: &[f64] =
     &[1e-4, 2.5e-4, 5e-4, 1e-3, 2.5e-3, 5e-3, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0];
-/// Bounds for what may take less than a microsecond, s.
+/// Buckets for durations that may be below a microsecond, s.
 pub const SHORT_SECONDS: &[f64] =
     &[1e-6, 2.5e-6, 5e-6, 1e-5, 2.5e-5, 1e-4, 2.5e-4, 1e-3, 2.5e-3, 0.01, 0.025, 0.1, 0.25, 1.0, 2.5, 10.0, 25.0];
-/// Bounds for how many go together.
+/// Buckets for sizes of batches.
 pub const SIZES: &[f64] = &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0];
 
-/// Why a name that the program gives a metric is never refused.
+/// The message of a panic that cannot occur, because all names are constants.
 pub const OWN_NAME: &str = "the name, the labels and the buckets of a metric are constants that the format allows";
 
 /// A number that only grows.
@@ -28,7 +28,7 @@ pub fn counter(options: Opts) -> IntCounter {
     IntCounter::with_opts(options).expect(OWN_NAME)
 }
 
-/// How many there are of something that comes and goes.
+/// A number that rises and falls.
 ///
 /// # Panics
 /// As [`counter`].
@@ -46,13 +46,13 @@ pub fn histogram(options: Opts, bounds: &[f64]) -> Histogram {
     Histogram::with_opts(HistogramOpts::from(options).buckets(bounds.to_vec())).expect(OWN_NAME)
 }
 
-/// One of those that a gauge counts, until it is dropped.
+/// A unit of a gauge, subtracted when it is dropped.
 #[must_use]
 #[derive(Debug)]
 pub struct Counted<'a>(&'a IntGauge);
 
 impl<'a> Counted<'a> {
-    /// One more in the gauge.
+    /// Adds one to the gauge.
     pub fn by(gauge: &'a IntGauge) -> Counted<'a> {
         gauge.inc();
         Counted(gauge)
@@ -83,8 +83,8 @@ mod tests {
     }
 
     #[test]
-    fn whoever_is_counted_leaves_even_by_a_panic() {
-        let gauge = gauge(Opts::new("guests", "Guests."));
+    fn a_gauge_falls_even_after_a_panic() {
+        let gauge = gauge(Opts::new("connections", "Connections."));
         let caught = std::panic::catch_unwind(|| {
             let _counted = Counted::by(&gauge);
             assert_eq!(gauge.get(), 2, "not yet");

@@ -1,11 +1,11 @@
-//! What the system says of this process.
+//! Resource use of this process, as the system reports it.
 
 use std::fs;
 
 /// Ticks in a second of processor time, as Linux shows it to all programs.
 const TICKS: f64 = 100.0;
 
-/// What the process takes. What the system does not tell is left out.
+/// The resources in use. What the system does not report is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Process {
     /// Bytes of memory in use.
@@ -21,7 +21,7 @@ pub struct Process {
 }
 
 impl Process {
-    /// As it is now.
+    /// Reads the present values.
     #[must_use]
     pub fn now() -> Process {
         let read = |name: &str| fs::read_to_string(format!("/proc/self/{name}")).unwrap_or_default();
@@ -42,7 +42,7 @@ fn number(text: &str, name: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(name))?.split_whitespace().next()?.parse().ok()
 }
 
-/// The fields of `/proc/self/stat` are counted from behind the program's name, which stands in brackets.
+/// The fields of `/proc/self/stat` are counted from behind the program's name, which is in parentheses.
 fn processor_seconds(stat: &str) -> Option<f64> {
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11);
     let (user, system) = (fields.next()?.parse::<f64>().ok()?, fields.next()?.parse::<f64>().ok()?);

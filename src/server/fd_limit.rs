@@ -1,4 +1,4 @@
-//! Files that the process may have open: a connection is one of them.
+//! The limit of open files: a connection counts as one.
 
 use rustix::process::{Resource, getrlimit, setrlimit};
 
@@ -7,7 +7,7 @@ use crate::server::limits::SPARE_CONNECTIONS;
 /// Files besides connections: the store, the log, the runtime, libraries.
 const OTHERS: usize = 128;
 
-/// Makes room for so many connections, as far as the process may; says how many there is room for.
+/// Raises the limit for this many connections as far as the process may; returns how many it allows.
 #[must_use]
 pub fn room_for(connections: usize) -> usize {
     let besides = (SPARE_CONNECTIONS + OTHERS) as u64;

@@ -10,12 +10,12 @@ pub const HEAD: usize = 32 * 1024;
 pub const BUFFER: usize = 40 * 1024;
 /// Bytes of a reply that are handed to the socket at a time.
 pub const PIECE: usize = 16 * 1024;
-/// ConnectionLimits beyond all others, for a short time each: to be asked whether the server is well, and to refuse the rest
-/// with a document rather than a closed limiter.
+/// Spare connections beyond the limit, for a short time each: they answer health checks, and refuse other requests with
+/// a document rather than by closing the connection.
 pub const SPARE_CONNECTIONS: usize = 128;
 /// How long a spare connection has for the head of its request.
 pub const SPARE_TIME: Duration = Duration::from_secs(2);
 /// A connection that has waited for its client for less than this is not closed to make room for another.
 pub const LEAST_WAIT: Duration = Duration::from_secs(1);
-/// Bytes that a client must read of a reply within the time for a stall, else it counts as stalled.
+/// Bytes that a client must read of a reply within the time for a stall, otherwise it counts as stalled.
 pub const LEAST_PROGRESS: usize = 64 * 1024;

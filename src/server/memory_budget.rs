@@ -1,4 +1,4 @@
-//! How much memory the process takes at the most, as it follows from what it is configured to take on.
+//! The largest memory use of the process, as it follows from its limits.
 
 use crate::admission::Capacity;
 use crate::sessions::STREAMS;

@@ -21,15 +21,15 @@ use super::relax::{find_protocol, without_step};
 use super::{ATTEMPTS, SessionError, Sessions, written};
 
 /// Why the exact solver answers for a session.
-const REASON: &str = "a session keeps its exact memory";
+const REASON: &str = "stored contacts use the exact solver";
 
-/// What a computation leaves to be stored.
+/// The results of a computation that are to be stored.
 struct Done {
     records: Vec<Record>,
     reply: Reply,
 }
 
-/// The most pieces that one straight move can add to the memory, with room to spare.
+/// The most pieces that one straight move can add to the slip history, with a margin.
 const PIECES_OF_A_MOVE: usize = 8;
 
 impl Sessions {
@@ -111,12 +111,12 @@ impl Sessions {
     ) -> Result<(Box<LoadedSession>, Done), SessionError> {
         let depth = guard.live.as_ref().map_or(0, |live| live.contact.memory_depth());
         // A single move that the mechanics refuses has changed nothing, so that it needs no copy to fall back on; and a
-        // copy costs as much as the memory is deep. A move that may come too late is another matter.
+        // copy costs as much as the slip history is deep. A move that another process may have overtaken needs the copy.
         let in_place = matches!(advance.plan, Plan::Single(step) if !step.is_curved())
             && advance.stress.is_none()
             && depth + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
             && guard.live.as_ref().is_some_and(|live| !live.shared);
-        // A copy can be large, and as many requests are under way as may be.
+        // A copy can be large, and many requests may be under way.
         let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
         let _held = self.common.pool.reserve(copied).await?;
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
@@ -150,7 +150,7 @@ fn attempt(
     (live, result)
 }
 
-/// Makes the moves, and writes the reply: all that needs a processor.
+/// Makes the moves, and writes the reply: the part of the work that needs a processor.
 fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
     let timer = Timer::start();

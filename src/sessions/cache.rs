@@ -1,8 +1,8 @@
 //! The cached states, of which the least recently used go first, and the locks of the sessions in use.
 //!
 //! A request takes the state of its session out of the cache, and puts it back at the end with the size that it has
-//! then. A session that no request uses has no lock, and one that is not cached takes no memory: asking for identifiers
-//! that do not exist leaves nothing behind, and a million idle sessions are the store's alone.
+//! then. A session that no request uses has no lock, and one that is not cached takes no memory: requests for identifiers
+//! that do not exist leave nothing behind, and a million idle sessions take space in the store alone.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -1,4 +1,4 @@
-//! Is what is stored what happened? Every session is made again from its moves, and compared.
+//! Verifies a store: every session is replayed from its moves, and compared with the recorded states.
 //!
 //! Nothing is written, and one page of moves at a time is in memory. Others may work on the store meanwhile: of a
 //! session that moves on, the moves that it had when it was looked at are checked.
@@ -17,19 +17,19 @@ use super::snapshot::{SnapshotState, compare};
 /// Sessions and moves that are fetched at a time.
 const SESSIONS: usize = 1_000;
 const MOVES: usize = 10_000;
-/// Differences of one session that are told one by one.
-const TOLD: u64 = 5;
+/// Differences of one session that are reported one by one.
+const REPORTED: u64 = 5;
 
-/// Something that is not as it should be.
+/// A fault of the store.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// The session that it is about, unless it is about the storage.
     pub contact: Option<Uuid>,
-    /// What it is.
+    /// The description.
     pub what: String,
 }
 
-/// What has been looked at.
+/// Counts of what has been checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
     /// Sessions.
@@ -40,7 +40,7 @@ pub struct Checked {
     pub snapshots: u64,
     /// Snapshots of another engine, which are never read.
     pub foreign_snapshots: u64,
-    /// What was found.
+    /// Faults.
     pub findings: u64,
 }
 
@@ -64,7 +64,7 @@ impl fmt::Display for Checked {
     }
 }
 
-/// Looks at all of a store, and reports what is wrong. Recorded states may differ from the replayed ones by
+/// Checks all of a store, and reports every fault. Recorded states may differ from the replayed ones by
 /// `tolerance`, relative to the largest that the session has had; 0 means not in a single bit.
 ///
 /// # Errors
@@ -110,10 +110,10 @@ impl Check<'_> {
         (self.report)(&Finding { contact, what });
     }
 
-    /// What a store cannot read is a finding, unless it can read nothing.
+    /// Records unreadable data as a finding, unless the whole store is unreachable.
     fn unreadable(&mut self, contact: Option<Uuid>, what: &str, error: StoreError) -> Result<(), StoreError> {
         match error {
-            // Somebody has deleted it since it was listed.
+            // A client has deleted it since it was listed.
             StoreError::NotFound | StoreError::Expired(_) => Ok(()),
             StoreError::Failed(why) => {
                 self.found(contact, format!("{what} cannot be read: {why}"));
@@ -144,7 +144,7 @@ impl Check<'_> {
         match start(session) {
             Ok(contact) => self.replay(id, sequence, contact, snapshot).await,
             Err(why) => {
-                self.found(Some(id), format!("its definition makes no contact: {why}"));
+                self.found(Some(id), format!("its definition is invalid: {why}"));
                 Ok(())
             }
         }
@@ -165,7 +165,7 @@ impl Check<'_> {
                 Err(error) => return self.unreadable(Some(id), &format!("its moves after {at}"), error),
             };
             if page.is_empty() {
-                // Somebody may have deleted it meanwhile.
+                // A client may have deleted it meanwhile.
                 if self.store.sequence(id).await.is_ok() {
                     self.found(Some(id), format!("it is at move {last}, and the moves after {at} are missing"));
                 }
@@ -184,15 +184,15 @@ impl Check<'_> {
                 }
                 if let Some(difference) = difference(&record, &contact.state().into(), &mut scale, self.tolerance) {
                     different += 1;
-                    if different <= TOLD {
+                    if different <= REPORTED {
                         self.found(Some(id), difference);
                     }
                 }
                 self.compare_snapshot(id, at, &contact, snapshot.as_ref());
             }
         }
-        if different > TOLD {
-            self.found(Some(id), format!("{} further moves differ", different - TOLD));
+        if different > REPORTED {
+            self.found(Some(id), format!("{} further moves differ", different - REPORTED));
         }
         Ok(())
     }
@@ -240,7 +240,7 @@ fn quantities(state: &State) -> [(&'static str, f64); QUANTITIES] {
     ]
 }
 
-/// In what a recorded state differs from the one that the move leads to.
+/// Describes how a recorded state differs from the replayed one.
 fn difference(record: &Record, replayed: &State, scale: &mut [f64; QUANTITIES], tolerance: f64) -> Option<String> {
     let mut differing = Vec::new();
     let pairs = quantities(&record.state).into_iter().zip(quantities(replayed));

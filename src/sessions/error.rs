@@ -1,4 +1,4 @@
-//! Why a session did not do what it was asked for.
+//! Errors of operations on sessions.
 
 use uuid::Uuid;
 
@@ -6,7 +6,7 @@ use crate::admission::PoolError;
 use crate::simulation;
 use crate::store::{RetryError, StoreError};
 
-/// Why a session did not do what it was asked for. Nothing has changed then.
+/// Why an operation on a session failed. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
     /// There is no such session.
@@ -23,25 +23,25 @@ pub enum SessionError {
     Stale {
         /// What the client expects.
         expected: u64,
-        /// What it is.
+        /// The present sequence.
         found: u64,
     },
     /// Other processes have moved the session on, again and again.
-    #[error("the contact has moved on to sequence {found} meanwhile")]
+    #[error("other requests keep moving the contact, which is now at sequence {found}: try again")]
     Overtaken {
-        /// What its sequence is.
+        /// The present sequence.
         found: u64,
     },
     /// Events are asked for from a move on that has not been made.
-    #[error("the contact is at sequence {found}, and has had no event {after} yet")]
+    #[error("the contact is at sequence {found}: there is no event {after} yet")]
     Ahead {
         /// The event that the client says it has seen.
         after: u64,
         /// The sequence of the session.
         found: u64,
     },
-    /// As many clients listen to events as may.
-    #[error("{} clients listen to events, and no more may", super::STREAMS)]
+    /// The limit of clients that listen to events is reached.
+    #[error("{} clients listen to events, which is the limit", super::STREAMS)]
     TooManyStreams,
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
@@ -55,7 +55,7 @@ pub enum SessionError {
     /// The storage failed.
     #[error(transparent)]
     Store(StoreError),
-    /// What is stored cannot be replayed, or a reply not be written: a fault of this program.
+    /// Stored data cannot be replayed, or a reply cannot be written: a fault of this program.
     #[error("{0}")]
     Broken(String),
 }

@@ -1,6 +1,6 @@
 //! Events: every state of a session, in order and without a gap, for each listener.
 //!
-//! A listener pulls: it reads the moves after those that it has seen, a page at a time, and waits where there are no
+//! A listener pulls: it reads the moves after those that it has seen, a page at a time, and waits if there are no
 //! more. So a slow listener costs no more memory than a fast one, and moves that other processes make reach it in the
 //! same way.
 

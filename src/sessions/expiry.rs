@@ -1,4 +1,4 @@
-//! What is done from time to time: idle sessions expire, and old receipts are deleted.
+//! Periodic work: idle sessions expire, and old receipts are deleted.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use jiff::Timestamp;
 
 use super::{SessionError, Sessions};
 
-/// How often at least and at most.
+/// The shortest and the longest period.
 const PERIODS: (Duration, Duration) = (Duration::from_millis(100), Duration::from_secs(60));
 /// An idle session outlives its time by at most this fraction of it, within [`PERIODS`].
 const SHARE: u32 = 10;
@@ -23,7 +23,7 @@ impl Sessions {
         self.common.store.purge_expired(idle_since).await.map_err(SessionError::Store)
     }
 
-    /// Deletes what has expired again and again, and never ends.
+    /// Deletes expired sessions and receipts periodically, and never ends.
     pub async fn run_expiry_loop(self, expire_after: Option<Duration>) {
         let (least, most) = PERIODS;
         let period = expire_after.map_or(most, |idle| (idle / SHARE).clamp(least, most));

@@ -1,4 +1,4 @@
-//! A session as it is worked on: its state, and what it takes of memory.
+//! A loaded session: its state, and the memory that it takes.
 
 use std::sync::Arc;
 
@@ -23,13 +23,13 @@ pub(super) struct LoadedSession {
     pub(super) session: Session,
     pub(super) derived: Arc<Derived>,
     pub(super) contact: Contact,
-    /// The way from the last snapshot.
+    /// The cost of a replay from the last snapshot.
     pub(super) replay_cost: ReplayCost,
     /// Whether other processes have been seen to move it, so that a move is likely to come too late.
     pub(super) shared: bool,
 }
 
-/// What follows from the definition and never changes.
+/// Values that follow from the definition and never change.
 pub(super) struct Derived {
     pub(super) figures: ContactSummary,
     pub(super) warnings: Vec<Warning>,

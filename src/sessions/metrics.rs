@@ -1,4 +1,4 @@
-//! What the sessions count.
+//! Metrics of the sessions.
 
 use prometheus::{Histogram, IntCounter, Opts};
 
@@ -7,7 +7,7 @@ use crate::store::Commits;
 
 use super::Sessions;
 
-/// What happens as it happens.
+/// Metrics that are counted as events happen.
 pub(super) struct SessionMetrics {
     /// Moves that are stored.
     pub(super) moves: IntCounter,
@@ -17,7 +17,7 @@ pub(super) struct SessionMetrics {
 
 impl Default for SessionMetrics {
     fn default() -> SessionMetrics {
-        let help = "Time to bring a contact from the store: its snapshot, and the moves beyond it.";
+        let help = "Time to load a contact from the store: its snapshot, and the moves beyond it.";
         SessionMetrics {
             moves: counter(Opts::new("stickslip_moves_total", "Moves made and stored.")),
             open: histogram(Opts::new("stickslip_contact_open_seconds", help), SECONDS),
@@ -25,7 +25,7 @@ impl Default for SessionMetrics {
     }
 }
 
-/// How the sessions are doing.
+/// The metrics of the sessions.
 pub struct Readings<'a> {
     /// Moves that have been made and stored.
     pub moves: &'a IntCounter,
@@ -46,7 +46,7 @@ pub struct Readings<'a> {
 }
 
 impl Sessions {
-    /// How the sessions are doing.
+    /// The metrics of the sessions.
     #[must_use]
     pub fn readings(&self) -> Readings<'_> {
         let (bytes, cached) = self.common.cache.held();

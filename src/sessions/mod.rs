@@ -1,4 +1,4 @@
-//! Contacts that live: one writer for each, a cache of states, and a replay of the moves where a state is not cached.
+//! Living contacts: one writer for each, a cache of states, and a replay of the moves if a state is not cached.
 //!
 //! Moves of one session queue at its lock in the order of their arrival; sessions do not wait for each other. A move is
 //! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that
@@ -47,7 +47,7 @@ pub use events::STREAMS;
 use loaded::LoadedSession;
 pub use metrics::Readings;
 
-/// How often a change is tried that other processes overtake. Each time, one of them has made progress.
+/// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
@@ -57,7 +57,7 @@ pub struct Sessions {
     common: Arc<Common>,
 }
 
-/// What the handles share.
+/// The state that the handles share.
 struct Common {
     store: Arc<dyn Store>,
     pool: Pool,
@@ -213,7 +213,7 @@ impl Sessions {
     }
 }
 
-/// Bytes that most replies fit in, so that a buffer need not grow step by step.
+/// Bytes that suffice for most replies, so that a buffer need not grow step by step.
 const REPLY: usize = 768;
 
 fn written(reply: &impl serde::Serialize) -> Result<Vec<u8>, SessionError> {

@@ -1,4 +1,4 @@
-//! Looking at sessions. A read changes nothing, and waits for no more than the move under way.
+//! Reading sessions. A read changes nothing, and waits at most for the move under way.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ impl Sessions {
         })
     }
 
-    /// The definition of a session as it came, as JSON, and the memory that it takes.
+    /// The definition of a session as it was sent, as JSON, and the memory that it takes.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
@@ -50,8 +50,8 @@ impl Sessions {
         Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
 
-    /// What `write` makes of the stresses of a session, of its contact and its sequence, in `more` bytes beyond JSON's
-    /// columns at the most and in so much `longer` time; with the sequence, and the memory that it takes.
+    /// The reply that `write` makes of the stresses of a session, with the sequence and the reserved memory. Writing takes
+    /// at most `more` bytes beyond JSON's columns, and `longer` time.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
@@ -96,7 +96,7 @@ impl Sessions {
     /// # Errors
     /// A failure of the store.
     pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
-        // One more than asked for tells whether there is a next page.
+        // One more than requested shows whether there is a next page.
         let mut found =
             self.common.store.list(Some(self.tenant.clone()), after, limit + 1).await.map_err(SessionError::Store)?;
         let more = found.len() > limit;

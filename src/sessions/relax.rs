@@ -17,7 +17,7 @@ pub(super) fn find_protocol(live: &LoadedSession, task: &ProtocolTask, stop: &St
     simulation::protocol(&Subject { contact: &live.contact, definition, first: None, setup: None }, task, stop)
 }
 
-/// The failure of a move that the client has not given itself.
+/// The failure of a move that the client did not send itself.
 pub(super) fn without_step(failure: Failure) -> Failure {
     match failure {
         Failure::Refused { error, .. } => Failure::Refused { pointer: String::new(), error },

@@ -14,7 +14,7 @@ use super::{SessionError, Sessions};
 
 /// Moves that are fetched from the store at a time.
 const PAGE: usize = 10_000;
-/// Pieces of memory that a move leaves, as a guess for a state that is not known yet.
+/// Pieces of slip history that a move leaves, as an estimate for a state that is not loaded yet.
 const PIECES: usize = 4;
 /// Bytes of one piece.
 const PIECE_BYTES: usize = 96;
@@ -140,7 +140,7 @@ impl Sessions {
         }
     }
 
-    /// What a failure of the store means for a client. Where the session is gone, its state goes too.
+    /// Converts a failure of the store. If the session is gone, its cached state is removed too.
     pub(super) fn store_failure(&self, guard: &mut Guard, error: StoreError) -> SessionError {
         if matches!(error, StoreError::NotFound | StoreError::Expired(_)) {
             guard.live = None;
@@ -148,7 +148,7 @@ impl Sessions {
         self.store_error(guard.id(), error)
     }
 
-    /// What a failure of the store means for a client.
+    /// Converts a failure of the store.
     pub(super) fn store_error(&self, id: Uuid, error: StoreError) -> SessionError {
         match error {
             StoreError::Expired(tenant) if tenant == self.tenant => SessionError::Expired(id),

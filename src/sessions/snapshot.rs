@@ -1,6 +1,6 @@
 //! Snapshots: states kept in the store, so that opening a session need not replay all of its moves.
 //!
-//! A snapshot is a cache and never a truth: one that is damaged, or of another version of the engine, is ignored, and
+//! A snapshot is a cache, not a record: one that is damaged, or of another version of the engine, is ignored, and
 //! the session replayed from its beginning. It is due once what it spares a replay outweighs what it costs to write and
 //! read, which bounds both the time to open a session and the bytes written for a move.
 
@@ -16,14 +16,14 @@ use super::{SessionError, Sessions};
 pub(super) const AT_ONCE: usize = 2;
 /// No replay shorter than this is worth a snapshot.
 const LEAST: Duration = Duration::from_millis(20);
-/// What it takes to fetch a move from the store, roughly: 10 000 moves come to [`LEAST`].
+/// Estimated cost of fetching a move from the store: 10 000 moves cost [`LEAST`].
 const FETCH: Duration = Duration::from_micros(2);
-/// What it takes to write and read a byte of a snapshot, roughly.
+/// Estimated cost of writing and reading a byte of a snapshot.
 const BYTE: Duration = Duration::from_nanos(3);
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 4;
 
-/// What a replay from the last snapshot would cost.
+/// The cost of a replay from the last snapshot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ReplayCost {
     moves: u32,
@@ -31,7 +31,7 @@ pub(super) struct ReplayCost {
 }
 
 impl ReplayCost {
-    /// Adds moves that took so long to compute.
+    /// Adds moves and the time that computing them took.
     pub(super) fn add(&mut self, moves: usize, work: Duration) {
         self.moves = self.moves.saturating_add(u32::try_from(moves).unwrap_or(u32::MAX));
         self.work = self.work.saturating_add(work);
@@ -57,7 +57,7 @@ impl Sessions {
         tokio::spawn(async move {
             let _permit = permit;
             let Ok(state) = tokio::task::spawn_blocking(move || with_checksum(&contact)).await else { return };
-            // The session loses nothing by it but time.
+            // The session is unaffected: only the next replay is longer.
             if let Err(error) = store.save_snapshot(id, Snapshot { sequence, state }).await {
                 tracing::warn!(%id, sequence, %error, "a snapshot was not stored");
             }
@@ -100,15 +100,15 @@ fn from_checked(initial: &Contact, bytes: &[u8]) -> Option<Contact> {
     (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| initial.unpack(state))?
 }
 
-/// What a snapshot is worth.
+/// The result of comparing a snapshot with a replay.
 pub(super) enum SnapshotState {
-    /// It is the state, to the last bit.
+    /// It is equal to the state, to the last bit.
     Sound,
     /// Another engine made it; it is never read.
     Foreign,
-    /// It is not what was written; it is never read.
+    /// It is damaged; it is never read.
     Damaged,
-    /// It is another state.
+    /// It holds another state.
     Wrong,
 }
 

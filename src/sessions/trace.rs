@@ -15,15 +15,14 @@ use super::{SessionError, Sessions};
 const PAGE: usize = 10_000;
 /// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
 const POINT: usize = 512;
-/// Bytes of a piece of memory; a move leaves one, as a guess.
+/// Bytes of a piece of slip history; a move is assumed to leave one.
 const PIECE: usize = 96;
-/// Where the number of points is asked for.
+/// JSON pointer to the number of points.
 const POINTS: &str = "/points_per_move";
 
 impl Sessions {
-    /// The loop through earlier moves, with so many points a move; `past` are those moves, and the first follows the
-    /// move
-    /// `after`.
+    /// The loop through the earlier moves `past`, of which the first follows the move `after`, with `points` points per
+    /// move.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], a failure of the store or of the pool, or
@@ -102,7 +101,7 @@ fn trace_move(
     for index in 1..points {
         check()?;
         let part = index as f64 / points as f64;
-        // A target on the way may be one that nobody can ask for, such as a force of 1e-300 N; then there is no point.
+        // An intermediate target may be out of range, such as a force of 1e-300 N; then there is no point.
         if let Some(copy) = &mut copy
             && copy.apply_while(&contact.partial_move(&step, part), record.tolerance, &go_on).is_ok()
         {

@@ -25,12 +25,11 @@ const REPEAT_UNTIL: Duration = Duration::from_millis(5);
 /// The most runs of one solver.
 const MAX_RUNS: usize = 9;
 
-/// Why the reference is one.
+/// Why the reference is exact enough.
 const REASON_EXACT: &str =
     "every move of this path has an exact solution: what is left is rounding, or the points of a table";
 const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
-const REASON_UNREFINED: &str =
-    "the exact solver, held to the tolerance where moves are curved: more would be too much to remember";
+const REASON_UNREFINED: &str = "the exact solver, held to the tolerance where moves are curved: a smaller one would exceed the limit of the slip history";
 
 /// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
 struct Answer {
@@ -40,7 +39,7 @@ struct Answer {
     time: f64,
 }
 
-/// What all solvers are given.
+/// The input of all solvers.
 struct Task<'a> {
     comparison: &'a Comparison,
     protocol: Option<&'a Protocol>,
@@ -51,7 +50,7 @@ struct Task<'a> {
 /// Runs every solver of a comparison.
 ///
 /// # Errors
-/// [`Failure`] if the reference has no answer, or nobody waits for it. A solver that cannot follow the path is refused
+/// [`Failure`] if the reference has no answer, or the client hung up. A solver that cannot follow the path is refused
 /// in its row.
 pub fn compare_solvers(comparison: &Comparison, stop: &Stop) -> Result<AccuracyReply, Failure> {
     let Comparison { setup, plan, tolerance, .. } = comparison;
@@ -71,7 +70,7 @@ pub fn compare_solvers(comparison: &Comparison, stop: &Stop) -> Result<AccuracyR
         (follows(*tolerance), REASON_EXACT)
     } else {
         match follows((REFERENCE_TOLERANCE * tolerance).max(*limits::TOLERANCE.start())) {
-            // More chords leave more to remember.
+            // More chords leave a deeper slip history.
             Err(Failure::MemoryFull { .. }) => (follows(*tolerance), REASON_UNREFINED),
             refined => (refined, REASON_REFINED),
         }

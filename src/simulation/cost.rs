@@ -3,7 +3,7 @@
 //! Passing work to another thread and back costs some 10 to 20 microseconds, and half the throughput of the cheapest
 //! calls. Work below [`INLINE`](crate::admission::INLINE) is therefore done on the thread that serves the connection,
 //! where it delays others by no more than that; everything above goes to the [`Pool`](crate::admission::Pool). The
-//! estimates need only be right to a relative_cost of a few: `cargo bench --bench request` and `--bench growth` show
+//! estimates need only be right to a factor of a few: `cargo bench --bench request` and `--bench growth` show
 //! what they come from.
 
 use crate::admission::Nanoseconds;
@@ -21,11 +21,11 @@ pub const INLINE_BODY: usize = 1024;
 const MOVE_COST: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
 const CURVED_MOVE_COST: u64 = 3_000_000;
-/// The contribution of one piece of memory to the stress at one radius.
+/// The contribution of one piece of the slip history to the stress at one radius.
 const PIECE_COST: u64 = 15;
-/// The same on a sphere, where many radii are done side by side.
+/// The same on a sphere, where many radii are computed by SIMD.
 const SPHERE_PIECE_COST: u64 = 2;
-/// One radius, whatever the memory, and its numbers written as JSON.
+/// One radius, apart from the slip history, and its numbers written as JSON.
 const RADIUS_COST: u64 = 200;
 /// The search for extrema on a shape with knots, at the least.
 const SEARCH_COST: u64 = 1_000_000;
@@ -44,7 +44,7 @@ const ASSUMED_REVERSALS: usize = 100;
 const REVERSAL_BYTES: usize = 1_024;
 /// One trial of a protocol with errors.
 const SAMPLE_BYTES: usize = 16;
-/// One move as it is kept while it is made, and the piece of memory that it leaves.
+/// One move while it is made, and the piece of slip history that it leaves.
 const MOVE_BYTES: usize = 256;
 /// One state in a reply, and as JSON in a text that grows by doubling.
 const STATE_BYTES: usize = 768;
@@ -62,17 +62,17 @@ const SPRING_BYTES: usize = 64;
 const NUMBER_LENGTH: usize = 24;
 /// A state as JSON.
 const STATE_LENGTH: usize = 512;
-/// What surrounds them in a reply.
+/// The rest of a reply.
 const REPLY_LENGTH: usize = 2_048;
 
-/// What the exact solver is to do.
+/// The work for the exact solver.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Work {
     /// Moves.
     pub moves: usize,
     /// How many of them are curved.
     pub curved: usize,
-    /// Pieces of memory before the moves, each of which adds one at the most.
+    /// Pieces of slip history before the moves, each of which adds one at the most.
     pub depth: usize,
     /// Radii at which stresses are asked for after them.
     pub radii: usize,
@@ -81,7 +81,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// What it costs on a shape.
+    /// The cost on a shape.
     #[must_use]
     pub fn cost(&self, profile: &Profile) -> Nanoseconds {
         match profile {
@@ -90,7 +90,7 @@ impl Work {
         }
     }
 
-    /// What it costs if a piece costs `piece` at each radius.
+    /// The cost if a piece costs `piece` at each radius.
     fn with_piece_cost(&self, piece: Nanoseconds) -> Nanoseconds {
         let (moves, radii) = (self.moves as u64, self.radii as u64);
         let pieces = (self.depth + self.moves) as u64 + 1;
@@ -104,20 +104,20 @@ impl Work {
     }
 }
 
-/// What the search for the extrema under a memory of so many pieces costs on a sphere.
+/// The cost, on a sphere, of the search for extrema with a slip history of this many pieces.
 #[must_use]
 pub fn of_search(depth: usize) -> Nanoseconds {
     Work { depth, residual: true, ..Work::default() }.with_piece_cost(SPHERE_PIECE_COST)
 }
 
-/// What it costs to write a table of so many points as JSON.
+/// The cost of writing a table of this many points as JSON.
 #[must_use]
 pub fn writing_table(points: usize) -> Nanoseconds {
     points as u64 * RADIUS_COST
 }
 
-/// What costs so much by the closed forms of a sphere costs this much on another shape; the search for extrema goes
-/// from knot to knot there, and is never cheap.
+/// The cost on another shape of what costs `sphere` by the closed forms of a sphere; the search for extrema goes from
+/// knot to knot there, and is never cheap.
 fn on_profile(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanoseconds {
     let searched = if residual && !matches!(profile, Profile::Sphere(_)) { SEARCH_COST } else { 0 };
     sphere.saturating_mul(relative_cost(profile)).saturating_add(searched)
@@ -139,7 +139,7 @@ pub fn bytes_of_stress(radii: usize) -> usize {
     radii * RADIUS_BYTES
 }
 
-/// Bytes that moves take: themselves, the memory that they leave, and the states after them if they are asked for.
+/// Bytes of moves: themselves, the slip history that they leave, and the states after them if they are requested.
 fn bytes_of_moves(plan: &Plan, steps: Steps) -> usize {
     let shown = if steps == Steps::All { STATE_BYTES } else { 0 };
     plan.length() * (MOVE_BYTES + shown)
@@ -169,7 +169,7 @@ pub fn bytes_of_simulation(simulation: &Simulation) -> usize {
         + springs
 }
 
-/// Bytes of the reply to a simulation, and some more.
+/// Bytes of the reply to a simulation, rounded up.
 #[must_use]
 pub fn length_of_simulation(simulation: &Simulation) -> usize {
     let states = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
@@ -195,7 +195,7 @@ fn reversals(task: &ProtocolTask, sought: usize) -> usize {
     }
 }
 
-/// What it costs to find a protocol from a memory of so many pieces.
+/// The cost of finding a protocol from a slip history of this many pieces.
 #[must_use]
 pub fn of_protocol(profile: &Profile, task: &ProtocolTask, depth: usize) -> Nanoseconds {
     let reversals = reversals(task, ASSUMED_REVERSALS);
@@ -213,7 +213,7 @@ pub fn bytes_of_protocol(task: &ProtocolTask) -> usize {
     (most + 2) * (REVERSAL_BYTES + MOVE_BYTES + STATE_BYTES + RECORD_BYTES) + tried * SAMPLE_BYTES
 }
 
-/// What a simulation costs.
+/// The cost of a simulation.
 #[must_use]
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let moves = simulation.plan.length();
@@ -229,12 +229,12 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     }
 }
 
-/// What so many springs cost that are looked at so many times.
+/// The cost of this many springs, each evaluated this many times.
 fn of_springs(springs: usize, passes: usize) -> Nanoseconds {
     (springs as u64).saturating_mul(passes as u64 * SPRING_COST)
 }
 
-/// What a comparison of solvers costs: each of them once, and the reference.
+/// The cost of a comparison of solvers: each of them once, and the reference.
 #[must_use]
 pub fn of_comparison(comparison: &Comparison) -> Nanoseconds {
     let (plan, radii) = (&comparison.plan, comparison.sampling.length());

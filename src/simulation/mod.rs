@@ -1,6 +1,6 @@
 //! From a checked request to a reply, by way of the mechanics.
 //!
-//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions. They know neither HTTP nor
+//! The same functions serve `stickslip simulate`, `POST /simulate` and the sessions, independent of HTTP and
 //! storage. Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the
 //! work.
 
@@ -32,35 +32,35 @@ use stickslip_wire::{Code, limits};
 
 use crate::admission::Interrupted;
 
-/// Why a run came to no result.
+/// Why a run has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// The mechanics has no answer to the request.
     #[error("{}: {error}", if pointer.is_empty() { "the request" } else { pointer.as_str() })]
     Refused {
-        /// JSON pointer to what it has no answer to.
+        /// JSON pointer to the member that it refuses.
         pointer: String,
         /// Why.
         error: mechanics::Error,
     },
-    /// The contact would have to remember more than is allowed.
-    #[error("the contact would have to remember {depth} pieces of its path: allowed are {}", limits::MEMORY_DEPTH)]
+    /// The slip history would exceed its limit.
+    #[error("the slip history of the contact would have {depth} pieces: allowed are {}", limits::MEMORY_DEPTH)]
     MemoryFull {
         /// JSON pointer to the move that would be too much.
         pointer: String,
-        /// What it would have to remember.
+        /// The pieces that it would have.
         depth: usize,
     },
-    /// The work is more than a server does for one request.
+    /// The work exceeds the time limit of one request.
     #[error("this takes longer than the {} s that are allowed", allowed.as_secs_f64())]
     TooLong {
-        /// JSON pointer to what asks for the work, if it is known.
+        /// JSON pointer to the member that requests the work, if there is one.
         pointer: String,
         /// How long work may take.
         allowed: Duration,
     },
-    /// Nobody is waiting for the result any longer.
-    #[error("stopped, as nobody waits for the result any longer")]
+    /// The client no longer waits for the result.
+    #[error("stopped: the client no longer waits for the result")]
     Stopped,
 }
 
@@ -71,7 +71,7 @@ impl From<Interrupted> for Failure {
 }
 
 impl Failure {
-    /// Work was broken off that `pointer` asks for.
+    /// The failure for interrupted work that the member at `pointer` requested.
     #[must_use]
     pub fn interrupted(interrupted: Interrupted, pointer: &str) -> Failure {
         match interrupted {
@@ -80,7 +80,7 @@ impl Failure {
         }
     }
 
-    /// The code that `POST /simulate` refuses it with.
+    /// The code with which `POST /simulate` refuses it.
     #[must_use]
     pub fn code(&self) -> Code {
         match self {

@@ -26,7 +26,7 @@ pub struct Subject<'a> {
     pub definition: &'a ContactDefinition,
     /// The displacement to begin with, m, of a contact that has never moved; else it begins from the present state.
     pub first: Option<f64>,
-    /// What a contact with another coefficient of friction is made of.
+    /// The definition, from which contacts with another coefficient of friction are made.
     pub setup: Option<&'a Setup>,
 }
 
@@ -35,7 +35,7 @@ impl Subject<'_> {
         self.first.map_or(PathStart::Here, PathStart::Displacement)
     }
 
-    /// A JSON pointer to what the mechanics refuses.
+    /// A JSON pointer to the member that the mechanics refuses.
     fn place(&self, error: &Error) -> &'static str {
         match error {
             Error::OutOfRange { quantity: Quantity::Friction, .. } if self.setup.is_some() => "/contact/friction",
@@ -89,7 +89,7 @@ impl Subject<'_> {
                 low = middle;
             }
         }
-        // More reversals need not leave less on every shape: a few less are looked at as well.
+        // On some shapes fewer reversals leave less stress: check a few smaller numbers too.
         for fewer in (high.saturating_sub(FEWER).max(1)..high).rev().skip(1) {
             let design = self.design(kind, fewer, end, stop)?;
             if design.largest <= largest {
@@ -116,7 +116,7 @@ pub fn protocol_for(
     protocol(&Subject { contact: &contact, definition, first, setup: Some(setup) }, task, stop)
 }
 
-/// How many reversals fewer than those found by halving are looked at.
+/// How many smaller numbers of reversals are checked after bisection.
 const FEWER: usize = 3;
 
 /// The requested protocol, with the stress that it leaves and what the other laws would leave.
@@ -193,7 +193,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         gap: own.gap,
         robustness: own.robustness,
         comparison,
-        accuracy: accuracy(&chosen.contact, timer, "protocols are sought on the exact memory"),
+        accuracy: accuracy(&chosen.contact, timer, "protocols are designed with the exact solver"),
         path: DisplacementPath { displacement: chosen.displacements },
         warnings: warnings_of(subject),
     })
@@ -226,7 +226,7 @@ fn objective(judged: &EvaluationRange) -> String {
              load there"
         ),
         (true, true) => format!(
-            "the largest shear stress between the radii {from:e} m and {to:e} m: further in it is infinite whatever is done, and \
+            "the largest shear stress between the radii {from:e} m and {to:e} m: further in it is infinite for every path, and\
              at the vertical edge unless the path ends with no load there"
         ),
     }
@@ -235,7 +235,7 @@ fn objective(judged: &EvaluationRange) -> String {
 fn gap(design: &Design, bound: Option<f64>) -> Gap {
     let method = match (design.gap.is_some(), design.first_move) {
         (true, _) => {
-            "equal alternating extrema; a study with restarts has found nothing better, and `lower_bound` is proven"
+            "equal alternating extrema; a search with restarts found nothing better, and `lower_bound` is proven"
         }
         (false, FirstMove::Stay) => "the present state has less than any path that was found would leave",
         (false, FirstMove::Partial) => {

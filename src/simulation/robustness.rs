@@ -1,4 +1,4 @@
-//! What remains if a protocol is not followed exactly, in a few numbers.
+//! Statistics of the stress that remains if a protocol is not followed exactly.
 
 use stickslip_mechanics::protocol::{ExecutionErrors, trials};
 use stickslip_mechanics::{Contact, Setup};
@@ -12,7 +12,7 @@ use crate::admission::Stop;
 /// Tries a path, m, with errors; `unit` is that of stress, Pa.
 ///
 /// # Errors
-/// [`Failure`] if the time is up.
+/// [`Failure`] if the time limit is reached.
 pub(super) fn robustness(
     subject: &Subject<'_>,
     asked: &Robustness,

@@ -34,14 +34,16 @@ impl Timer {
 /// Runs a simulation.
 ///
 /// # Errors
-/// [`Failure`] if the mechanics has no answer to it, or nobody waits for one.
+/// [`Failure`] if the mechanics has no answer to it, or the client hung up.
 pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, Failure> {
     let timer = Timer::start();
     match simulation.solver {
         None => {
             let reason = match simulation.plan.curved() {
                 0 => "every move of this path has an exact solution, which is also the cheapest",
-                _ => "the only one that follows moves straight in a force under changing load, to the tolerance",
+                _ => {
+                    "only this solver follows moves that are linear in force while the load changes, within the tolerance"
+                }
             };
             run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, reason, stop)
         }
@@ -55,7 +57,7 @@ pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, F
     }
 }
 
-/// The reply of one solver. It is asked for what the simulation names and for nothing else.
+/// The reply of one solver. Nothing is computed that the simulation does not request.
 pub(super) fn run<S: Solver>(
     mut solver: S,
     simulation: &Simulation,
@@ -68,7 +70,7 @@ pub(super) fn run<S: Solver>(
     let mut largest = figures.contact_radius;
     let all = simulation.steps == Steps::All;
     let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
-    // Gross slip wipes the error of a curved path out, though not that of the states before it.
+    // Gross slip erases the error of a curved path, but not that of the states before it.
     let (curved, mut path_error) = (simulation.plan.curved(), 0.0f64);
     follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
         largest = largest.max(solver.contact_radius());
@@ -91,7 +93,7 @@ pub(super) fn run<S: Solver>(
     let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
-        // The noise is a table's, and a table has no vertical edge.
+        // Only tables have noise, and a table has no vertical edge.
         indentation: figures.indentation.max(simulation.setup.profile.level(largest)),
         noise: simulation.setup.profile.noise(largest),
         excess_error: excess_error(path_error, simulation.tolerance, curved),
@@ -107,7 +109,7 @@ pub(super) fn run<S: Solver>(
     })
 }
 
-/// The exact contact of a definition that stands at `base` in the body.
+/// The exact contact of a definition, which is at the JSON pointer `base` of the body.
 ///
 /// # Errors
 /// [`Failure::Refused`] if the preload cannot be reached.
@@ -116,7 +118,7 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
     Contact::new(setup).map_err(refused)
 }
 
-/// So many springs, as wide as the path needs them.
+/// A foundation of this many springs, as wide as the path needs.
 ///
 /// # Errors
 /// As [`contact()`], for a definition at `/contact`.
@@ -175,10 +177,10 @@ pub fn follow<S: Solver>(
 /// Radii between two checks of the flag.
 const RADII_PER_CHECK: usize = 64;
 
-/// The stresses asked for, and no others.
+/// The requested stresses.
 ///
 /// # Errors
-/// [`Failure::Stopped`] if nobody waits for them.
+/// [`Failure::Stopped`] if the client hung up.
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
     let radius = sampling.radii(solver.state().contact_radius);
     let along = |field: &dyn Fn(f64) -> f64| -> Result<Vec<Option<f64>>, Failure> {
@@ -206,7 +208,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// The extrema of the shear stress.
 ///
 /// # Errors
-/// [`Failure`] if the memory is so deep that the search would exceed the time limit, or nobody waits for it.
+/// [`Failure`] if the slip history is so deep that the search would exceed the time limit, or the client hung up.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     let cost = Duration::from_nanos(cost::of_search(solver.depth()));
     let allowed = stop.time_limit().unwrap_or(LONGEST_WORK);

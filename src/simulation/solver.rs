@@ -8,7 +8,7 @@ pub trait Solver {
     /// Its name in replies.
     const KIND: SolverKind;
 
-    /// The figures of the definition.
+    /// The summary of the definition.
     fn summary(&self) -> ContactSummary;
     /// Displacement of gross slip at the present normal load, m.
     fn gross_slip_displacement(&self) -> f64;
@@ -20,7 +20,7 @@ pub trait Solver {
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error>;
     /// The state after the last move.
     fn state(&self) -> State;
-    /// Pieces held in memory.
+    /// Pieces of the slip history.
     fn depth(&self) -> usize;
     /// Normal pressure at each of the radii (m), Pa.
     fn pressures(&self, radii: &[f64]) -> Vec<f64>;
@@ -30,7 +30,7 @@ pub trait Solver {
     fn slip(&self, radius: f64) -> Option<f64>;
     /// Tangential displacement of the surface at a radius (m), m.
     fn surface_displacement(&self, radius: f64) -> f64;
-    /// The exact contact that the law of equal peaks is asked of.
+    /// The exact contact, from which the law of equal peaks is computed.
     fn exact(&self) -> &Contact;
     /// Contact radius a, m.
     fn contact_radius(&self) -> f64;
@@ -38,7 +38,7 @@ pub trait Solver {
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
     fn accuracy(&self) -> ErrorEstimate;
-    /// What curved moves have left of error in the force, relative to μ F_N.
+    /// Error that curved moves have left in the force, relative to μ F_N.
     fn path_error(&self) -> f64;
 }
 

@@ -27,7 +27,7 @@ struct Calls {
     slips: usize,
     displacements: usize,
     residuals: usize,
-    /// How often the contact was asked for to work out the law of equal peaks.
+    /// How often the law of equal peaks was computed.
     laws: usize,
 }
 

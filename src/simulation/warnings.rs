@@ -6,10 +6,10 @@ use stickslip_wire::Warning;
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
 /// below it.
 const BETA_ROUND_OFF: f64 = 1e-12;
-/// The slope of the body's surface up to which a half-space stands for it; of a parabola, the contact radius over that
-/// of curvature.
+/// The slope of the body's surface up to which the half-space approximation holds; of a parabola, the contact radius
+/// over that of curvature.
 const MAX_SLOPE: f64 = 0.3;
-/// A contact radius (m), and a reduced modulus (Pa) with a curvature radius (m), that metres and pascals rarely give.
+/// Contact radius (m), and reduced modulus (Pa) with curvature radius (m), beyond which the units are probably wrong.
 const HUGE_CONTACT: f64 = 0.1;
 const SOFT: f64 = 1e7;
 const HUGE_CURVATURE: f64 = 1.0;
@@ -17,7 +17,7 @@ const HUGE_CURVATURE: f64 = 1.0;
 /// Noise of g over the indentation beyond which a table is called noisy.
 const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
-/// What a run has shown that may require a warning.
+/// Results of a run that may require a warning.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
     /// The largest contact radius, m.
@@ -77,7 +77,7 @@ pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed)
         warn(
             "slip_direction",
             format!(
-                "with a Poisson's ratio of {nu} the true slip is not quite parallel to the motion, as it is taken to be"
+                "with a Poisson's ratio of {nu} the true slip is not exactly parallel to the motion, as the model assumes"
             ),
         );
     }

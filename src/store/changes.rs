@@ -1,8 +1,7 @@
 //! Waiting for a session to change.
 //!
 //! A wake-up says that something may have happened, not what: a listener that is woken reads the moves after the last
-//! that it has seen.
-//! So wake-ups may be merged or come in vain, and none that matters is lost.
+//! that it has seen. So wake-ups may be merged or spurious, and no change is missed.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -10,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 use uuid::Uuid;
 
-/// Those who wait, by session. The map holds an entry only while somebody waits.
+/// The waiting listeners by session. The map holds an entry only while a listener waits.
 #[derive(Default)]
 pub struct Changes {
     // A std mutex: held for a lookup, never across an await.
@@ -18,7 +17,7 @@ pub struct Changes {
 }
 
 impl Changes {
-    /// Marks each change of a session from now on as one that has not been seen.
+    /// A listener that is woken by each change of a session from now on.
     #[must_use]
     pub fn subscribe(&self, id: Uuid) -> watch::Receiver<()> {
         let mut waiting = self.lock();
@@ -26,14 +25,14 @@ impl Changes {
         waiting.entry(id).or_default().subscribe()
     }
 
-    /// Wakes those who wait for a session.
+    /// Wakes the listeners of a session.
     pub fn wake(&self, id: Uuid) {
         if let Some(sender) = self.lock().get(&id) {
             sender.send_replace(());
         }
     }
 
-    /// Wakes everybody: after a gap in which changes may have gone unnoticed.
+    /// Wakes all listeners: after a gap in which changes may have been missed.
     pub fn wake_all(&self) {
         for sender in self.lock().values() {
             sender.send_replace(());

@@ -9,7 +9,7 @@ use crate::metrics::{SECONDS, SIZES, counter, gauge, histogram};
 /// The changes that a store makes, and the transactions in which it makes them.
 #[derive(Debug)]
 pub struct Commits {
-    /// Changes that somebody waits for.
+    /// Changes whose callers wait.
     pub pending: IntGauge,
     /// How many changes a transaction made.
     pub size: Histogram,
@@ -20,7 +20,7 @@ pub struct Commits {
 }
 
 impl Commits {
-    /// Nothing counted yet, of this kind of store.
+    /// The metrics of this kind of store, all zero.
     #[must_use]
     pub fn new(store: &'static str) -> Commits {
         let named = |name, help| Opts::new(name, help).const_label("store", store);

@@ -20,7 +20,7 @@ pub enum RetryError {
 }
 
 impl<'a> IdempotentRequest<'a> {
-    /// A request of a tenant, with the key that it has, if it has one.
+    /// A request of a tenant, with its idempotency key if it has one.
     #[must_use]
     pub fn new(store: &'a dyn Store, tenant: &Tenant, key: Option<RequestKey>) -> IdempotentRequest<'a> {
         IdempotentRequest { store, key: key.map(|key| key.for_tenant(tenant)) }

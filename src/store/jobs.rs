@@ -1,6 +1,6 @@
-//! Jobs: work that goes on after its request has been answered, in chunks whose results are kept as they come.
+//! Jobs: work that continues after its request has been answered, in chunks whose results are stored as they complete.
 //!
-//! A store knows of a job what was asked for, how many points it has and how many of them go in a chunk. Chunks are
+//! A store has the request of a job, the number of its points, and the number of points of a chunk. Chunks are
 //! claimed by any worker, and a claim ends with its worker. The store does not read the bytes of a result.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,7 +26,7 @@ pub struct Job {
     pub id: Uuid,
     /// Whose it is.
     pub tenant: Tenant,
-    /// When it was asked for.
+    /// When it was requested.
     pub created_at: Timestamp,
     /// When it ended, well or not.
     pub finished_at: Option<Timestamp>,
@@ -53,7 +53,7 @@ impl Job {
         self.points.div_ceil(self.chunk.max(1))
     }
 
-    /// When it goes.
+    /// When it is deleted.
     #[must_use]
     pub fn expires_at(&self) -> Timestamp {
         let (from, time) = match self.finished_at {
@@ -65,7 +65,7 @@ impl Job {
     }
 }
 
-/// What the jobs of a tenant may come to.
+/// The limits of the jobs of a tenant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobLimits {
     /// How many there may be, with those that have ended.
@@ -80,7 +80,7 @@ impl JobLimits {
     /// Whether a tenant with so many jobs, bytes and work to do may have another job.
     pub(super) fn check(&self, jobs: u64, bytes: u64, cost: u64, new: &Job) -> Result<()> {
         if jobs >= self.jobs {
-            return Err(StoreError::TooManyJobs(format!("{jobs} jobs are kept, and no more may be")));
+            return Err(StoreError::TooManyJobs(format!("{jobs} jobs are stored, which is the limit")));
         }
         if bytes.saturating_add(new.bytes) > self.bytes {
             return Err(StoreError::TooManyJobs(format!("the results of all jobs may take {} bytes", self.bytes)));
@@ -93,18 +93,18 @@ impl JobLimits {
     }
 }
 
-/// A chunk of a job that somebody works on.
+/// A chunk of a job that a worker has claimed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Claim {
     /// The job.
     pub job: Uuid,
     /// The number of the chunk, from 0.
     pub chunk: u64,
-    /// Who works on it: one process, by a name that it has made up.
+    /// The process that works on it, by its random name.
     pub owner: Uuid,
 }
 
-/// What came of a chunk.
+/// The result of a chunk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChunkResult {
     /// How many points it has.
@@ -115,7 +115,7 @@ pub struct ChunkResult {
     pub content: Vec<u8>,
 }
 
-/// Storage of jobs. As with sessions, the callers keep tenants apart.
+/// Storage of jobs. As with sessions, the callers separate tenants.
 #[async_trait]
 pub trait JobStore: Send + Sync + 'static {
     /// Stores a new job with its request, and the receipt with it, if the limits of its tenant allow another job.
@@ -127,7 +127,7 @@ pub trait JobStore: Send + Sync + 'static {
     /// The request that the job was made of.
     async fn job_request(&self, id: Uuid) -> Result<String>;
 
-    /// Claims a chunk that nobody works on, of the first job with an identifier greater than `after` that has one, or
+    /// Claims a chunk that is not claimed, of the first job with an identifier greater than `after` that has one, or
     /// else of the first of all. Where many processes share the storage the claim ends after `lease`, unless it is
     /// renewed.
     async fn claim(&self, owner: Uuid, after: Option<Uuid>, lease: Duration) -> Result<Option<Claim>>;
@@ -135,7 +135,7 @@ pub trait JobStore: Send + Sync + 'static {
     /// Extends a claim by another `lease`; returns whether it still held.
     async fn renew(&self, claim: Claim, lease: Duration) -> Result<bool>;
 
-    /// Gives a chunk back.
+    /// Releases a chunk.
     async fn release(&self, claim: Claim) -> Result<()>;
 
     /// Stores the result of a chunk. If two workers compute the same chunk the first result counts. With its last chunk
@@ -167,7 +167,7 @@ struct OpenJob {
 }
 
 impl ChunkQueue {
-    /// Puts up a job with the chunks that are to be done.
+    /// Adds a job with its unfinished chunks.
     pub(super) fn add_job(&self, id: Uuid, waiting: impl Iterator<Item = u64>) {
         self.lock().insert(id, OpenJob { waiting: waiting.collect(), claimed: BTreeSet::new() });
     }
@@ -184,12 +184,12 @@ impl ChunkQueue {
         Some(Claim { job, chunk, owner })
     }
 
-    /// Whether a claim still is one.
+    /// Whether a claim is still valid.
     pub(super) fn is_claimed(&self, claim: Claim) -> bool {
         self.lock().get(&claim.job).is_some_and(|job| job.claimed.contains(&claim.chunk))
     }
 
-    /// Gives a chunk back.
+    /// Releases a chunk.
     pub(super) fn release(&self, claim: Claim) {
         if let Some(job) = self.lock().get_mut(&claim.job)
             && job.claimed.remove(&claim.chunk)
@@ -198,7 +198,7 @@ impl ChunkQueue {
         }
     }
 
-    /// Takes down a chunk that is done.
+    /// Removes a chunk that is done.
     pub(super) fn finish(&self, claim: Claim) {
         let mut open = self.lock();
         if let Some(job) = open.get_mut(&claim.job) {
@@ -209,7 +209,7 @@ impl ChunkQueue {
         }
     }
 
-    /// Takes down a job.
+    /// Removes a job.
     pub(super) fn remove_job(&self, id: Uuid) {
         self.lock().remove(&id);
     }

@@ -10,10 +10,10 @@ use stickslip_wire::EndReason;
 
 use super::Changes;
 
-/// How long a listener waits that no change wakes.
+/// How long a listener waits at most before it reads again.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// What a listener is told.
+/// What a listener receives.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StreamEvent<T> {
     /// The state, now that it has changed.
@@ -33,7 +33,7 @@ pub struct Listeners {
 pub struct Listener {
     changed: watch::Receiver<()>,
     ending: watch::Receiver<bool>,
-    // Gives the place back when the listener goes, in whatever way.
+    // Frees the place when the listener is dropped.
     _place: OwnedSemaphorePermit,
 }
 

@@ -1,6 +1,6 @@
-//! What must survive: definitions, the moves made since, and the replies that retries get again.
+//! Stores: definitions of contacts, their moves, and the replies that retries get again.
 //!
-//! Definitions and moves go in and the same come out; a store knows no physics. Every call is atomic, and what it has
+//! A store returns definitions and moves as they were saved, and contains no physics. Every call is atomic, and what it has
 //! acknowledged is as durable as the store is. [`memory`] keeps all of it in the process and forgets it at the end;
 //! [`sqlite`] keeps it in a file, and [`postgres`] in a database that many processes share. [`open()`] chooses by
 //! the URL.
@@ -62,13 +62,13 @@ impl Tenant {
 pub struct Session {
     /// Its identifier; time-ordered, so that the order of identifiers is that of creation.
     pub id: Uuid,
-    /// Whose it is, for ever.
+    /// Its tenant, which never changes.
     pub tenant: Tenant,
     /// Its label.
     pub label: Option<String>,
     /// The contact as it was defined.
     pub definition: Arc<ContactDefinition>,
-    /// How many moves it has behind it.
+    /// The number of its moves.
     pub sequence: u64,
     /// When it was made.
     pub created_at: Timestamp,
@@ -76,7 +76,7 @@ pub struct Session {
     pub updated_at: Timestamp,
 }
 
-/// A move as it is stored, with what came of it.
+/// A move as it is stored, with the state after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
     /// Its number, counted from 1 without a gap.
@@ -131,7 +131,7 @@ pub struct Receipt {
     pub reply: Reply,
 }
 
-/// A packed state for a replay to begin at: a cache of what the moves say, and never a truth of its own.
+/// A packed state for a replay to begin at: a cache that can always be rebuilt from the moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snapshot {
     /// The move that it was taken after.
@@ -140,7 +140,7 @@ pub struct Snapshot {
     pub state: Vec<u8>,
 }
 
-/// Why a store did not do what it was asked for. Nothing has changed then, except perhaps after
+/// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -173,11 +173,11 @@ pub enum StoreError {
     Failed(String),
 }
 
-/// What a call to a store comes to.
+/// The result of a call to a store.
 pub type Result<T, E = StoreError> = std::result::Result<T, E>;
 
-/// Storage of contacts. It says whose a contact is and leaves it to its callers to keep tenants apart: any identifier
-/// is accepted here.
+/// Storage of contacts. It returns the tenant of a contact and leaves access control to its callers: any identifier is
+/// accepted here.
 #[async_trait]
 pub trait Store: JobStore {
     /// Whether it can serve.
@@ -227,7 +227,7 @@ pub trait Store: JobStore {
     /// Wakes those who wait for changes, whichever process on the same storage makes them.
     fn changes(&self) -> &Changes;
 
-    /// What it has committed; none if it has nothing to commit.
+    /// Metrics of its transactions; none if it has no transactions.
     fn commits(&self) -> Option<&Commits> {
         None
     }

@@ -11,7 +11,7 @@ use super::{MemoryStore, PostgresStore, SqliteStore, Store};
 pub struct OpenError {
     /// Which one; never with a password.
     pub store: String,
-    /// What is wrong with it.
+    /// The reason.
     pub why: String,
 }
 
@@ -27,7 +27,7 @@ impl OpenError {
         OpenError { store: store.into(), why: why.into() }
     }
 
-    /// Of a URL that may hold a password, or be meant to.
+    /// An error about a URL that may hold a password, which is therefore not shown.
     fn of(url: &str, why: impl Into<String>) -> OpenError {
         let (kind, _) = url.split_once(':').unwrap_or((url, ""));
         OpenError::new(format!("{kind}:"), why)
@@ -39,7 +39,7 @@ fn kind(url: &str) -> Result<Kind<'_>, OpenError> {
         return Ok(Kind::Memory);
     }
     if let Some(path) = url.strip_prefix("sqlite:") {
-        // As URLs go: two slashes stand before a host, and there is none.
+        // In a URL two slashes come before a host, and a file has none.
         let path = path.strip_prefix("//").unwrap_or(path);
         if path.is_empty() || path == ":memory:" {
             return Err(OpenError::new(url, "expected the path of a file after sqlite:"));
@@ -76,13 +76,13 @@ pub async fn open(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     }
 }
 
-/// Opens a store to look at and no more, beside those who work with it. Nothing is made, or brought up to date.
+/// Opens a store for reading, while other processes may use it. Nothing is created or migrated.
 ///
 /// # Errors
 /// [`OpenError`] if the URL names no store, or one that cannot be read.
 pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     match kind(url)? {
-        Kind::Memory => Err(OpenError::new(url, "it is in the memory of the process that serves it, and nowhere else")),
+        Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),
         Kind::Sqlite(path) => Ok(Arc::new(SqliteStore::open_to_read(path).map_err(|why| OpenError::new(url, why))?)),
         Kind::Postgres => {
             let store = PostgresStore::open_to_read(url).await;
@@ -97,7 +97,7 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
 /// [`OpenError`] if the store is none that is kept in a file, or why there is no copy.
 pub fn backup(url: &str, copy: &Path) -> Result<u64, OpenError> {
     match kind(url)? {
-        Kind::Memory => Err(OpenError::new(url, "it is in the memory of the process that serves it, and nowhere else")),
+        Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),
         Kind::Sqlite(path) => SqliteStore::backup(path, copy).map_err(|why| OpenError::new(url, why)),
         Kind::Postgres => {
             Err(OpenError::of(url, "a database is backed up by its own means: pg_dump --format=custom --file=FILE URL"))

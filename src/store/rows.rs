@@ -1,4 +1,4 @@
-//! Rows of the databases as values. In which order the columns of a value are selected is said here, for all databases.
+//! Rows of the databases as values. The order of the columns of a value is defined here, for all databases.
 
 use std::error::Error;
 use std::sync::Arc;

@@ -9,15 +9,15 @@ use std::cmp::Ordering;
 /// Why tables of a version cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VersionError {
-    /// A later version of this program has been here.
-    #[error("it has schema version {found}, and this program knows versions up to {known}: start the newer program")]
+    /// A later version of this program has migrated the store.
+    #[error("it has schema version {found}, and this program supports versions up to {known}: start the newer program")]
     Newer {
         /// The version of the tables.
         found: i32,
-        /// The newest version that this program knows.
+        /// The newest version that this program supports.
         known: i32,
     },
-    /// An earlier version has been here, and this program may not change anything.
+    /// An earlier version has made the store, which is open for reading only.
     #[error("it has schema version {found}: `stickslip serve` migrates it to version {known}")]
     Older {
         /// The version of the tables.
@@ -27,10 +27,10 @@ pub enum VersionError {
     },
 }
 
-/// The migrations that tables of a version have not seen, each with the version that it leads to.
+/// The migrations that are still to be applied to tables of a version, each with the version that it leads to.
 ///
 /// # Errors
-/// [`VersionError::Newer`] if they have seen more than there are.
+/// [`VersionError::Newer`] if the version is later than all migrations.
 pub(super) fn pending<'a>(
     found: i32,
     migrations: &'a [&'a str],
@@ -41,7 +41,7 @@ pub(super) fn pending<'a>(
     }
 }
 
-/// Whether tables of a version have seen exactly these migrations.
+/// Whether tables are at the version of the last of these migrations.
 pub(super) fn check(found: i32, migrations: &[&str]) -> Result<(), VersionError> {
     let known = newest(migrations);
     match found.cmp(&known) {

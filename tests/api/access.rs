@@ -1,4 +1,4 @@
-//! Who may do what: every role at every endpoint, and what one tenant sees of another.
+//! Access control: every role at every endpoint, and what one tenant sees of another.
 
 use crate::common;
 
@@ -14,7 +14,7 @@ use stickslip_wire::client::Options;
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
 
-/// Every endpoint: what it takes, how it answers who may use it, and the roles that may; none listed is everybody.
+/// Every endpoint: a request, the status for a permitted key, and the permitted roles; an empty list means all clients.
 const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/accuracy", "simulation", 200, &["read", "write"]),
     ("POST", "/sweep", "sweep", 200, &["write"]),
@@ -118,7 +118,7 @@ impl Guarded {
 }
 
 impl Guarded {
-    /// The identifier of something new that a route is about.
+    /// The identifier of a new contact or job for a route.
     async fn subject(&self, route: &str) -> String {
         if route.starts_with("/jobs") { self.job("write").await } else { self.contact("write").await.to_string() }
     }
@@ -195,7 +195,7 @@ async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
         }
     }
     assert!(tried >= 5 * 16);
-    // What nobody has thought of is for the highest role.
+    // An unlisted route requires the highest role.
     for (method, path) in [("GET", "/nothing"), ("PUT", "/contacts"), ("GET", "/contacts/"), ("GET", "//contacts")] {
         for (who, expected) in [(None, vec![401]), (Some("read"), vec![403]), (Some("write"), vec![404, 405])] {
             let status = server.send(who, method, path, None, &[]).await.status().as_u16();
@@ -310,7 +310,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
                 assert!(matches!(theirs.0, 404 | 422), "{who} {method} {route} {body:?} {headers:?}: {theirs:?}");
             }
             assert!(client(who).contacts(None, None).await.unwrap().items.iter().all(|item| item.id != id));
-            // The key of a request is the tenant's own: nothing is owed for that of another.
+            // Idempotency keys are separate for each tenant.
             let retry = client(who).apply(id, &stickslip_wire::Move::displacement(1e-8).into(), &options).await;
             assert_eq!(retry.unwrap_err().problem().unwrap().status, 404);
         }
@@ -325,7 +325,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
         assert_eq!(made.len(), 3);
         let listed = client("reader").contacts(None, None).await.unwrap().items;
         assert_eq!(listed.iter().filter(|item| made.contains(&item.id)).count(), 1);
-        // A fork stays in the family.
+        // A fork belongs to the tenant of its original.
         let fork = client("north").fork(id, &Default::default(), &Options::default()).await.unwrap().id;
         client("reader").contact(fork).await.unwrap();
         assert_eq!(client("south").contact(fork).await.unwrap_err().problem().unwrap().status, 404);
@@ -334,7 +334,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
     without_keys_the_nameless_tenant_is_served(&file).await;
 }
 
-/// A server without keys shows what belongs to nobody, and nothing else.
+/// A server without keys shows the contacts of the tenant without a name, and no others.
 async fn without_keys_the_nameless_tenant_is_served(file: &str) {
     let log = PathBuf::from(format!("{file}.log"));
     let open = Process::start_with(&["--store", &format!("sqlite:{file}")], Path::new(&log)).await;

@@ -1,4 +1,4 @@
-//! `POST /accuracy`: its rows against sums of one's own, against `/simulate`, and what it refuses.
+//! `POST /accuracy`: its rows against independent sums and against `/simulate`, and what it refuses.
 
 use crate::common;
 
@@ -56,7 +56,7 @@ async fn rows_of_springs_are_off_by_what_their_midpoint_sums_are() {
         let found = row.force_error.unwrap();
         assert!((found - expected).abs() < 1e-12 && found > 1e-8, "{count}: {found:e}, {expected:e}");
         assert!(row.compute_time > 0.0 && row.refused.is_none());
-        // What springs say of themselves without a reference is to hold.
+        // The springs' own error estimates must hold.
         assert!(row.estimated_force_error.unwrap() >= found, "{count}");
     }
 }
@@ -113,7 +113,7 @@ async fn the_rows_are_what_simulations_with_each_solver_differ_by() {
         assert_eq!(row.estimated_force_error, accuracy["force_error"].as_f64(), "{solver}");
         assert_eq!(row.estimated_stress_error, accuracy["stress_error"].as_f64(), "{solver}");
     }
-    // Most of it is kept nowhere, and so is this.
+    // Like a simulation, a comparison is not stored.
     assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
 }
 
@@ -151,7 +151,7 @@ async fn who_cannot_follow_the_path_says_so_in_its_row() {
     let refused = row.refused.as_ref().unwrap();
     assert_eq!(refused.pointer, "/path/moves/1");
     assert!(refused.detail.contains("springs follow a normal force only"), "{}", refused.detail);
-    // Whom the reference cannot follow nobody is asked to.
+    // No solver runs on a path that the reference cannot follow.
     let beyond = json!({"contact": parabola(), "path": {"force": [0.1, 2.0 * limit]}});
     let refusal = problem(server.post("/accuracy", &beyond).await).await;
     assert_eq!(

@@ -67,7 +67,7 @@ async fn each_format_decodes_to_the_bytes_that_it_has_without_a_coding() {
             assert!(packed.len() < plain.len(), "{format} {coding}: {} {}", packed.len(), plain.len());
             assert_eq!(decoded(coding, &packed), plain, "{format} {coding}");
         }
-        // What a client likes better is taken, and nothing that it refuses.
+        // The coding that a client prefers is used, and none that it refuses.
         let response = get(&server, &path, &[("accept-encoding", "gzip;q=0.5, zstd;q=0.2, br")]).await;
         assert_eq!(header(&response, "content-encoding"), Some("gzip"));
         for refusal in ["identity", "br", "gzip;q=0", "*;q=0"] {
@@ -134,7 +134,7 @@ async fn a_tag_is_taken_as_the_client_got_it() {
         assert_eq!((moved.status().as_u16(), header(&moved, "content-encoding")), (200, Some(coding)));
         let next = header(&moved, "etag").unwrap().to_owned();
         assert!(next != tag && next.ends_with(&format!("+{coding}\"")), "{next}");
-        // The state that the first tag stood for is gone.
+        // The first tag is of an earlier state.
         assert_eq!(moving(&tag).await.status(), 412);
         assert_eq!(moving(&next).await.status(), 200);
         let response = get(&server, &path, &[accept, ("if-none-match", &tag)]).await;
@@ -188,7 +188,7 @@ async fn an_encoder_counts_as_memory_until_its_reply_is_sent() {
         };
         tokio::time::timeout(Duration::from_secs(60), free)
             .await
-            .unwrap_or_else(|_| panic!("{held} are held for good"));
+            .unwrap_or_else(|_| panic!("{held} are never released"));
     }
     // Without memory for an encoder the reply goes as it is.
     let all = pool.reserve(pool.capacity().bytes / 2).await.unwrap();

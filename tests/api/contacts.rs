@@ -167,7 +167,7 @@ async fn a_retry_gets_the_first_reply_again() {
     assert_eq!(shown["sequence"], 3);
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 3);
 
-    // The retry is owed its reply even when the contact is gone.
+    // The retry gets its reply even when the contact is deleted.
     server.send(Method::DELETE, &contact, None, &[]).await;
     let late =
         server.send(Method::POST, &moved, Some(r#"{"displacement": 1e-7}"#), &[("idempotency-key", "two")]).await;
@@ -218,7 +218,7 @@ async fn a_client_that_hangs_up_leaves_a_sound_contact() {
     assert_eq!((history.items[0].state, history.next), (moved.state, None));
 }
 
-/// If the solver finished what nobody waits for, the calls together would take far longer than any test waits.
+/// If the solver finished work of clients that hung up, the calls together would take far longer than any test waits.
 #[tokio::test]
 async fn a_client_that_hangs_up_frees_the_solver() {
     let hour = Duration::from_secs(3_600);

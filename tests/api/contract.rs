@@ -160,7 +160,7 @@ async fn headers_say_where_and_which() {
     assert!(docs.status().is_success() && docs.text().await.unwrap().contains("swagger"));
 }
 
-/// The real binary: it starts, says where it listens, and stops when it is told to, although a connection is open.
+/// The real binary: it starts, prints its address, and stops at a signal, although a connection is open.
 #[tokio::test]
 async fn the_binary_starts_and_stops_gracefully() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))

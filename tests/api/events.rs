@@ -1,4 +1,4 @@
-//! Live events: each new state once, in order, without a gap, to everybody who listens, until there are no more.
+//! Live events: each new state once, in order, without a gap, to every listener, until there are no more.
 
 use crate::common;
 
@@ -42,7 +42,7 @@ fn path(moves: usize) -> PathRequest {
     PathRequest { path: Path::Displacement(displacement), stress: None, steps: Steps::Last, tolerance: None }
 }
 
-/// What the history says of the moves beyond `after`.
+/// The moves beyond `after` by the history.
 async fn past(client: &Client, id: Uuid, after: u64) -> Vec<StateEvent> {
     let (mut all, mut after) = (Vec::new(), Some(after));
     while after.is_some() {
@@ -84,7 +84,7 @@ async fn everybody_sees_the_same_moves_in_order_after_the_present_state() {
             assert_eq!(&next_state(events).await, state);
         }
     }
-    // Whoever comes now sees the last state first.
+    // A new listener gets the last state first.
     let mut late = listen(client, id, None).await;
     assert_eq!(&next_state(&mut late).await, &expected[39]);
     client.apply(id, &Move::displacement(0.0).into(), &options).await.unwrap();

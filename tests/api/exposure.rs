@@ -1,4 +1,4 @@
-//! What a service shows to the world: where it listens, what browsers may do with it, and that it keeps its secrets.
+//! The exposure of a service: where it listens, what browsers may do with it, and that it keeps its secrets.
 
 use crate::common;
 
@@ -18,7 +18,7 @@ fn binary(arguments: &[&str]) -> Command {
     command
 }
 
-/// The one line with which it ends, having served nobody.
+/// The one line with which it ends at start.
 fn refused(command: &mut Command) -> String {
     let output = ended(command);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -28,7 +28,7 @@ fn refused(command: &mut Command) -> String {
 }
 
 #[tokio::test]
-async fn without_keys_nobody_else_is_listened_to_unless_that_is_wanted() {
+async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
     let folder = tempdir().unwrap();
     let log = folder.path().join("log");
     let settings = folder.path().join("settings.toml");
@@ -41,7 +41,7 @@ async fn without_keys_nobody_else_is_listened_to_unless_that_is_wanted() {
     }
     refused(&mut binary(&["--config", settings.to_str().unwrap()]));
     refused(&mut binary(&["--config", settings.to_str().unwrap(), "--insecure=false"]));
-    // Keys that are not there are no reason to open up.
+    // Without any keys it does not start.
     let empty = folder.path().join("empty");
     std::fs::write(&empty, "# nobody yet\n").unwrap();
     for keys in ["", empty.to_str().unwrap(), "/nowhere", "a:read::sha256:00"] {
@@ -112,7 +112,7 @@ async fn every_reply_says_what_browsers_must_not_do_with_it() {
         assert_eq!(header(headers, "x-frame-options"), Some("DENY"), "{path}");
         assert_eq!(header(headers, "referrer-policy"), Some("no-referrer"), "{path}");
         assert_eq!(header(headers, "cross-origin-resource-policy"), Some("same-origin"), "{path}");
-        // What is of a page may be kept; our own page is asked about each time, so that no old file meets a new one.
+        // The API docs may be cached; the web page is revalidated each time, so that no old file is used with a new one.
         let own = status == 200 && (path == "/" || path.starts_with("/page/"));
         let kept = if own { Some("no-cache") } else { (!page).then_some("no-store") };
         assert_eq!(header(headers, "cache-control"), kept, "{path}");
@@ -121,10 +121,10 @@ async fn every_reply_says_what_browsers_must_not_do_with_it() {
         assert_eq!(policy.contains("script-src 'self';"), page, "{path}");
         assert!(!policy.contains("unsafe-eval") && !policy.contains("script-src 'self' 'unsafe-inline'"));
         assert!(!own || !policy.contains("unsafe"), "{policy}");
-        // No origin is let in that nobody has named.
+        // Only configured origins are allowed.
         assert!(headers.keys().all(|name| !name.as_str().starts_with("access-control")), "{path}");
     }
-    // The pages need no more than their policies allow: no script stands in them.
+    // The pages need no more than their policies allow: they have no inline scripts.
     for (path, source) in [("/docs/", "src=\"./"), ("/", "type=\"module\" src=\"page/")] {
         let page = http.get(format!("{}{path}", server.base)).send().await.unwrap().text().await.unwrap();
         for script in page.split("<script").skip(1) {
@@ -213,7 +213,7 @@ fn hash_of(entry: &str) -> &str {
 async fn no_secret_is_ever_logged_or_printed() {
     let folder = tempdir().unwrap();
     let cluster = common::postgres::Cluster::shared();
-    // The database trusts everybody, so that the password is sent for nothing.
+    // The database trusts every client, so that the password is not checked.
     let url = cluster.database().await.replace("stickslip@", "stickslip:pass-word-7@");
     let good = new_key("good", &[Role::Write, Role::Metrics], "lab").unwrap();
     let weak = new_key("weak", &[Role::Read], "lab").unwrap();
@@ -262,7 +262,7 @@ async fn no_secret_is_ever_logged_or_printed() {
         }
         server.stop().await;
         let said = std::fs::read_to_string(&log).unwrap();
-        // It did talk: of requests, and of what the libraries below have to tell.
+        // The log is not empty: it has requests, and lines of the libraries.
         assert!(said.contains("TRACE") && said.contains("tokio_postgres") && said.contains("a key was accepted"));
         holds_none(&said, &secrets, &log.to_string_lossy());
     }
@@ -286,7 +286,7 @@ async fn no_secret_is_ever_logged_or_printed() {
         );
         holds_none(&printed, &secrets, "config");
     }
-    // What is said of settings that are wrong.
+    // The messages about invalid settings.
     let wrong = |name: &str, text: String| {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();

@@ -29,7 +29,7 @@ fn header<'a>(response: &'a Response, name: &str) -> &'a str {
     response.headers()[name].to_str().unwrap()
 }
 
-/// What a number or a text is in CSV.
+/// A number or a text in CSV.
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
@@ -79,7 +79,7 @@ async fn hold(server: &Server, path: &str, names: &[&str], rows: &[Vec<Value>]) 
     assert_eq!(found, rows);
 }
 
-/// A value as JSON has it.
+/// A value as in JSON.
 fn arrow_value(column: &arrow_array::ArrayRef, row: usize) -> Value {
     use arrow_schema::{DataType, TimeUnit};
     if column.is_null(row) {
@@ -198,7 +198,7 @@ async fn a_client_with_the_current_version_gets_304_until_the_contact_moves() {
     for path in paths {
         let path = format!("{contact}{path}");
         let first = server.get(&path).await;
-        // A browser keeps it, and asks whether it is still so.
+        // A browser caches it, and revalidates it.
         assert_eq!(header(&first, "cache-control"), "private, no-cache", "{path}");
         let tag = header(&first, "etag").to_owned();
         for known in [tag.clone(), format!("W/{tag}"), format!("\"other\", {tag}"), "*".to_owned()] {
@@ -240,9 +240,9 @@ async fn the_loop_between_recorded_states_is_that_of_masing() {
     let contact = format!("/contacts/{}", made["id"].as_str().unwrap());
     let unit = made["contact"]["gross_slip_displacement"].as_f64().unwrap();
     let limit = made["contact"]["gross_slip_force"].as_f64().unwrap();
-    // Each turn lies within the one before, so that nothing is wiped out.
+    // Each turning point is within the one before, so that nothing is wiped out.
     let turns = [0.8, -0.6, 0.5, 0.0];
-    // By displacement, by increment, by force at constant load: the way is the same.
+    // By displacement, by increment, by force at constant load: the path is the same.
     let moves = json!({"path": {"moves": [
         {"displacement": turns[0] * unit},
         {"displacement": (turns[1] - turns[0]) * unit, "relative": true},
@@ -273,13 +273,13 @@ async fn the_loop_between_recorded_states_is_that_of_masing() {
             let way = start + part * (turns[moved] - start);
             assert!((u / unit - way).abs() < 1e-12, "{index}: {} {way}", u / unit);
         } else {
-            // The force is what goes straight.
+            // The force changes linearly.
             let start = masing(&turns[..1], turns[1]);
             let way = start + part * (masing(&turns[..2], turns[2]) - start);
             assert!((f / limit - way).abs() < 1e-12, "{index}: {} {way}", f / limit);
         }
     }
-    // The ends are the recorded states, to the bit, and looking has changed nothing.
+    // The ends are the recorded states, to the bit, and reading has changed nothing.
     let plain: Value = server.get(&format!("{contact}/loop")).await.json().await.unwrap();
     let history: Value = server.get(&format!("{contact}/history")).await.json().await.unwrap();
     for (index, item) in history["items"].as_array().unwrap().iter().enumerate() {
@@ -326,7 +326,7 @@ async fn the_loop_between_recorded_states_is_that_of_masing() {
 async fn a_loop_follows_moves_that_are_straight_in_two_forces() {
     let server = Server::start().await;
     let contact = format!("/contacts/{}", server.contact().await);
-    // Curved moves are the dearest there are.
+    // Curved moves cost most.
     let there = json!({"force": 1.0, "normal_force": 20.0});
     let back = json!({"force": -1.0, "normal_force": 5.0});
     let moves: Vec<&Value> = (0..40).map(|index| if index % 2 == 0 { &there } else { &back }).collect();

@@ -1,7 +1,7 @@
 //! Random bodies of `POST /simulate`: each is answered with a reply that obeys the laws, or refused with the place of the
 //! fault. None panics.
 //!
-//! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` asks for
+//! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` sets
 //! another number of each kind, `STICKSLIP_FUZZ_SEED` for other cases. `fuzz/` runs the same checks under a coverage-guided
 //! fuzzer.
 
@@ -51,7 +51,7 @@ fn watch(running: Running) {
     });
 }
 
-/// Runs so many cases, and shrinks the first that breaks a law.
+/// Runs this many cases, and shrinks the first that breaks a law.
 fn fuzz<S: Strategy>(usual: u64, strategy: S, write: impl Fn(&S::Value) -> Vec<u8>) {
     let running: Running = Arc::default();
     watch(Arc::clone(&running));

@@ -1,4 +1,4 @@
-//! The log: one JSON object a line, with what an engineer needs to follow a request from a complaint to its cause.
+//! The log: one JSON object a line, with what an operator needs to find the cause of a failed request.
 
 use crate::common;
 
@@ -13,8 +13,8 @@ use stickslip_wire::client::Options;
 
 /// Ends the server as an operator would, and returns its log.
 fn end(mut server: Binary) -> Vec<Value> {
-    let told = Command::new("kill").args(["-TERM", &server.child.id().to_string()]).status().unwrap();
-    assert!(told.success() && server.child.wait().unwrap().success());
+    let sent = Command::new("kill").args(["-TERM", &server.child.id().to_string()]).status().unwrap();
+    assert!(sent.success() && server.child.wait().unwrap().success());
     let mut log = String::new();
     server.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();
     log.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("not JSON: {line}"))).collect()

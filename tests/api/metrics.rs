@@ -18,7 +18,7 @@ use stickslip::store::{MemoryStore, SqliteStore};
 /// How long a test waits for what should take a second.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// What a Prometheus has read of one server.
+/// The samples that Prometheus has read from one server.
 struct Readings {
     prometheus: Prometheus,
     http: reqwest::Client,
@@ -57,7 +57,7 @@ impl Readings {
         whole(self.value(query).await)
     }
 
-    /// The samples of a query by some of their labels, without the noughts.
+    /// The samples of a query by some of their labels, without zeros.
     async fn table<const N: usize>(&self, query: &str, labels: [&str; N]) -> BTreeMap<[String; N], u64> {
         let key = |labels_of: &Value| labels.map(|label| labels_of[label].as_str().unwrap().to_owned());
         let found = self.query(query).await;
@@ -102,7 +102,7 @@ impl Counting<'_> {
             assert_eq!(response.status().as_u16(), expected, "{path}");
             response.bytes().await.unwrap();
         }
-        // A method that is none of HTTP's goes by one name, so that clients cannot make up labels.
+        // All methods outside HTTP share one label, so that clients cannot make up labels.
         let method = if method == "BREW" { "other" } else { method };
         *self.sent.entry([route, method, &expected.to_string()].map(str::to_owned)).or_default() += times;
     }
@@ -153,7 +153,7 @@ async fn prometheus_reads_what_a_client_counted() {
 
     for (query, expected) in [
         ("stickslip_moves_total", 11 + 4 * 5),
-        // Moves, refused ones too, paths, looks, and the deletion.
+        // Moves, refused ones too, paths, reads, and the deletion.
         ("stickslip_cache_hits_total", 11 + 2 + 4 + 3 + 1),
         ("stickslip_cache_misses_total", 0),
         ("stickslip_cache_contacts", 2),
@@ -241,7 +241,7 @@ async fn clients_that_listen_and_clients_that_leave_are_counted() {
             tokio::time::sleep(Duration::from_millis(20)).await;
         }
     };
-    tokio::time::timeout(PATIENCE, noticed).await.expect("nobody noticed");
+    tokio::time::timeout(PATIENCE, noticed).await.expect("the change was not observed");
 }
 
 #[tokio::test]

@@ -1,4 +1,4 @@
-//! The OpenAPI document: committed, complete, and its examples work as they stand.
+//! The OpenAPI document: committed, complete, and its examples work unchanged.
 
 use crate::common;
 
@@ -106,9 +106,9 @@ fn every_number_that_can_be_sent_has_its_range_and_every_object_is_closed() {
                 assert!(bounded, "{name}: {node}");
             }
             Some("object") => {
-                // A profile's members stand beside its type, and are closed where both are put together.
+                // A profile's members are beside its type, and the object is closed where both are combined.
                 let composed = name.ends_with("Profile");
-                // The axes of a sweep put in what its base leaves out, so that only the whole can be held against a schema.
+                // The axes of a sweep put in what its base leaves out, so that only the whole can be validated.
                 let base = name == "SweepRequest" && node["additionalProperties"] == true;
                 assert!(composed || base || node["additionalProperties"] == false, "{name}: {node}");
             }
@@ -118,7 +118,7 @@ fn every_number_that_can_be_sent_has_its_range_and_every_object_is_closed() {
 }
 
 #[tokio::test]
-async fn every_example_works_as_it_stands() {
+async fn every_example_works_unchanged() {
     let document = document();
     let server = Server::start().await;
     let mut sent = 0;

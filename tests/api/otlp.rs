@@ -25,7 +25,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio_rustls::TlsAcceptor;
 use tokio_rustls::server::TlsStream;
 
-/// What posts to a collector brought.
+/// The bodies that a collector received.
 type Posts = Arc<Mutex<Vec<Value>>>;
 
 fn receiver() -> (Router, Posts) {
@@ -46,7 +46,7 @@ async fn collector() -> (String, Posts) {
     (base, posts)
 }
 
-/// All spans that came, in the frame that says whose they are.
+/// All received spans, with the resource that they belong to.
 fn spans(posts: &Posts) -> Vec<Value> {
     let mut spans = Vec::new();
     for post in posts.lock().unwrap().iter() {
@@ -82,8 +82,8 @@ fn attribute<'a>(span: &'a Value, key: &str) -> &'a Value {
 
 /// Ends the server as an operator would, and returns its log.
 async fn end(mut server: Binary) -> String {
-    let told = Command::new("kill").args(["-TERM", &server.child.id().to_string()]).status().unwrap();
-    assert!(told.success());
+    let sent = Command::new("kill").args(["-TERM", &server.child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
     tokio::task::spawn_blocking(move || {
         let mut log = String::new();
         server.child.stderr.take().unwrap().read_to_string(&mut log).unwrap();

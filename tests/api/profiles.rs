@@ -1,4 +1,4 @@
-//! Every profile over HTTP: the promises of the contract that hang on the shape.
+//! Every profile over HTTP: the promises of the API that depend on the shape.
 
 use crate::common;
 
@@ -169,7 +169,7 @@ async fn what_a_shape_cannot_do_is_refused_by_name() {
             "/contact/preload/normal_force",
         ),
         (
-            // So blunt that it touches all the world.
+            // So blunt that the contact radius exceeds its limit.
             &json!({"type": "power_law", "exponent": 0.1, "coefficient": 1e-200}),
             json!({"normal_force": 1}),
             "invalid_input",

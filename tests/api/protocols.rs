@@ -32,7 +32,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// A contact that lives, with a past of pushes and pulls, deeper and less deep.
+/// A stored contact with a history of moves back and forth at different indentations.
 async fn wandered(server: &Server, contact: &Value, moves: u32) -> String {
     let made = good(server.post("/contacts", contact).await).await;
     let (full, depth) = (number(&made["contact"]["gross_slip_displacement"]), number(&made["contact"]["indentation"]));

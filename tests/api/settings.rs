@@ -1,4 +1,4 @@
-//! Every setting in each of its three ways, and what is said of one that is wrong.
+//! Every setting from each of its three sources, and the message about an invalid one.
 
 use crate::common;
 

@@ -1,10 +1,10 @@
-//! Warnings over HTTP: each code comes when it should, stays away when it should not, and has its place in the docs.
+//! Warnings over HTTP: each code appears exactly when it should, and is in the docs.
 
 use crate::common;
 
 use serde_json::{Value, json};
 
-/// A scene without a flaw.
+/// A scene without warnings.
 fn flawless() -> Value {
     json!({
         "contact": {
@@ -153,7 +153,7 @@ async fn a_session_warns_when_a_move_gives_it_cause() {
     let place = |last: &str| format!("/contacts/{}/{last}", made["id"].as_str().unwrap());
     for (last, body, expected) in [
         ("move", json!({"displacement": 1e-7}), None),
-        // a^2 = R d, and what was known from the start is no news.
+        // a^2 = R d, and a warning of the preload is not repeated.
         ("move", json!({"indentation": 8.9e-4}), None),
         ("move", json!({"indentation": 9.1e-4}), Some(vec!["large_contact"])),
         ("move", json!({"indentation": 9.2e-4}), None),

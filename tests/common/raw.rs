@@ -23,7 +23,7 @@ pub struct Service {
     pub client: Client,
 }
 
-/// What came back on a connection until it was closed.
+/// The bytes received on a connection until it was closed.
 pub struct Answer {
     pub text: String,
     /// The status of each reply.

@@ -1,4 +1,4 @@
-//! The examples run as they stand, against the real program.
+//! The examples run unchanged, against the real program.
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};

@@ -75,7 +75,7 @@ fn below_table(profile: &Profile, reply: &SimulateReply) -> bool {
     }
 }
 
-/// Whether the contact comes so close to the equator of an exact sphere, where it stands near_equator, that energies lose digits.
+/// Whether the contact comes so close to the vertical edge of an exact sphere that energies lose digits.
 fn near_equator(profile: &Profile, reply: &SimulateReply) -> bool {
     match profile {
         Profile::ExactSphere(sphere) => reply.contact.contact_radius > 0.99 * sphere.radius,
@@ -291,7 +291,7 @@ fn mirror(request: &SimulateRequest, reply: &SimulateReply) {
     }
     if listed(&request.path).is_none() {
         let listed = again(&SimulateRequest { path: Path::Moves(there.clone()), ..request.clone() }, "as a list");
-        assert_eq!(listed.steps, reply.steps, "a short form is what it stands for");
+        assert_eq!(listed.steps, reply.steps, "a short form equals the moves that it expands to");
     }
     let flipped = |step: &Move| Move {
         displacement: step.displacement.map(|target| -target),

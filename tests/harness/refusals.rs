@@ -5,7 +5,7 @@ use stickslip::api::Problem;
 use stickslip::api::problem::Code;
 
 /// # Panics
-/// If the refusal of `body` is not as the contract has it.
+/// If the refusal of `body` violates the API contract.
 pub fn check(body: &[u8], problem: Problem) {
     let code = problem.code();
     assert!(!matches!(code, Code::Internal | Code::Overloaded), "{problem:?}");

@@ -26,7 +26,7 @@ def at(body, pointer):
 
 
 def is_sayable(fault, body):
-    """Whether the document should have told that this is refused."""
+    """Whether the document should have excluded this request."""
     detail, pointer = fault["detail"], fault["pointer"]
     if pointer.startswith("/base"):
         # The base of a sweep is a simulation of which the axes may leave anything out.

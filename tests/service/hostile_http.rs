@@ -6,7 +6,7 @@ use futures::future::join_all;
 
 const MIB: usize = 1024 * 1024;
 
-/// A request line and headers, as they stand.
+/// A request line and headers, unchanged.
 fn head(lines: &[&str]) -> Vec<u8> {
     let mut bytes: Vec<u8> = lines.iter().flat_map(|line| [line.as_bytes(), b"\r\n"].concat()).collect();
     bytes.extend_from_slice(b"\r\n");
@@ -26,7 +26,7 @@ fn line(line: &str) -> Vec<u8> {
 /// Hidden behind a request, and never to be answered.
 const HIDDEN: &[u8] = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
 
-/// What is sent, and the one status that comes back; 0 where the connection is closed without a word.
+/// The bytes that are sent, and the one status of the reply; 0 if the connection is closed without a reply.
 fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
     let chunked = "Transfer-Encoding: chunked";
     let with = |body: &[u8]| [body, HIDDEN].concat();
@@ -64,7 +64,7 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         ("bare line feeds", b"GET /healthz HTTP/1.1\nHost: x\n\n".to_vec(), 400),
         ("one bare line feed", b"GET /healthz HTTP/1.1\r\nHost: x\nA: b\r\n\r\n".to_vec(), 400),
         ("a bare carriage return", head(&["GET /healthz HTTP/1.1", "Host: x\rA: b"]), 400),
-        ("a nought in a header", head(&["GET /healthz HTTP/1.1", "Host: x", "A: b\0c"]), 400),
+        ("a zero byte in a header", head(&["GET /healthz HTTP/1.1", "Host: x", "A: b\0c"]), 400),
         ("a space before the colon", head(&["GET /healthz HTTP/1.1", "Host : x"]), 400),
         ("a header without a name", head(&["GET /healthz HTTP/1.1", "Host: x", ": b"]), 400),
         ("a header without a colon", head(&["GET /healthz HTTP/1.1", "Host: x", "b"]), 400),
@@ -95,7 +95,7 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         ("upwards in disguise", line("GET /contacts/%2e%2e/healthz HTTP/1.1"), 404),
         ("upwards from the documentation", line("GET /docs/%2e%2e%2f%2e%2e%2fetc%2fpasswd HTTP/1.1"), 404),
         ("two slashes", line("GET //healthz HTTP/1.1"), 404),
-        ("a nought in the path", line("GET /contacts/%00 HTTP/1.1"), 404),
+        ("a zero byte in the path", line("GET /contacts/%00 HTTP/1.1"), 404),
         ("no text in the path", line("GET /contacts/%ff%fe/events HTTP/1.1"), 404),
         ("a control character in the path", line("GET /\x01 HTTP/1.1"), 400),
         ("another host in the path", line("GET http://elsewhere/contacts/7 HTTP/1.1"), 404),
@@ -106,7 +106,7 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         ("half a chunk", simulate(&[chunked], b"ff\r\n{\"contact\":"), 408),
         // No HTTP at all.
         ("TLS", [b"\x16\x03\x01\x00\xa5\x01\x00\x00\xa1\x03\x03".as_slice(), &[0; 200]].concat(), 400),
-        ("noughts", vec![0; 10_000], 400),
+        ("zero bytes", vec![0; 10_000], 400),
         ("empty lines", b"\r\n".repeat(50_000), 431),
         ("half a head", b"GET /healthz HTTP/1.1\r\nHost: x".to_vec(), 0),
         ("nothing", Vec::new(), 0),

@@ -1,4 +1,4 @@
-//! The service as a process: hostile clients, overload, and what it is made of.
+//! The service as a process: hostile clients, overload, and its dependencies.
 
 #[path = "../common/mod.rs"]
 mod common;

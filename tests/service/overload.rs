@@ -1,4 +1,4 @@
-//! Overload, on the real binary: memory stays within the bound that `server::memory_budget` states, the server says that it is well,
+//! Overload, on the real binary: memory stays within the bound that `server::memory_budget` states, health checks succeed,
 //! honest clients are served while it lasts as far as they can be, and all of them when it is over.
 
 use std::sync::Arc;
@@ -19,12 +19,12 @@ use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
 
 const MIB: usize = 1024 * 1024;
-/// The address of those who flood.
+/// The address of the clients that flood the server.
 const FLOOD: &str = "127.0.0.1";
-/// That of those who do not.
+/// The address of the other clients.
 const HONEST: &str = "127.0.0.2";
 
-/// Waits for what must come true.
+/// Waits until a condition holds.
 async fn until(what: &str, condition: impl AsyncFn() -> bool) {
     let waiting = async {
         while !condition().await {
@@ -39,7 +39,7 @@ async fn served(service: &Service, source: &str, request: &str) -> bool {
     service.ask(source, request).await.is_some_and(|answer| answer.statuses == [200])
 }
 
-/// A simulation whose stresses take minutes: as many pieces of memory as may be, seen from as many radii.
+/// A simulation whose stresses take minutes: as many pieces of slip history as allowed, at as many radii.
 fn long_simulation() -> String {
     json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 99_999}}, "steps": "last",
         "stress": {"points": 10_000}})
@@ -63,7 +63,7 @@ fn sound_simulation() -> String {
 }
 
 #[tokio::test]
-async fn two_thousand_slow_clients_take_little_and_harm_nobody() {
+async fn two_thousand_slow_clients_use_little_memory_and_delay_no_others() {
     const SLOW: usize = 2_000;
     room_for(SLOW + 100);
     let service = Service::start(&["--cache-bytes", "16MiB", "--head-time", "8s", "--log", "warn"]);
@@ -91,7 +91,7 @@ async fn two_thousand_slow_clients_take_little_and_harm_nobody() {
         let step = Move::displacement(1e-9 * f64::from(index));
         service.client.apply(contact, &step.into(), &Options::default()).await.unwrap();
     }
-    // Those who never end a head are not waited for any longer than they may take.
+    // Clients that never end a head are closed at their time limit.
     until("slow heads are closed", async || closed.load(Ordering::Relaxed) >= SLOW / 2).await;
     over.store(true, Ordering::Relaxed);
     join_all(slow).await;
@@ -168,7 +168,7 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
     })
     .await;
     // While it lasts: the flood is of one address, and leaves room for others.
-    until("the server says that it is well", async || served(&service, HONEST, &get("/healthz")).await).await;
+    until("health checks succeed", async || served(&service, HONEST, &get("/healthz")).await).await;
     for _ in 0..5 {
         // With the spare connections, and what else the process has open.
         let open = service.open_files();
@@ -180,7 +180,7 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
     for client in flood {
         client.await.unwrap();
     }
-    // When it is over.
+    // After the flood.
     until("the server is free", async || served(&service, FLOOD, &get("/contacts?limit=1")).await).await;
     for _ in 0..50 {
         assert!(served(&service, FLOOD, &post("/simulate", &sound_simulation())).await);
@@ -248,7 +248,7 @@ async fn work_ends_at_the_deadline_and_changes_nothing() {
 }
 
 #[tokio::test]
-async fn whoever_finds_no_place_is_refused_soon_and_health_is_not() {
+async fn a_request_without_a_place_is_refused_soon_and_health_is_not() {
     let service =
         Service::start(&["--max-requests", "1", "--max-queue", "1", "--max-wait", "300ms", "--deadline", "20s"]);
     let mut busy = TcpStream::connect(service.address).await.unwrap();
@@ -263,7 +263,7 @@ async fn whoever_finds_no_place_is_refused_soon_and_health_is_not() {
     for path in ["/healthz", "/readyz"] {
         assert!(served(&service, FLOOD, &get(path)).await);
     }
-    // Whoever hangs up gives the place back.
+    // A client that hangs up frees its place.
     drop(busy);
     until("the place is free", async || served(&service, FLOOD, &get("/contacts")).await).await;
 }
@@ -278,7 +278,7 @@ async fn many_moves_of_one_contact_queue_up_to_a_bound() {
     until("the contact is at work", async || !served(&service, FLOOD, &look).await).await;
     let step = post(&format!("/contacts/{contact}/move"), r#"{"displacement": 1e-8}"#);
     let answers = join_all((0..40).map(|_| service.ask(FLOOD, &step))).await;
-    let full = answers.iter().flatten().filter(|answer| answer.text.contains("as many requests wait as may")).count();
+    let full = answers.iter().flatten().filter(|answer| answer.text.contains("its queue is full")).count();
     assert!(full >= 30, "{full}");
     assert!(answers.iter().flatten().all(|answer| answer.statuses == [503]));
     // Other contacts do not wait for this one.
@@ -310,7 +310,7 @@ async fn a_client_that_never_reads_is_let_go() {
     let quiet = service.client.create(&create(), &Options::default()).await.unwrap().id;
     listener.write_all(format!("GET /contacts/{quiet}/events HTTP/1.1\r\nhost: x\r\n\r\n").as_bytes()).await.unwrap();
     until("the replies have begun", async || service.open_files() >= files + 20).await;
-    until("nobody but the listener is connected", async || service.open_files() <= files + 1).await;
+    until("only the listener is open", async || service.open_files() <= files + 1).await;
     // Each reply has some 30 MB, and as much work before it; two at a time are worked on.
     assert!(service.peak() < peak + 400 * MIB, "{} MiB", service.peak() / MIB);
     service.client.apply(quiet, &Move::displacement(1e-8).into(), &Options::default()).await.unwrap();

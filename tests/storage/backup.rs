@@ -117,7 +117,7 @@ async fn what_cannot_be_copied_is_refused_in_one_line_and_nothing_is_touched() {
     refused(&url(&other), &fresh, "of another application");
     refused(&url(&folder.path().join("missing.db")), &fresh, "No such file");
     refused(&url(&store), &folder.path().join("no such folder/copy.db"), "No such file");
-    refused("memory:", &fresh, "in the memory of the process");
+    refused("memory:", &fresh, "only in the process");
     refused("postgres://me:secret@localhost/contacts", &fresh, "pg_dump");
     refused("mysql://me:secret@localhost/contacts", &fresh, "unknown kind of store");
     let mut left: Vec<String> =

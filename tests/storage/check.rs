@@ -61,7 +61,7 @@ async fn fill(client: &Client) -> [Uuid; 4] {
             Options { idempotency_key: Some(format!("move {number}").replace(' ', "-")), ..Options::default() };
         client.apply(keyed, &random.step().into(), &options).await.unwrap();
     }
-    // Of -0.0 a database makes what it likes.
+    // A database may change -0.0.
     client.apply(still, &Move::displacement(-0.0).into(), &options).await.unwrap();
     [long, fork, keyed, still]
 }
@@ -99,7 +99,7 @@ async fn every_kind_of_damage_is_found_in_a_file() {
     let number = |id: Uuid| format!("(SELECT number FROM contacts WHERE id = '{id}')");
     let (long_number, keyed_number, still_number) = (number(long), number(keyed), number(still));
     let force = |to: &str| format!("UPDATE moves SET force = {to} WHERE contact = {keyed_number} AND sequence = 3");
-    // The snapshot of another session is a sound state, and not this one's.
+    // The snapshot of another session is a valid state, but not of this session.
     let swap = format!("UPDATE snapshots SET sequence = sequence - 1 WHERE contact = {long_number}");
     let damages: [(&str, String, &[&str]); 13] = [
         ("a force by one bit", force("force * (1 + 2.3e-16)"), &["move 3 is recorded with force"]),
@@ -211,9 +211,11 @@ async fn damage_is_found_in_a_database_beside_its_service() {
 async fn what_cannot_be_checked_is_refused_in_one_line() {
     let folder = tempdir().unwrap();
     let missing = url(&folder.path().join("missing.db"));
-    for (store, why) in
-        [("memory:", "in the memory"), (&*missing, "No such file"), ("postgres://me:secret@127.0.0.1:1/x", "127.0.0.1")]
-    {
+    for (store, why) in [
+        ("memory:", "only in the process"),
+        (&*missing, "No such file"),
+        ("postgres://me:secret@127.0.0.1:1/x", "127.0.0.1"),
+    ] {
         let output = check(store, &[]).await;
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{said}");

@@ -46,7 +46,7 @@ impl SmallDisk {
         SmallDisk { keeper, folder }
     }
 
-    /// What to put before a command that is to see the disk.
+    /// The prefix of a command that is to see the disk.
     fn entrance(&self) -> Vec<String> {
         let keeper = self.keeper.id().to_string();
         ["nsenter", "--preserve-credentials", "--user", "--mount", "--target", &keeper].map(str::to_owned).to_vec()
@@ -58,7 +58,7 @@ impl SmallDisk {
         root.join(self.folder.path().strip_prefix(Path::new("/")).unwrap()).join(name)
     }
 
-    /// Leaves so many bytes free.
+    /// Leaves this many bytes free.
     fn fill(&self, room: u64) {
         let mut filler = File::create(self.file("filler")).unwrap();
         while filler.write_all(&[1; 4096]).is_ok() {}
@@ -99,7 +99,7 @@ async fn a_full_disk_refuses_changes_and_loses_none() {
     }
     disk.fill(ROOM);
 
-    // What is too large for the room that is left does not stand in the way of what is not.
+    // A change that is too large for the remaining space does not block smaller ones.
     let moves = (0..5_000).map(|index| Move::displacement(f64::from(index % 2) * 1e-8)).collect();
     let long = along(moves);
     let (plain, first) = (Options::default(), sessions[0]);

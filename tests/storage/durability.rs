@@ -1,4 +1,4 @@
-//! Nothing acknowledged is lost: not by a kill, not by a stop, not by another version.
+//! Nothing acknowledged is lost: by a kill, by a stop, or by another version.
 
 use crate::common;
 

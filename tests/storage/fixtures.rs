@@ -1,4 +1,4 @@
-//! What the tests of storage make and look at.
+//! Fixtures of the storage tests.
 
 use std::future::Future;
 use std::path::Path;
@@ -21,12 +21,12 @@ pub fn url(path: &Path) -> String {
     format!("sqlite:{}", path.display())
 }
 
-/// What comes of a future, which must come without a wait of minutes.
+/// The result of a future, which must be ready within seconds.
 pub async fn soon<T>(future: impl Future<Output = T>) -> T {
     tokio::time::timeout(PATIENCE, future).await.expect("nothing happened")
 }
 
-/// A path through moves, of whose states only the last is asked for.
+/// A path through moves, of whose states only the last is requested.
 pub fn along(moves: Vec<Move>) -> PathRequest {
     PathRequest { path: Moves::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
 }
@@ -51,7 +51,7 @@ pub fn session(label: Option<&str>) -> Session {
     }
 }
 
-/// A move whose numbers tell it from every other.
+/// A move whose numbers differ from those of every other.
 pub fn record(sequence: u64) -> Record {
     let number = sequence as f64 + 0.1;
     Record {
@@ -91,7 +91,7 @@ pub fn snapshot(sequence: u64) -> Snapshot {
     Snapshot { sequence, state: (0..=u8::MAX).rev().chain([0, sequence as u8]).collect() }
 }
 
-/// A session with so many moves, stored; as it is now, and its moves.
+/// A stored session with this many moves, and its moves.
 pub async fn stored(store: &dyn Store, moves: u64) -> (Session, Vec<Record>) {
     let mut session = session(Some("stored"));
     store.create(session.clone(), None).await.unwrap();

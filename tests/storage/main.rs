@@ -1,4 +1,4 @@
-//! What is stored, and that nothing of it is lost: every store, the session layer above it, and processes that die.
+//! Storage, and that nothing of it is lost: every store, the session layer above it, and processes that are killed.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -65,7 +65,7 @@ async fn fill(store: &dyn Store) -> [Uuid; 3] {
     [made.id, fork.id, job.id]
 }
 
-/// All that a store says about what [`fill`] has put into it.
+/// All data that a store returns of what [`fill`] has saved.
 async fn content(store: &dyn Store, [made, fork, job]: [Uuid; 3]) -> String {
     exact(&(
         (
@@ -116,7 +116,7 @@ async fn a_file_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
     assert_eq!(ask("SELECT count(*) FROM labels"), 2);
     assert_eq!(ask("SELECT count(*) FROM contacts WHERE colour = 'grey'"), 2);
 
-    // This program does not know the step: it refuses the file, and leaves it as it is.
+    // This program does not have the step: it refuses the file, and leaves it as it is.
     let file = fs::read(&path).unwrap();
     let newer = format!("it has schema version {}", known + 1);
     assert!(migrate(&[]).unwrap_err().starts_with(&newer));
@@ -173,7 +173,7 @@ async fn a_database_takes_a_step_once_and_whole_and_keeps_what_is_in_it() {
     assert_eq!(ask("SELECT count(*) FROM labels").await, 2);
     assert_eq!(ask("SELECT count(*) FROM contacts WHERE colour = 'grey'").await, 2);
 
-    // This program does not know the step: it refuses the database, and leaves it as it is.
+    // This program does not have the step: it refuses the database, and leaves it as it is.
     let newer = format!("it has schema version {}", known + 1);
     assert!(migrate(&[]).await.unwrap_err().contains(&newer));
     for refused in [PostgresStore::open(&url).await, PostgresStore::open_to_read(&url).await] {

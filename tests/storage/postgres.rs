@@ -1,4 +1,4 @@
-//! What the PostgreSQL store promises beyond what every store does.
+//! Guarantees of the PostgreSQL store beyond those of every store.
 
 use crate::common;
 use crate::fixtures::soon;
@@ -60,7 +60,7 @@ async fn open() -> PostgresStore {
 }
 
 #[tokio::test]
-async fn numbers_and_times_come_back_to_the_last_bit() {
+async fn numbers_and_times_are_read_to_the_last_bit() {
     let store = open().await;
     let new = session();
     store.create(new.clone(), None).await.unwrap();
@@ -72,7 +72,7 @@ async fn numbers_and_times_come_back_to_the_last_bit() {
         .collect();
     store.append(new.id, 0, records.clone(), None).await.unwrap();
     let found = store.history(new.id, 0, 10).await.unwrap();
-    // Debug tells -0.0 from 0.0, and prints every other number so that it reads back the same.
+    // Debug distinguishes -0.0 from 0.0, and prints every other number so that it reads back the same.
     assert_eq!(format!("{found:?}"), format!("{records:?}"));
     assert_eq!(store.find(new.id).await.unwrap().updated_at, records[4].at);
 }
@@ -127,7 +127,7 @@ async fn one_that_fails_does_not_fail_those_beside_it() {
     assert!(a.is_ok() && d.is_ok(), "{a:?} {d:?}");
     assert!(matches!(b, Err(StoreError::Stale { found: 0 })), "{b:?}");
     assert!(matches!(c, Err(StoreError::NotFound)), "{c:?}");
-    // A taken key undoes the transaction.
+    // A key in use rolls the transaction back.
     let (a, b, c) = futures::join!(
         store.append(good.id, 1, vec![record(2, 1.0)], None),
         store.append(other.id, 0, vec![record(1, 1.0)], receipt("taken")),
@@ -204,7 +204,7 @@ async fn changes_by_another_process_wake_those_who_wait() {
     let (here, there) = (PostgresStore::open(&url).await.unwrap(), PostgresStore::open(&url).await.unwrap());
     let new = session();
     here.create(new.clone(), None).await.unwrap();
-    // The listener's start wakes everybody too: it must be behind before a wake-up proves anything.
+    // The listener's start wakes all listeners too: it must be over before a wake-up proves anything.
     let mut waits = there.changes().subscribe(new.id);
     for round in 0..3 {
         here.append(new.id, round, vec![record(round + 1, 1.0)], None).await.unwrap();
@@ -250,7 +250,7 @@ async fn tls_is_used_and_verified_as_the_url_says() {
         open(good).await.unwrap_or_else(|error| panic!("{good}: {error}"));
     }
     assert!(open("sslmode=disable").await.unwrap_err().to_string().contains("no encryption"));
-    // Nobody vouches for this certificate, and it is not for this host.
+    // No authority has signed this certificate, and it is not for this host.
     let by_the_system = open("sslmode=verify-full").await.unwrap_err().to_string();
     assert!(by_the_system.contains("certificate"), "{by_the_system}");
     let elsewhere = format!("{}?{full}", url.replace("localhost", "127.0.0.1"));

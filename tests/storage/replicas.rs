@@ -37,7 +37,7 @@ fn step(index: usize) -> Move {
     }
 }
 
-/// What a client was told.
+/// The replies that a client received.
 struct Acknowledged {
     id: Uuid,
     step: Move,
@@ -193,14 +193,14 @@ async fn what_one_replica_has_acknowledged_the_other_shows() {
         let stress = other.get(&format!("/contacts/{id}/stress?points=2")).await;
         assert_eq!(stress.headers()["etag"], format!("\"{}\"", reply.sequence + 1));
     }
-    // Moved here: what the cache there knows is too old to refuse the right sequence, or to accept the wrong one.
+    // Moved here: the cache there is too old to refuse the right sequence, or to accept the wrong one.
     here.client.apply(id, &step.into(), &plain).await.unwrap();
     let at = |sequence| Options { if_match: Some(sequence), ..Options::default() };
     let stale = there.client.apply(id, &step.into(), &at(10)).await.unwrap_err();
     assert_eq!(stale.problem().unwrap().code, "stale_sequence");
     assert_eq!(there.client.apply(id, &step.into(), &at(11)).await.unwrap().sequence, 12);
     assert_eq!(here.client.apply(id, &step.into(), &at(12)).await.unwrap().sequence, 13);
-    // Refused in the state that the cache there knows, but not in the one that is true.
+    // Refused in the state that is cached there, but not in the stored one.
     let lifted = Move { indentation: Some(-1e-7), ..Move::default() };
     there.client.apply(id, &lifted.into(), &plain).await.unwrap();
     here.client.apply(id, &Move { indentation: Some(4.7e-7), ..Move::default() }.into(), &plain).await.unwrap();
@@ -253,7 +253,7 @@ async fn a_lost_database_is_admitted_and_found_again() {
     .await;
     let reply: Value = server.post(&moved, &step).await.json().await.unwrap();
     assert_eq!(reply["sequence"], 1);
-    // A short interruption goes by unnoticed: what is safe to repeat is repeated.
+    // Clients do not notice a short interruption: what is safe to repeat is repeated.
     let stop = AtomicBool::new(false);
     let (count, ()) = futures::join!(
         async {
@@ -278,7 +278,7 @@ async fn a_lost_database_is_admitted_and_found_again() {
 }
 
 #[tokio::test]
-async fn moves_made_at_one_replica_are_told_by_the_other_also_after_the_database_was_away() {
+async fn moves_made_at_one_replica_are_sent_by_the_other_also_after_the_database_was_away() {
     let cluster = Cluster::start();
     let url = cluster.database().await;
     let (here, there) = (Process::start(&url).await, Process::start(&url).await);

@@ -22,10 +22,10 @@ use stickslip_wire::{
 };
 use uuid::Uuid;
 
-/// Nothing stays in memory.
+/// No state is cached.
 const NO_CACHE: usize = 0;
 
-/// Moves of all kinds, some of them curved, many small ones among them that leave a deep memory.
+/// Moves of all kinds, some of them curved, many small ones among them that leave a deep slip history.
 fn wandering(count: usize, seed: f64) -> Vec<Move> {
     let turn = |index: usize| (seed + index as f64 * 2.399).sin();
     let step = |index: usize| match index % 97 {
@@ -122,7 +122,7 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     let taken = snapshot(&*store, one, 10_000).await;
     let truth = client.contact(other).await.unwrap();
 
-    // Damaged, cut short, of nothing, and of a move that has not been made: the session is replayed.
+    // Damaged, truncated, empty, or of a move that has not been made: the session is replayed.
     let mut damaged = taken.state.clone();
     damaged[taken.state.len() / 2] ^= 0x10;
     let cut = taken.state[..taken.state.len() - 8].to_vec();
@@ -261,7 +261,7 @@ async fn an_expired_session_is_gone_for_reads_moves_and_events_though_it_was_cac
 }
 
 #[tokio::test]
-async fn the_binary_lets_idle_contacts_expire_when_it_is_told_to() {
+async fn the_binary_expires_idle_contacts_with_expire_after() {
     for nonsense in [["--expire-after", "0s"], ["--expire-after", "soon"], ["--cache-bytes", "-1"]] {
         let refused = Command::new(env!("CARGO_BIN_EXE_stickslip")).args(nonsense).output().unwrap();
         assert_eq!(refused.status.code(), Some(2), "{nonsense:?}");
@@ -275,7 +275,7 @@ async fn the_binary_lets_idle_contacts_expire_when_it_is_told_to() {
     assert_eq!(client.contact(id).await.unwrap_err().problem().unwrap().status, 410);
 }
 
-/// Two session layers over one store stand for two processes: neither knows what the other has cached.
+/// Two session layers over one store act as two processes: neither has access to the cache of the other.
 #[tokio::test]
 async fn processes_that_share_a_store_see_each_others_moves() {
     let store = Arc::new(MemoryStore::new());
@@ -288,7 +288,7 @@ async fn processes_that_share_a_store_see_each_others_moves() {
     let moved = there.apply(id, &Move { normal_force: Some(20.0), ..Move::default() }.into(), &options).await.unwrap();
     assert_eq!(here.contact(id).await.unwrap().state, moved.state);
 
-    // What friction can hold is decided by the load that the other has set, and so is the sequence.
+    // The load that the other has set determines the friction limit, and so the sequence.
     there.apply(id, &Move { normal_force: Some(30.0), ..Move::default() }.into(), &options).await.unwrap();
     let strong = here.apply(id, &Move::force(8.0).into(), &options).await.unwrap();
     assert_eq!(strong.sequence, 4);

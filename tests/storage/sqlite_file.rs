@@ -1,4 +1,4 @@
-//! The file of the SQLite store: what is refused at start and left alone, what is taken up, and what people can read.
+//! The file of the SQLite store: what is refused at start and left unchanged, what is recovered, and what people can read.
 
 use crate::common;
 use crate::fixtures::{along, keyed, url};
@@ -98,10 +98,10 @@ async fn what_is_torn_is_refused_and_left_alone() {
         let whole = content(folder.path());
         assert_eq!(whole.len(), if gracefully { 1 } else { 3 }, "{:?}", whole.keys());
         let length = whole["torn.db"].len() as u64;
-        // Not the last page alone: that of a file just made stands in the log.
+        // Not the last page alone: that of a new file is in the log.
         for cut_to in [length / 2, length / 2 + 100, length - 2 * 4096] {
             cut(&path, cut_to);
-            // What stands in the log as well is not lost with the file.
+            // Pages that are also in the log are not lost with the file.
             is_refused(&path, "cut off");
             fs::write(&path, &whole["torn.db"]).unwrap();
         }
@@ -133,7 +133,7 @@ async fn a_newer_file_is_refused_and_left_alone() {
     let newer = Connection::open(&path).unwrap();
     let version: i32 = newer.pragma_query_value(None, "user_version", |row| row.get(0)).unwrap();
     newer.pragma_update(None, "user_version", version + 1).unwrap();
-    // The newer program was killed: what it wrote last stands in the log alone.
+    // The newer program was killed: what it wrote last is in the log alone.
     is_refused(&path, &format!("version {}", version + 1));
     drop(newer);
     is_refused(&path, &format!("version {}", version + 1));

@@ -24,7 +24,7 @@ impl Contact {
     /// with the magnitudes of the terms; so does that of a stress, whose terms are bounded by mu p. The g of a table
     /// has an error between its points: for a given w over y the force changes by 2 G* m int |error of g| dx at most,
     /// and by as much again where the load is given. A stress has cusps: the estimate holds for a radius moved by some
-    /// units in its last place, or by as much as the g of a table is off.
+    /// units in its last place, or by the error of the g of a table.
     ///
     /// ```
     #[doc = include_str!("example.txt")]

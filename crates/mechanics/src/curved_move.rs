@@ -57,7 +57,7 @@ pub(super) struct PathPoint {
     pub(super) displacement: DoubleDouble,
 }
 
-/// How far a chord is off the curve.
+/// The errors of a chord.
 struct Deviation {
     /// int |error of w| dx, m^2.
     integral: f64,
@@ -67,7 +67,7 @@ struct Deviation {
     kernel: f64,
 }
 
-/// The factor by which the tolerance is relaxed after so many chords.
+/// The factor by which the tolerance is relaxed after this many chords.
 fn relaxation(chords: usize) -> f64 {
     let intervals = (chords + RELAXATION_INTERVAL).saturating_sub(FULL_TOLERANCE_CHORDS) / RELAXATION_INTERVAL;
     (0..intervals).fold(1.0, |factor, _| 4.0 * factor)
@@ -176,7 +176,7 @@ impl Contact {
         PathPoint { indentation, normal_force, displacement }
     }
 
-    /// How far the chord from here to `end` is off the curve, judged at the middle of its stretch.
+    /// The errors of the chord from here to `end`, judged at the middle of its stretch.
     fn deviation(&self, path: &CurvedMove, done: f64, next: f64, end: &PathPoint) -> Deviation {
         let start = self.history.edge().level;
         let rise = end.indentation - start;

@@ -165,7 +165,7 @@ impl Contact {
             // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
             let from = if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) };
             if from.square >= edge.square {
-                // The rest lies at a vertical edge.
+                // The rest is at a vertical edge.
                 break;
             }
             let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);

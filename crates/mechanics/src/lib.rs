@@ -1,7 +1,6 @@
 //! The frictional contact of two elastic bodies, solved exactly, in plain numbers.
 //!
-//! A [`Contact`] is made from a [`Setup`], moved by [`Contact::apply`] and asked for its [`State`], its stresses and
-//! its
+//! A [`Contact`] is made from a [`Setup`] and moved by [`Contact::apply`]; it has a [`State`], stresses and a
 //! [`Residual`]. `README.md` has a complete example.
 //!
 //! # The theory in a page
@@ -29,14 +28,14 @@
 //! - the shear stress tau(r) = -(G*/pi) int_r^a u_x'(x)/sqrt(x^2 - r^2) dx,
 //! - the elastic energy G* m^2 int_0^a w^2 dx, and the friction work of each move,
 //!
-//! all as sums over pieces of a few integrals that each [`Profile`] knows in closed form.
+//! all as sums over pieces of a few integrals that each [`Profile`] has in closed form.
 //!
 //! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem
 //! alone.
 //!
-//! # The map
+//! # Modules
 //!
-//! | module | its question |
+//! | module | question |
 //! |---|---|
 //! | [`elasticity`] | which two moduli do the bodies have together? |
 //! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
@@ -50,9 +49,9 @@
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
-//! | `packed` | how does a contact become bytes, and bytes a contact? |
+//! | `packed` | how is a contact stored as bytes? |
 //! | [`protocol`] | which paths leave little shear stress? |
-//! | [`springs`] | what does the discrete foundation of the paper answer? |
+//! | [`springs`] | what is the result of the discrete foundation of the paper? |
 //! | [`range`](mod@range), `error` | which numbers are accepted, and what is refused? |
 //! | `double_double` | how do small differences of levels keep their digits? |
 

@@ -1,4 +1,4 @@
-//! A contact as bytes and back, equal to the last bit.
+//! Conversion of a contact to bytes and back, equal to the last bit.
 //!
 //! Everything that a move changes is written as it is, sums included. What follows from the definition is not, because
 //! the reader has already made a contact from it. Little-endian `f64` throughout:
@@ -15,7 +15,7 @@ use super::double_double::DoubleDouble;
 use super::profile::Point;
 use super::slip_history::SlipHistory;
 
-/// The version of what the engine computes. **Raise it with every change that alters a result in any bit**, for
+/// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
 /// from their moves and agree with those that never were packed. `tests/physics/packed.rs` compares a digest of results
 /// for it.
@@ -79,7 +79,7 @@ impl Reader<'_> {
         Some(Point { level: self.double()?, radius: self.number()?, square: self.double()? })
     }
 
-    /// How many items of `size` bytes the rest is, if it is a whole number of them.
+    /// The number of items of `size` bytes in the rest, if it is whole.
     pub(super) fn count(&self, size: usize) -> Option<usize> {
         self.0.len().is_multiple_of(size).then_some(self.0.len() / size)
     }

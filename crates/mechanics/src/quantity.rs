@@ -12,7 +12,7 @@ macro_rules! quantities {
         }
 
         impl Quantity {
-            /// The name that users know the quantity by.
+            /// The name of the quantity in messages.
             ///
             /// ```
             /// use stickslip_mechanics::range::{self, Quantity};

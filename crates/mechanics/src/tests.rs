@@ -1,4 +1,4 @@
-//! A contact computes nothing that its caller does not ask for: the calls of the profile's costly functions are
+//! A contact computes nothing that its caller does not request: the calls of the profile's costly functions are
 //! counted.
 
 use super::profile::RoundedPunch;
@@ -11,7 +11,7 @@ const REVERSALS: usize = 9;
 /// Radii at which a field is asked for, from the centre to the edge.
 const RADII: usize = 7;
 
-/// A parabola, whose kernel is known to fall outwards, and a shape of which nothing is known in advance.
+/// A parabola, whose kernel is known to fall outwards, or a shape without this property.
 fn virgin(parabola: bool) -> Contact {
     let sphere = || Profile::Sphere(Sphere::new(0.01).unwrap());
     let rounded = || Profile::RoundedPunch(RoundedPunch::new(1e-5, 0.01).unwrap());
@@ -109,7 +109,7 @@ fn extrema_are_searched_for_when_asked_for() {
         let contact = oscillated(parabola);
         let (calls, _) = during(|| contact.residual());
         assert!(calls.kernel > 0, "{calls:?}");
-        // On a parabola the kinks tell where the extrema are.
+        // On a parabola the kinks determine where the extrema are.
         assert_eq!(calls.kernel_slope > 0, !parabola, "{calls:?}");
         assert_eq!((calls.displacement_integral, calls.moments, calls.states), (0, 0, 0), "{calls:?}");
     }

@@ -108,7 +108,7 @@ pub struct AccuracyRow {
 /// A comparison that has passed all checks.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// The contact as it came.
+    /// The contact as it was sent.
     pub definition: ContactDefinition,
     /// The contact.
     pub setup: Setup,
@@ -158,7 +158,7 @@ impl Document for AccuracyRequest {
         });
         let at = JsonPath::Root.member("stress");
         let sampling = stress.check(at, &mut faults).unwrap_or_else(Sampling::none);
-        // Without a sampling its own faults are known already.
+        // Without a sampling its own faults have been noted already.
         if !sampling.fields.shear && sampling.fields != Sampling::none().fields {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }

@@ -27,7 +27,7 @@ pub struct Fault {
 pub enum JsonPath<'a> {
     /// The whole document.
     Root,
-    /// A place written out already.
+    /// A place that is already a JSON pointer.
     Pointer(&'a str),
     /// A member of an object.
     Member(&'a JsonPath<'a>, &'a str),
@@ -72,7 +72,7 @@ pub struct Faults {
     found: Vec<Fault>,
     /// How many there are, those that are not listed included.
     count: usize,
-    /// What the mechanics has no answer to, and where: it has a kind of its own if nothing else is wrong.
+    /// What the mechanics refuses, and where: a kind of its own if there are no other faults.
     unanswerable: Option<(String, Error)>,
 }
 
@@ -85,19 +85,19 @@ impl Faults {
         }
     }
 
-    /// Notes what the mechanics has no answer to, though every number of it is in its range.
+    /// Notes what the mechanics refuses although every number is in its range.
     pub fn unanswerable(&mut self, at: JsonPath<'_>, error: Error) {
         self.unanswerable.get_or_insert_with(|| (at.to_string(), error));
     }
 
-    /// Holds a number against the range of its quantity.
+    /// Checks a number against the range of its quantity.
     pub fn number(&mut self, at: JsonPath<'_>, value: f64, range: &Range) {
         if !range.contains(value) {
             self.add(at, format_args!("{value:?} is out of range: allowed is {range}"));
         }
     }
 
-    /// Holds a count against its limits.
+    /// Checks a count against its limits.
     pub fn count<T: PartialOrd + fmt::Display>(&mut self, at: JsonPath<'_>, value: T, allowed: &RangeInclusive<T>) {
         if !allowed.contains(&value) {
             let (least, most) = (allowed.start(), allowed.end());
@@ -105,7 +105,7 @@ impl Faults {
         }
     }
 
-    /// Holds the length of an array against its limits; says whether it fits.
+    /// Checks the length of an array against its limits; returns whether it is within them.
     pub fn length(&mut self, at: JsonPath<'_>, length: usize, allowed: &RangeInclusive<usize>) -> bool {
         let fits = allowed.contains(&length);
         if !fits {
@@ -119,25 +119,24 @@ impl Faults {
         fits
     }
 
-    /// What `check` makes of a part of the document, if it notes no fault: nothing is computed from numbers that are out of
-    /// range.
+    /// The result of `check` for a part of the document, unless it notes a fault: nothing is computed from numbers that are
+    /// out of range.
     pub fn part<T>(&mut self, check: impl FnOnce(&mut Faults) -> T) -> Option<T> {
         let before = self.count;
         let part = check(self);
         (self.count == before).then_some(part)
     }
 
-    /// Whether nothing has been found.
+    /// Whether there are no faults.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.found.is_empty() && self.unanswerable.is_none()
     }
 
-    /// The value if nothing was found, else the faults.
+    /// The value if there are no faults, else the faults.
     ///
     /// # Errors
-    /// [`Rejection::Invalid`] with every fault noted; [`Rejection::Refused`] if there is none but what the mechanics has no
-    /// answer to.
+    /// [`Rejection::Invalid`] with every fault noted; [`Rejection::Refused`] if the only fault is one of the mechanics.
     pub fn done<T>(mut self, value: Option<T>) -> Result<T, Rejection> {
         match (value, self.unanswerable.take()) {
             (Some(value), None) if self.found.is_empty() => Ok(value),

@@ -1,4 +1,4 @@
-//! Extreme integers in every count of every request: each is refused at its place or taken, and nothing overflows.
+//! Extreme integers in every count of every request: each is refused at its place or accepted, and nothing overflows.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use super::{
 const EXTREMES: [u64; 9] =
     [0, 1, i32::MAX as u64, u32::MAX as u64, 1 << 53, (1 << 53) + 1, 1 << 63, u64::MAX - 1, u64::MAX];
 
-/// The pointers of the faults of a body; none if it is taken.
+/// The pointers of the faults of a body; none if it is accepted.
 fn faults<D: Document>(body: &Value) -> Vec<String> {
     match read::<D>(body.to_string().as_bytes()) {
         Ok(_) => Vec::new(),

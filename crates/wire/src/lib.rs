@@ -1,14 +1,14 @@
-//! The JSON that goes in and out, and its checked conversion into the types of [`stickslip_mechanics`].
+//! The JSON documents of requests and replies, and their checked conversion into the types of [`stickslip_mechanics`].
 //!
 //! A request is checked in two steps. [`parse()`] turns bytes into the typed document: it refuses what is not JSON, names an
-//! unknown member or has a wrong type. [`Document::check`] then holds every number against its limit, declared beside the
+//! unknown member or has a wrong type. [`Document::check`] then checks every number against its limit, declared beside the
 //! document by `limits!`, and collects all faults at once. Both name the place by a JSON pointer. What has passed is trusted
 //! from there on.
 //!
 //! Choices are objects with one key, or carry a `type`; there is no untagged union, so that an error can always say
 //! which member is meant. Numbers that are not finite are written as `null`.
 //!
-//! No integer of a request is computed with before it has been held against its limit, and integer arithmetic that could
+//! No integer of a request is used in arithmetic before it has been checked against its limit, and integer arithmetic that could
 //! overflow is denied throughout the crate.
 
 #![deny(clippy::arithmetic_side_effects)]

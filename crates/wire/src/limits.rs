@@ -13,7 +13,7 @@ use super::check::{Faults, JsonPath};
 
 /// Moves in one path.
 pub const PATH_MOVES: RangeInclusive<usize> = 1..=100_000;
-/// Reversals of a protocol that is to be found: extrema are sought one by one, and the cost grows with their square.
+/// Reversals of a protocol that is to be found: extrema are searched one by one, and the cost grows with their square.
 pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
 /// Points of a uniform stress request, both ends included.
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
@@ -190,7 +190,7 @@ impl Limit<f64> for Tolerance {
 }
 
 /// Declares the limits of the members of a document, `limits!(Document { member: limit, .. } and Shared)`, or of a choice with
-/// one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then holds them against their limits.
+/// one key, `limits!(enum Choice { Variant "key": limit, .. })`. `check_members` then checks them.
 /// `Shared` is a document whose limited members this one has too, and which checks them itself.
 macro_rules! limits {
     ($document:ident and $shared:ty) => {

@@ -1,12 +1,12 @@
-//! A deserializer that takes nothing but an object for a struct: serde's own would take an array of the members' values too,
-//! in the order in which they happen to be declared.
+//! A deserializer that accepts only an object for a struct: serde's own also accepts an array of the members' values, in
+//! the order of their declaration.
 //!
-//! It passes everything on to another deserializer, and itself to whatever that one finds inside.
+//! It delegates to another deserializer, and wraps the deserializers of nested values.
 
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor};
 
-/// Any part of serde's machinery, with the rule that structs are objects.
+/// A serde deserializer, visitor, seed or access, with the rule that structs are objects.
 pub(super) struct ObjectsOnly<T>(pub(super) T);
 
 /// Methods that pass a visitor on.

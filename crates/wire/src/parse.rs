@@ -1,4 +1,4 @@
-//! From bytes to a typed document, with a pointer to whatever does not fit.
+//! Parses bytes into a typed document, with a pointer to each fault.
 
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::Value;
@@ -18,13 +18,13 @@ pub enum Rejection {
     /// It is not JSON at all.
     #[error("the body is not JSON: {0}")]
     NotJson(String),
-    /// It is JSON, but not what this call takes.
+    /// It is JSON, but not a valid document of this call.
     #[error("{}", summary(.0))]
     Invalid(Vec<Fault>),
-    /// Every number is in its range, but the mechanics has no answer to what they are together.
+    /// Every number is in its range, but the mechanics refuses the combination.
     #[error("{pointer}: {error}")]
     Refused {
-        /// JSON pointer to what it has no answer to.
+        /// JSON pointer to the member that it refuses.
         pointer: String,
         /// Why.
         error: mechanics::Error,
@@ -40,19 +40,19 @@ fn summary(faults: &[Fault]) -> String {
     }
 }
 
-/// A body that a call takes.
+/// The body of a call.
 pub trait Document: DeserializeOwned {
-    /// What it becomes once every number has been held against its range.
+    /// The checked document.
     type Checked: Send + 'static;
 
-    /// The second gate.
+    /// Checks every number against its range.
     ///
     /// # Errors
     /// [`Rejection::Invalid`] with every fault, or [`Rejection::Refused`].
     fn check(self) -> Result<Self::Checked, Rejection>;
 }
 
-/// Takes a body through both gates.
+/// Parses and checks a body.
 ///
 /// # Errors
 /// [`Rejection`] by [`parse()`] and by [`Document::check`].
@@ -63,7 +63,7 @@ pub fn read<T: Document>(body: &[u8]) -> Result<T::Checked, Rejection> {
 /// Parses a body.
 ///
 /// # Errors
-/// [`Rejection::NotJson`] if it is not JSON, [`Rejection::Invalid`] with one fault if it is another document than asked for.
+/// [`Rejection::NotJson`] if it is not JSON, [`Rejection::Invalid`] with one fault if it is not the expected document.
 pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
     let mut json = serde_json::Deserializer::from_slice(body);
     let mut track = Track::new();
@@ -71,7 +71,7 @@ pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
     match parsed.and_then(|value| json.end().map(|()| value)) {
         Ok(value) => Ok(value),
         // serde_json calls some well-formed documents a syntax error too (1e999, an array longer than expected), and
-        // reports a wrong member before it reaches a broken end; so ask once more whether it is JSON at all.
+        // reports a wrong member before it reaches a broken end; so check again whether it is JSON at all.
         Err(error) => match well_formed(body) {
             Err(broken) => Err(Rejection::NotJson(broken)),
             Ok(()) => Err(Rejection::Invalid(vec![fault(&track.path(), &error.to_string())])),
@@ -82,7 +82,7 @@ pub fn parse<T: DeserializeOwned>(body: &[u8]) -> Result<T, Rejection> {
 /// Parses a document that has been read as a value already.
 ///
 /// # Errors
-/// The fault if it is another document than asked for.
+/// The fault if it is not the expected document.
 pub fn parse_value<T: DeserializeOwned>(value: &Value) -> Result<T, Fault> {
     let mut track = Track::new();
     let parsed = T::deserialize(ObjectsOnly(Deserializer::new(value, &mut track)));
@@ -126,7 +126,7 @@ fn pointer(path: &Path) -> String {
     })
 }
 
-/// serde speaks of Rust's types, a client of JSON's.
+/// Replaces Rust's names of types in messages of serde by JSON's.
 fn in_json_terms(message: &str) -> String {
     let mut text = message.replacen("invalid type: map", "invalid type: object", 1).replacen(
         "invalid type: sequence",

@@ -107,10 +107,10 @@ impl Limited for Move {
     }
 }
 
-/// A checked path. Its moves are known once the contact is.
+/// A checked path. Its moves may depend on the contact.
 #[derive(Clone, Debug)]
 pub enum Plan {
-    /// Moves as they came.
+    /// Moves as they were sent.
     Moves(Vec<Move>),
     /// Displacements.
     Displacement(Vec<f64>),
@@ -137,7 +137,7 @@ impl Move {
         Move { force: Some(force), ..Move::default() }
     }
 
-    /// Notes at `at` what is wrong with the move.
+    /// Notes the faults of the move at `at`.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
         for (name, value, range) in self.targets() {
             if let Some(value) = value {
@@ -145,10 +145,10 @@ impl Move {
             }
         }
         if self.displacement.is_some() && self.force.is_some() {
-            faults.add(at.member("force"), "stands beside `displacement`: at most one tangential target is allowed");
+            faults.add(at.member("force"), "conflicts with `displacement`: at most one tangential target is allowed");
         }
         if self.indentation.is_some() && self.normal_force.is_some() {
-            faults.add(at.member("normal_force"), "stands beside `indentation`: at most one normal target is allowed");
+            faults.add(at.member("normal_force"), "conflicts with `indentation`: at most one normal target is allowed");
         }
         if self.targets().iter().all(|(_, value, _)| value.is_none()) {
             faults.add(
@@ -189,7 +189,7 @@ impl Move {
         (self.force.is_some() && normal) || (self.displacement.is_some() && self.normal_force.is_some())
     }
 
-    /// The move as the mechanics takes it.
+    /// The move for the mechanics.
     #[must_use]
     pub fn step(&self) -> mechanics::Move {
         let tangential = self.displacement.map(Tangential::Displacement).or(self.force.map(Tangential::Force));

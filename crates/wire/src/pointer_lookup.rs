@@ -7,18 +7,18 @@ use serde::ser::{Impossible, Serialize, SerializeSeq, SerializeStruct, Serialize
 use super::json_value::{Pointer, index};
 use super::reply::finite;
 
-/// What a pointer into a reply leads to.
+/// The value at a pointer into a reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lookup {
     /// A number; none where JSON has `null` for it.
     Number(Option<f64>),
     /// Nothing.
     Nothing,
-    /// Something that is no number.
+    /// A value that is not a number.
     Other,
 }
 
-/// What `pointer` leads to in a reply.
+/// The value at `pointer` in a reply.
 pub fn lookup(reply: &impl Serialize, pointer: &Pointer) -> Lookup {
     reply.serialize(NumberAt(pointer.segments())).unwrap_or(Lookup::Other)
 }

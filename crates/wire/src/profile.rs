@@ -1,7 +1,7 @@
 //! The profile: which shape touches the flat.
 //!
 //! The families with numbers for parameters, their documents, checks and limits come from the table
-//! [`stickslip_mechanics::for_each_family!`]; the two made of other things, tables of heights and sums, are written out here.
+//! [`stickslip_mechanics::for_each_family!`]; the other two, tables of heights and sums, are written out here.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -17,7 +17,7 @@ use stickslip_mechanics::{Error, TableFault, for_each_family, profile as familie
 use super::check::{Faults, JsonPath};
 use super::limits;
 
-/// Everything that follows from the table of families.
+/// Declares everything that follows from the table of families.
 macro_rules! documents {
     ($(
         $(#[$about:meta])* $module:ident::$Family:ident,
@@ -125,7 +125,7 @@ pub struct SumProfile {
     pub parts: Vec<Profile>,
 }
 
-/// How a table is made of radii and heights: on its own, or as part of a sum.
+/// The constructor of a table from radii and heights: on its own, or as part of a sum.
 type Through = fn(&[f64], &[f64]) -> Result<Tabulated, Error>;
 
 fn check_table(r: &[f64], z: &[f64], through: Through, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
@@ -159,7 +159,7 @@ fn check_sum(parts: &[Profile], at: JsonPath<'_>, faults: &mut Faults) -> Option
 fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     match shape {
         Ok(shape) => return Some(shape),
-        // It follows from a fault that is known already.
+        // It follows from a fault that has been noted already.
         Err(_) if !faults.is_empty() => {}
         Err(error @ (Error::NotConvexEnough { .. } | Error::BeyondProfile { .. })) => faults.unanswerable(at, error),
         Err(Error::Table { fault, index }) => match fault {
@@ -175,11 +175,11 @@ fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) 
 }
 
 /// The members of all families side by side. Reading them flat keeps the path of a fault, which serde's tagged enums lose
-/// in their buffer, and lets `type` stand anywhere.
+/// in their buffer, and allows `type` anywhere.
 #[derive(Default)]
 struct Members {
     kind: Option<Kind>,
-    /// At the place that the name first has in [`NUMBERS`].
+    /// At the first index of the name in [`NUMBERS`].
     numbers: [Option<f64>; NUMBERS.len()],
     r: Option<Vec<f64>>,
     z: Option<Vec<f64>>,
@@ -197,7 +197,7 @@ static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     names
 });
 
-/// Where the number of this name stands in [`Members::numbers`].
+/// The index of the number of this name in [`Members::numbers`].
 fn place_of(name: &str) -> Option<usize> {
     NUMBERS.iter().position(|(_, known, _)| *known == name)
 }

@@ -20,7 +20,7 @@ use super::simulate::Steps;
 use super::single_key::not_null;
 use super::stress::{Sampling, Stress, StressRequest};
 
-/// The text by which a client knows a contact.
+/// The text by which a client identifies a contact.
 const LABEL: Characters = Characters(200);
 
 /// A contact definition, with an optional label.
@@ -254,7 +254,7 @@ pub struct HistoryPage {
 pub struct Creation {
     /// The label.
     pub label: Option<String>,
-    /// The definition as it came, to be stored.
+    /// The definition as it was sent, to be stored.
     pub definition: ContactDefinition,
     /// The contact.
     pub setup: Setup,
@@ -265,13 +265,13 @@ pub struct Creation {
 pub struct Advance {
     /// The moves.
     pub plan: Plan,
-    /// The stresses asked for.
+    /// The requested stresses.
     pub stress: Option<Sampling>,
-    /// Which states are asked for.
+    /// Which states are requested.
     pub steps: Steps,
     /// The tolerance for what is not exact.
     pub tolerance: f64,
-    /// Which protocol finds the moves; `plan` has none then.
+    /// The protocol that finds the moves, if there is one; `plan` is then empty.
     pub relax: Option<Relaxation>,
 }
 

@@ -108,19 +108,19 @@ pub struct SimulateReply {
 /// A simulation that has passed all checks.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    /// The contact as it came, for the warnings.
+    /// The contact as it was sent, for the warnings.
     pub definition: ContactDefinition,
     /// The contact.
     pub setup: Setup,
     /// The path.
     pub plan: Plan,
-    /// The stresses asked for.
+    /// The requested stresses.
     pub stress: Option<Sampling>,
-    /// Whether the extrema are asked for.
+    /// Whether the extrema are requested.
     pub residual: bool,
-    /// Which states are asked for.
+    /// Which states are requested.
     pub steps: Steps,
-    /// The solver asked for.
+    /// The requested solver.
     pub solver: Option<Solver>,
     /// The tolerance for what is not exact.
     pub tolerance: f64,
@@ -150,7 +150,7 @@ impl Document for SimulateRequest {
 }
 
 impl Solver {
-    /// Notes at `at` what is wrong with the solver, each of whose springs is evaluated `passes` times.
+    /// Notes the faults of the solver at `at`, each of whose springs is evaluated `passes` times.
     pub(super) fn check(&self, at: JsonPath<'_>, passes: usize, faults: &mut Faults) {
         let Solver::Springs(springs) = self else { return };
         let at = at.member("springs");
@@ -165,7 +165,7 @@ impl Solver {
     }
 }
 
-/// How many springs may be evaluated so many times each.
+/// How many springs may be evaluated `passes` times each.
 pub(super) fn most_springs(passes: usize) -> usize {
     SPRING_STEPS.checked_div(passes).unwrap_or(SPRING_STEPS)
 }

@@ -34,7 +34,7 @@ macro_rules! single_key {
                         match map.next_key::<String>()? {
                             None => Ok(value),
                             Some(second) => Err(A::Error::custom(format_args!(
-                                "`{second}` stands beside `{key}`, expected {}", &self as &dyn serde::de::Expected
+                                "`{second}` conflicts with `{key}`, expected {}", &self as &dyn serde::de::Expected
                             ))),
                         }
                     }
@@ -54,7 +54,7 @@ macro_rules! single_key {
 }
 pub(super) use single_key;
 
-/// For members that may be left out but, once named, must have a value: `null` is what careless clients make of NaN.
+/// For members that may be left out but, once named, must have a value: some clients write NaN as `null`.
 pub(super) fn not_null<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }

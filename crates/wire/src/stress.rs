@@ -75,18 +75,18 @@ pub struct Stress {
 /// A checked stress request.
 #[derive(Clone, Debug)]
 pub struct Sampling {
-    /// Where.
+    /// The radii.
     pub points: Points,
-    /// What.
+    /// The fields.
     pub fields: Fields,
 }
 
 /// The radii of a checked stress request.
 #[derive(Clone, Debug)]
 pub enum Points {
-    /// So many from the centre to the edge.
+    /// This many, evenly spaced from the centre to the edge.
     Uniform(usize),
-    /// These, m.
+    /// A list, m.
     Radii(Vec<f64>),
 }
 
@@ -104,7 +104,7 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// How many fields are asked for.
+    /// The number of requested fields.
     #[must_use]
     pub fn count(&self) -> usize {
         [self.pressure, self.shear, self.slip, self.displacement].into_iter().filter(|asked| *asked).count()
@@ -140,11 +140,11 @@ impl StressRequest {
             (Some(count), None) => Points::Uniform(count),
             (None, Some(radii)) => Points::Radii(radii),
             (None, None) => {
-                faults.add(at, "name one of `points` and `radii`");
+                faults.add(at, "give one of `points` and `radii`");
                 return None;
             }
             (Some(_), Some(_)) => {
-                faults.add(at, "`points` stands beside `radii`: name one of them");
+                faults.add(at, "`points` conflicts with `radii`: give one of them");
                 return None;
             }
         };

@@ -129,7 +129,7 @@ pub struct PointFailure {
 /// A sweep whose axes lead to numbers, each within the limits of an axis; whether a point is valid is not known yet.
 #[derive(Clone, Debug)]
 pub struct CheckedSweep {
-    /// The request as it came.
+    /// The request as it was sent.
     pub request: SweepRequest,
     /// The axes.
     pub axes: Vec<AxisValues>,
@@ -288,7 +288,7 @@ impl AxisValues {
     #[must_use]
     pub fn number(&self, index: usize) -> Number {
         let value = self.value(index);
-        // Beyond the first bound no float has a fraction, and no field takes it.
+        // Beyond the first bound no float has a fraction, and no field allows it.
         if self.whole && value.abs() <= (1_u64 << 53) as f64 {
             return if value >= 0.0 { Number::from(value as u64) } else { Number::from(value as i64) };
         }
@@ -320,7 +320,7 @@ impl CheckedSweep {
     /// Puts the values of a point into a copy of the base.
     pub fn put(&self, document: &mut Value, point: usize) {
         for (axis, index) in indices(&self.axes, point) {
-            // Whether there is a place for it has been found out with the kinds.
+            // Whether there is a place for it has been checked with the kinds of fields.
             axis.pointer.put(document, axis.number(index));
         }
     }
@@ -345,8 +345,8 @@ pub fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&Axis
     })
 }
 
-/// Finds out which of the fields take whole numbers, by trying: a field that is no number, and all that is wrong with the base
-/// whatever the numbers are, comes out on the way.
+/// Determines by trial which fields take whole numbers; this also finds fields that are no numbers, and faults of the base
+/// that do not depend on the numbers.
 fn find_kinds(base: &Value, axes: &mut [AxisValues], faults: &mut Faults) {
     let at = JsonPath::Root.member("axes");
     let fraction = Number::from_f64(0.5).unwrap_or_else(|| Number::from(1));

@@ -33,7 +33,7 @@ pub enum Format {
     Columns,
     /// A JSON array of flat objects.
     Rows,
-    /// Comma-separated values under a line of names; what has no value is left empty.
+    /// Comma-separated values under a line of names; a missing value is an empty cell.
     Csv,
     /// One flat JSON object a line.
     Ndjson,
@@ -46,7 +46,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// All formats; where a client has no preference, the first.
+    /// All formats; the first is the default.
     pub const ALL: [Format; 7] =
         [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow, Format::Svg, Format::Png];
 
@@ -103,13 +103,13 @@ impl Format {
         }
     }
 
-    /// What it costs to write, beyond the numbers: a plot needs a thread of its own.
+    /// The cost of writing it, beyond the numbers: a plot needs a solver thread.
     #[must_use]
     pub fn cost(self) -> Nanoseconds {
         if self.is_plot() { INLINE } else { 0 }
     }
 
-    /// A page in this format; the plot and the table are made where they are needed.
+    /// A page in this format; only the plot or table that it needs is made.
     ///
     /// # Errors
     /// [`Problem::internal`] if it cannot be written, which is a fault of the service.

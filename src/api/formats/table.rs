@@ -61,7 +61,7 @@ impl<'a> Column<'a> {
         Column { name: name.to_owned(), key: Value::from(name).to_string(), unit, cells }
     }
 
-    /// A column of floats; what is not finite has no value.
+    /// A column of floats; a number that is not finite counts as missing.
     #[must_use]
     pub fn floats(name: &str, unit: &'static str, value: impl Fn(usize) -> f64 + Send + 'a) -> Column<'a> {
         Column::new(name, Some(unit), Cells::Numbers(Box::new(move |row| Number::from_f64(value(row)))))
@@ -122,7 +122,7 @@ impl<'a> Table<'a> {
     /// All of the table in a format.
     ///
     /// # Errors
-    /// What Arrow has against it, which is nothing for a table whose columns have different names.
+    /// The error of the Arrow library; none for a table whose columns have different names.
     pub fn write(self, format: Format) -> Result<Vec<u8>, ArrowError> {
         let rows = self.rows.max(1);
         self.in_blocks(format, rows).collect::<Result<Vec<_>, _>>().map(|blocks| blocks.concat())
@@ -164,7 +164,7 @@ impl<'a> Table<'a> {
                 let arrays = self.columns.iter().map(|column| column.array(range(block)));
                 writer.write(&RecordBatch::try_new(Arc::clone(&schema), arrays.collect())?)?;
             } else {
-                // Without this mark, a reader knows that something is missing.
+                // A reader detects a truncated stream by the absence of this mark.
                 writer.finish()?;
             }
             Ok(std::mem::take(writer.get_mut()))

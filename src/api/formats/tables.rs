@@ -10,7 +10,7 @@ use stickslip_wire::{Field, HistoryPage, LoopPage, State, StressReply};
 
 use super::table::{Cells, Column, Table};
 
-/// The table of something that has another JSON document than its columns.
+/// A table whose JSON document differs from its columns.
 fn flat(rows: usize, columns: Vec<Column<'_>>) -> Table<'_> {
     Table::new(rows, columns, ["{".to_owned(), "}".to_owned()])
 }

@@ -1,4 +1,4 @@
-//! Who gets in: the role that each route needs, and the key that has it.
+//! Access control: the role that each route requires, and the key that a request presents.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub enum Need {
 
 use Need::{Key, Nothing};
 
-/// What each route needs. A route that is not here needs the highest role there is.
+/// The role that each route requires. A route that is not listed requires the highest role.
 const ROUTE_ROLES: &[(&str, &str, Need)] = &[
     ("POST", "/accuracy", Key(Role::Read)),
     ("POST", "/simulate", Key(Role::Read)),
@@ -66,7 +66,7 @@ pub fn need(method: &str, route: &str) -> Need {
     listed.map_or(Key(Role::Write), |(.., need)| *need)
 }
 
-/// Lets a request pass that has the key for it, in the name of the tenant of that key.
+/// Admits a request whose key has the required role, and restricts it to the tenant of that key.
 pub async fn admit(State(keys): State<Arc<Keys>>, mut request: Request, next: Next) -> Response {
     let route = request.extensions().get::<MatchedPath>().map_or("", MatchedPath::as_str);
     let Key(role) = need(request.method().as_str(), route) else {
@@ -95,5 +95,5 @@ fn presented(headers: &HeaderMap) -> Option<&[u8]> {
     scheme.eq_ignore_ascii_case(b"bearer ").then(|| key.trim_ascii())
 }
 
-/// The methods that any route knows.
+/// The methods of all routes.
 pub const METHODS: [Method; 3] = [Method::GET, Method::POST, Method::DELETE];

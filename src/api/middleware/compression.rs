@@ -26,9 +26,9 @@ const COMPRESSED: [&str; 7] = [
 const SMALLEST: u64 = 1024;
 /// Bytes that an encoder takes until its reply is sent: zstd at its fastest has a window of 512 KiB, held twice, and tables.
 const ENCODER: usize = 2 * 1024 * 1024;
-/// The codings, each with what it adds to the tag of a reply: a tag stands for bytes.
+/// The codings, each with the suffix that it adds to an entity tag: a tag identifies bytes.
 const CODINGS: [(&str, &str); 2] = [("gzip", "+gzip\""), ("zstd", "+zstd\"")];
-/// The headers by which clients give tags back.
+/// The headers in which clients send tags.
 const CONDITIONS: [HeaderName; 2] = [header::IF_MATCH, header::IF_NONE_MATCH];
 
 /// A reply to a client that accepts codings, as it was before compression.
@@ -38,7 +38,7 @@ struct Offer {
     status: StatusCode,
 }
 
-/// Says which replies are to be compressed, as far as there is memory for it. It stands inside the layer that does it.
+/// Decides which replies are compressed, if there is memory for it. It is inside the layer that compresses.
 pub async fn offer(State(pool): State<Pool>, request: Request, next: Next) -> Response {
     let accepts = request.headers().contains_key(header::ACCEPT_ENCODING);
     let mut response = next.run(request).await;
@@ -51,7 +51,7 @@ pub async fn offer(State(pool): State<Pool>, request: Request, next: Next) -> Re
         let offer = Offer { compress: room.is_some(), status: response.status() };
         let extensions = response.extensions_mut();
         if let Some(room) = room {
-            // Nobody else has a handle yet.
+            // This is still the only handle.
             let held = extensions.remove::<Arc<Reservation>>().and_then(Arc::into_inner).unwrap_or_default();
             extensions.insert(Arc::new(held.with(room)));
         }
@@ -72,8 +72,8 @@ pub fn is_offered(_: StatusCode, _: Version, _: &HeaderMap, extensions: &Extensi
     extensions.get::<Offer>().is_some_and(|offer| offer.compress)
 }
 
-/// Gives compressed replies tags of their own, and takes these from clients for what they stand for. It stands around the
-/// layer that compresses.
+/// Gives compressed replies tags of their own, and maps those tags back in requests. It is outside the layer that
+/// compresses.
 pub async fn tag(mut request: Request, next: Next) -> Response {
     let given = request.headers().get(header::IF_NONE_MATCH).cloned();
     for name in CONDITIONS {
@@ -84,7 +84,7 @@ pub async fn tag(mut request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let offer = response.extensions_mut().remove::<Offer>();
     if let Some(offer) = offer {
-        // The layer refuses a client that accepts nothing there is, but the work is done: it gets the reply as it is.
+        // The layer refuses a client that accepts no available coding, but the work is done: send the reply uncompressed.
         *response.status_mut() = offer.status;
     }
     let Some(plain) = response.headers().get(header::ETAG).and_then(|tag| tag.to_str().ok()) else {
@@ -92,7 +92,7 @@ pub async fn tag(mut request: Request, next: Next) -> Response {
     };
     let coded = |suffix: &str| Some(format!("{}{suffix}", plain.strip_suffix('"')?));
     let tag = if response.status() == StatusCode::NOT_MODIFIED {
-        // The tag that the client gave, and not that of a representation which it does not have.
+        // The tag that the client sent, not that of a representation which it does not have.
         let given = given.as_ref().and_then(|given| given.to_str().ok()).unwrap_or_default();
         CODINGS.iter().filter_map(|(_, suffix)| coded(suffix)).find(|tag| given.contains(tag.as_str()))
     } else if offer.is_some_and(|offer| offer.compress) {
@@ -111,7 +111,7 @@ pub async fn tag(mut request: Request, next: Next) -> Response {
     response
 }
 
-/// A list of tags without what codings have added to them; none if there is nothing of that.
+/// A list of tags without the suffixes of codings; none if no tag has one.
 fn without_coding(value: &HeaderValue) -> Option<HeaderValue> {
     let tags = value.to_str().ok().filter(|tags| CODINGS.iter().any(|(_, suffix)| tags.contains(suffix)))?;
     let plain = CODINGS.iter().fold(tags.to_owned(), |tags, (_, suffix)| tags.replace(suffix, "\""));

@@ -1,4 +1,4 @@
-//! What surrounds every handler, one layer a file.
+//! The middleware around every handler, one layer per file.
 
 pub mod access_control;
 pub mod compression;

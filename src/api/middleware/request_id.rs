@@ -1,4 +1,4 @@
-//! The identifier of a request: the one that its client has given it, or one of our own.
+//! The identifier of a request: the one that its client sent, or a generated one.
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue};
@@ -20,7 +20,7 @@ impl MakeRequestId for OwnId {
     }
 }
 
-/// Takes from a request an identifier that is empty, too long, or not to be shown as it is.
+/// Removes from a request an identifier that is empty, too long, or not printable.
 pub fn without_unsound(mut request: Request) -> Request {
     let sound = |id: &HeaderValue| {
         (1..=limits::REQUEST_ID_LENGTH).contains(&id.len()) && id.as_bytes().iter().all(u8::is_ascii_graphic)

@@ -34,7 +34,7 @@ struct RequestGuard<'a> {
     answered: bool,
 }
 
-/// Serves a request, and sees to all that is common to every reply.
+/// Serves a request, and adds what is common to every reply.
 pub async fn log_request(State(metrics): State<Arc<RequestMetrics>>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     let id = request.extensions().get::<RequestId>().map(|id| id.header_value().clone());
@@ -72,7 +72,7 @@ pub async fn log_request(State(metrics): State<Arc<RequestMetrics>>, mut request
     response
 }
 
-/// What stands for the route of a request that matches none.
+/// The route label of a request that matches no route.
 const NO_ROUTE: &str = "none";
 
 /// The span of a request, below that of its caller; its fields have the names that OpenTelemetry gives them.
@@ -117,7 +117,7 @@ impl RequestGuard<'_> {
             500 => {
                 tracing::error!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
             }
-            // A fault of the surroundings, which may last, and come with every request.
+            // An external fault, which may last and affect every request.
             501.. => {
                 tracing::warn!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
             }

@@ -1,4 +1,4 @@
-//! Headers that keep browsers from mischief: on every reply, and for pages of the origins that are let in.
+//! Security headers for browsers: on every reply, and CORS headers for pages of the allowed origins.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use tower_http::cors::CorsLayer;
 use crate::api::middleware::access_control::METHODS;
 use crate::api::middleware::request_id::REQUEST_ID;
 
-/// How long a browser may remember what it was allowed.
+/// How long a browser may cache a CORS preflight reply.
 const REMEMBERED: Duration = Duration::from_secs(600);
 
 /// A reply is data: nothing in it may be run or framed.
@@ -22,13 +22,13 @@ const PAGE_POLICY: HeaderValue = HeaderValue::from_static(
 
 /// Which pages may embed a reply.
 const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
-/// The page to look at does the same, and needs no style within its elements. It draws a plot that is to be saved from memory.
+/// The web page does the same, without inline styles. It saves a plot as an image from a `blob:` URL.
 const LOOK_POLICY: HeaderValue = HeaderValue::from_static(
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; \
      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
 );
 
-/// What every reply has.
+/// The headers of every reply.
 const COMMON: [(HeaderName, HeaderValue); 4] = [
     (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
     (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
@@ -41,9 +41,9 @@ const COMMON: [(HeaderName, HeaderValue); 4] = [
 pub enum Kind {
     /// Data, which may be a secret.
     Data,
-    /// The page to try the service, which is no secret and may be kept.
+    /// The API documentation page, which is public and may be cached.
     Docs,
-    /// The page to look at, likewise.
+    /// The web page, likewise.
     Page,
 }
 
@@ -70,7 +70,7 @@ pub fn protect(headers: &mut HeaderMap, method: &Method, kind: Kind) {
     }
 }
 
-/// Answers the questions of browsers on behalf of pages of these origins.
+/// Answers CORS requests of pages from these origins.
 pub fn cross_origin(origins: &[HeaderValue]) -> CorsLayer {
     let sent = ["idempotency-key", "last-event-id"].map(HeaderName::from_static);
     let sent = sent.into_iter().chain([
@@ -101,7 +101,7 @@ impl FromStr for Origin {
         let (Some(scheme @ ("http" | "https")), Some(authority)) = (uri.scheme_str(), uri.authority()) else {
             return Err(refused());
         };
-        // Letter by letter what a browser sends: it would not be found otherwise.
+        // Compared byte by byte with what a browser sends.
         let plain = format!("{scheme}://{authority}").to_ascii_lowercase();
         if plain != text || text.contains(['@', '*']) {
             return Err(refused());

@@ -18,7 +18,7 @@ pub fn write(document: &mut Value) {
     for (method, path, operation) in operations(document) {
         let Need::Key(role) = need(&method.to_uppercase(), path) else { continue };
         operation["security"] = json!([{"key": []}, {}]);
-        let missing = "There is no key with the request, or none that the server knows";
+        let missing = "There is no key with the request, or it is not a key of the server";
         operation["responses"]["401"] = refusal(missing);
         operation["responses"]["403"] = refusal(&format!("The key does not have the role `{}`", role.name()));
     }

@@ -1,4 +1,4 @@
-//! What comes with a response: headers, formats, links to what can be done next.
+//! Headers, formats and links of responses.
 
 use serde_json::{Map, Value, json};
 

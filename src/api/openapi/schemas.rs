@@ -1,5 +1,5 @@
 //! What the derived schemas cannot say: which members exclude each other, and which values between the limits are left
-//! out. Generated clients and testers go by it.
+//! out. Generated clients and testers rely on it.
 
 use serde_json::{Map, Value, json};
 
@@ -16,13 +16,13 @@ pub fn write(document: &mut Value) {
     }
 }
 
-/// Closes the alternatives: a choice with one key takes no second one.
+/// Closes the alternatives: a choice with one key allows no second one.
 fn close_choices(schemas: &mut Map<String, Value>) {
     for alternative in schemas.values_mut().filter_map(|schema| schema.get_mut("oneOf")?.as_array_mut()).flatten() {
         if alternative["type"] == "object" {
             alternative["additionalProperties"] = json!(false);
         } else if alternative["allOf"].is_array() {
-            // What stands in its parts counts too.
+            // What its parts contain counts too.
             alternative["unevaluatedProperties"] = json!(false);
         }
     }

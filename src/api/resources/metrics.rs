@@ -40,7 +40,7 @@ pub async fn metrics(
     Ok(([(header::CONTENT_TYPE, MEDIA_TYPE)], text).into_response())
 }
 
-/// The page as it is now: handles on what is counted all along, and what is read when somebody asks.
+/// The current page: the registered counters, and gauges that are read at this request.
 fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let page = Registry::new();
     for collector in traffic.collectors() {

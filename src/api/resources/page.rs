@@ -46,7 +46,7 @@ async fn named(name: &str, headers: &HeaderMap, uri: &Uri) -> Response {
 }
 
 impl Asset {
-    /// The file, or 304 if the client already has it.
+    /// The file, or 304 if the client has the current version.
     fn answer(&self, hash: &str, asked: &HeaderMap) -> Response {
         let (body, coding) = if takes_gzip(asked) { (self.packed, "gzip") } else { (self.plain, "identity") };
         // The two encodings have different tags, because a tag identifies bytes.

@@ -54,7 +54,7 @@ fn without_keys(value: &str) -> String {
     masked
 }
 
-/// A hash is no secret, but nobody needs to see it.
+/// A hash is no secret, but of no use in the output.
 fn without_hashes(value: &str) -> String {
     let mut parts = value.split("sha256:");
     let mut masked = parts.next().unwrap_or_default().to_owned();

@@ -29,7 +29,7 @@ pub struct ConnectionLimiter {
 struct Table {
     next: u64,
     connections: HashMap<u64, Connection>,
-    /// ConnectionLimits by client.
+    /// Connections by client.
     clients: HashMap<IpAddr, usize>,
     spare: usize,
     refused: u64,
@@ -45,7 +45,7 @@ struct Connection {
     task: Option<AbortHandle>,
 }
 
-/// How many connections there are and have been.
+/// Counts of connections.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConnectionCounts {
     /// Open, without the spare ones.
@@ -90,7 +90,7 @@ impl ConnectionLimiter {
         &self.limits
     }
 
-    /// How many connections there are and have been.
+    /// Counts of connections.
     #[must_use]
     pub fn counts(&self) -> ConnectionCounts {
         let table = self.table();

@@ -25,12 +25,12 @@ pub(crate) use socket::Socket;
 /// Connections at a time by default.
 pub const DEFAULT_CONNECTIONS: usize = 4096;
 
-/// How many connections there are, and how long they may take.
+/// The limits of connections, in number and in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConnectionLimits {
-    /// How many at a time.
+    /// Connections at a time.
     pub most: usize,
-    /// How many of one client, by its address. Behind a proxy all clients have one address.
+    /// Connections of one client, by its address. Behind a proxy all clients have one address.
     pub per_client: usize,
     /// From the first byte of a request to the end of its head; and from the connection to there.
     pub head: Duration,

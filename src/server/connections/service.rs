@@ -13,7 +13,7 @@ use super::ConnectionActivity;
 use super::bodies::{DeadlineBody, RequestInProgress, TrackedBody};
 use crate::admission::{Pool, PoolError, Reservation};
 
-/// Paths that are answered however busy the server is.
+/// Paths that are answered even if the server is busy.
 const ALWAYS_ANSWERED: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
 
 /// The request arrived while its connection was being closed to make room.

@@ -30,10 +30,10 @@ const NICE: i32 = 10;
 pub struct Workers(Arc<ThreadPool>);
 
 impl Workers {
-    /// So many threads.
+    /// This many threads.
     ///
     /// # Errors
-    /// Why the system gives none.
+    /// The error of the system.
     pub fn new(threads: usize) -> Result<Workers, String> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.max(1))
@@ -71,7 +71,7 @@ impl Sweep {
         Ok(result)
     }
 
-    /// Computes the first of these points on so many threads, as many as can be done in a slice.
+    /// Computes the first of these points on `threads` threads, as many as fit in a slice.
     ///
     /// # Errors
     /// [`Failure`] if it was stopped.

@@ -18,7 +18,7 @@ use stickslip_wire::sweep::CheckedSweep;
 pub use compute::Workers;
 pub use result::SweepResult;
 
-/// Work that is stored at a time, and that a killed process loses.
+/// Work of one chunk: what is stored at a time, and what a killed process loses.
 const CHUNK_COST: Nanoseconds = 1_000_000_000;
 /// The most numbers that are stored at a time.
 const CHUNK_NUMBERS: usize = 65_536;
@@ -59,19 +59,19 @@ impl Sweep {
         self.checked.points
     }
 
-    /// What all of it costs at most.
+    /// The largest cost of all points together.
     #[must_use]
     pub fn cost(&self) -> Nanoseconds {
         self.cost_per_point.saturating_mul(self.checked.points as u64)
     }
 
-    /// Numbers in the result of so many points.
+    /// Numbers in the result of this many points.
     #[must_use]
     pub fn numbers(&self, points: usize) -> usize {
         points * self.checked.outputs.len()
     }
 
-    /// Bytes that computing takes on so many threads, without the result.
+    /// Bytes that computing takes on this many threads, without the result.
     #[must_use]
     pub fn bytes(&self, threads: usize) -> usize {
         self.bytes.saturating_mul(threads + 1)

@@ -104,7 +104,7 @@ impl Sweep {
         for (index, found) in found.iter().enumerate() {
             match found {
                 Lookup::Number(_) => {}
-                Lookup::Nothing => faults.add(at.index(index), "the reply to the base has nothing there"),
+                Lookup::Nothing => faults.add(at.index(index), "the reply to the base has no such member"),
                 Lookup::Other => faults.add(at.index(index), "the reply to the base has no number there"),
             }
         }
@@ -112,7 +112,7 @@ impl Sweep {
     }
 }
 
-/// The pointer to the first peak for one to any peak: how many there are is not known before.
+/// The pointer to the first peak in place of one to any peak: their number is not known in advance.
 fn first_peak(output: &Pointer) -> Pointer {
     match output.segments() {
         [residual, peaks, position, rest @ ..]

@@ -1,4 +1,4 @@
-//! SweepResult of a sweep's table, and how they become bytes for a store.
+//! Results of consecutive points of a sweep, and their encoding as bytes for a store.
 
 use stickslip_wire::{PointFailure, limits};
 
@@ -66,7 +66,7 @@ mod tests {
     use stickslip_wire::{PointFailure, limits};
 
     #[test]
-    fn rows_come_back_to_the_last_bit_and_what_is_cut_off_does_not() {
+    fn rows_are_read_to_the_last_bit_and_truncated_ones_are_not() {
         let failure = PointFailure {
             index: 7,
             code: "beyond_profile".to_owned(),

@@ -31,7 +31,7 @@ impl Jobs {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Deletes the jobs whose time is over.
+    /// Deletes the jobs that have expired.
     pub(super) fn purge(&self) {
         let now = Timestamp::now();
         self.lock().retain(|id, stored| {

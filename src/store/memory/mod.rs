@@ -1,4 +1,4 @@
-//! Everything in the process: fast, and gone when it ends.
+//! A store in the memory of the process: fast, and lost when it ends.
 
 mod jobs;
 
@@ -15,9 +15,9 @@ use stickslip_wire::SessionSummary;
 
 use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 
-/// Bytes of replies kept for retries. Beyond them the oldest go before their time: the price of a bounded memory.
+/// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
-/// What a receipt takes besides its body and key, roughly.
+/// Estimated bytes of a receipt besides its body and key.
 const RECEIPT_OVERHEAD: usize = 256;
 
 /// Sessions in a map.
@@ -61,8 +61,7 @@ impl MemoryStore {
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        // Nothing that can panic stands between the first and the last change of a call, so that a poisoned map is
-        // whole.
+        // No call can panic between its first and its last change, so that a poisoned map is consistent.
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

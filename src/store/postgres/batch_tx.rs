@@ -38,7 +38,7 @@ struct Columns {
 }
 
 impl WriterConnection {
-    /// Connects, and prepares what is sent again and again.
+    /// Connects, and prepares the statements of batches.
     pub(super) async fn open(pool: &ClientPool) -> Result<WriterConnection, Fault> {
         let open = async {
             let client = pool.target.open().await?;
@@ -57,13 +57,13 @@ impl WriterConnection {
         !self.client.is_closed()
     }
 
-    /// Makes all changes whose sessions are where they were expected, in one transaction. Tells at which sequence the
-    /// sessions to append to were found; those that were not are missing.
+    /// Makes all changes whose sessions are at the expected sequence, in one transaction. Returns the sequence at which
+    /// each session to append to was found; sessions that do not exist are missing.
     pub(super) async fn commit_batch(&self, requests: &[WriteRequest]) -> Result<HashMap<Uuid, u64>, Fault> {
         let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
         let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
-        // The first of the columns of a receipt names the session that has to win for it, and a new one always does.
+        // The first column of a receipt names the session whose change must succeed for it; that of a new one always does.
         let first_receipts = columns.first_receipts.parameters().into_iter().skip(1);
         let created: Vec<_> = columns.sessions.parameters().into_iter().chain(first_receipts).collect();
 
@@ -99,7 +99,7 @@ impl WriterConnection {
             )
         };
         let answers = timeout(ANSWER, transaction).await.map_err(|_| Fault::no_answer())?;
-        // The first failure is the cause of the others, and of a commit that was none.
+        // The first failure is the cause of the others, and of a commit that did nothing.
         let (begun, found, appended, created, notified, committed) = answers;
         begun?;
         let found = found?;

@@ -19,14 +19,14 @@ const PATIENCE_FOR_CONNECTION: Duration = Duration::from_secs(5);
 /// How long an answer may take: longer than the database itself allows a statement, so that the database gives up first
 /// unless it cannot be reached.
 pub(super) const ANSWER: Duration = Duration::from_secs(15);
-/// The same for statements that copy or delete whole pasts.
+/// The same for statements that copy or delete all moves of a contact.
 pub(super) const LONG_ANSWER: Duration = Duration::from_secs(90);
 /// How often work is tried in all, and how often because two transactions conflicted.
 const TRIES: usize = 12;
 const COLLISIONS: usize = 5;
 
-/// Does work on a connection of the pool that may be done again on another, until it is done or waiting is of no use
-/// any more. (A function would have to promise about the closure's future what the compiler cannot yet express.)
+/// Does work on a connection of the pool that may be done again on another, until it is done or no further
+/// attempt is worthwhile. (A macro, because the bounds of a closure's future cannot be expressed for a function.)
 macro_rules! with_retries {
     ($pool:expr, $limit:expr, $connection:ident => $work:expr) => {{
         let mut tries = $crate::store::postgres::client_pool::Tries::default();
@@ -122,7 +122,7 @@ pub(super) struct Tries {
 }
 
 impl Tries {
-    /// Waits before another try, or says that there is to be none.
+    /// Waits before another attempt, or returns the error if there is none.
     pub(super) async fn retry_or_fail(&mut self, outage: &Outage, fault: Fault) -> Result<()> {
         self.count += 1;
         match &fault {

@@ -1,6 +1,6 @@
 //! Values as columns of the database, and rows back to the last bit and nanosecond.
 //!
-//! The database's timestamps have microseconds. The nanoseconds beyond them stand in a column of their own.
+//! The database's timestamps have microseconds. The nanoseconds beyond them have a column of their own.
 
 use std::error::Error;
 use std::time::SystemTime;
@@ -68,7 +68,7 @@ pub(super) fn split_time(at: Timestamp) -> (SystemTime, i16) {
     (whole.into(), i16::try_from(beyond).unwrap_or_default())
 }
 
-/// A count as the database knows it; beyond its range nothing is stored.
+/// A count as `bigint`; a larger one is an error.
 pub(super) fn to_bigint(count: u64) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }
@@ -98,7 +98,7 @@ macro_rules! columns {
     };
 }
 
-columns!(Requests, "What is asked for, a row a session.", (Uuid, u64, u64, Option<Timestamp>), |request| {
+columns!(Requests, "Requested changes, a row a session.", (Uuid, u64, u64, Option<Timestamp>), |request| {
     id: Uuid = request.0,
     expected: i64 = to_bigint(request.1),
     sequence: i64 = to_bigint(request.2),
@@ -106,7 +106,7 @@ columns!(Requests, "What is asked for, a row a session.", (Uuid, u64, u64, Optio
     ns: Option<i16> = request.3.map(|at| split_time(at).1),
 });
 
-columns!(Moves, "Moves, with what came of them.", (Uuid, i64, &Record), |request| {
+columns!(Moves, "Moves, with the states after them.", (Uuid, i64, &Record), |request| {
     contact: Uuid = request.0,
     sequence: i64 = to_bigint(request.2.sequence),
     target_displacement: Option<f64> = request.2.step.displacement,

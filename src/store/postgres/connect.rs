@@ -95,9 +95,9 @@ pub(super) fn error_chain(error: &Error) -> String {
     text
 }
 
-/// Which certificate authorities vouch for the server.
+/// Which certificate authorities are trusted.
 enum Verification {
-    /// None is asked: the connection is encrypted, as libpq does for `prefer` and `require`.
+    /// None is checked: the connection is encrypted, as libpq does for `prefer` and `require`.
     None,
     /// The certificate authorities of the system.
     System,
@@ -105,7 +105,7 @@ enum Verification {
     File(String),
 }
 
-/// Takes those TLS options out of a URL that the driver does not know.
+/// Removes from a URL the TLS options that the driver does not support.
 fn split_tls_options(url: &str) -> Result<(String, Verification), String> {
     let Some((base, query)) = url.split_once('?') else {
         return Ok((url.to_owned(), Verification::None));

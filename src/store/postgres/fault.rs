@@ -12,18 +12,18 @@ use crate::store::StoreError;
 
 use super::connect::error_chain;
 
-/// How long to wait for a lost database before clients are told. After that no request waits until it is back.
+/// How long to wait for a lost database before requests fail. After that no request waits until it is back.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// How soon to try again at first; the time doubles up to the longest.
 const FIRST_PAUSE: Duration = Duration::from_millis(25);
 const LONGEST_PAUSE: Duration = Duration::from_millis(400);
 
-/// Why the database did not do what it was asked for.
+/// Why the database failed.
 #[derive(Debug)]
 pub(super) enum Fault {
     /// The connection is lost; whether the change was made is unknown.
     Lost(String),
-    /// Nothing has changed, and the same may go well at once: two transactions conflicted.
+    /// Nothing has changed, and a retry may succeed at once: two transactions conflicted.
     Conflict(String),
     /// Nothing has changed: a key or an identifier is there already.
     Duplicate(String),
@@ -56,7 +56,7 @@ impl From<StoreError> for Fault {
     }
 }
 
-/// Whether TLS came to nothing: time would not change a certificate.
+/// Whether TLS failed, which a retry would not change.
 fn distrusted(error: &Error) -> bool {
     let mut source = std::error::Error::source(error);
     while let Some(inner) = source {
@@ -105,7 +105,7 @@ impl Fault {
     }
 }
 
-/// Since when the database has been out of reach, as far as anybody has noticed.
+/// Since when the database has been unreachable, as observed by the last call.
 #[derive(Default)]
 pub(super) struct Outage {
     // A std mutex: held for a read, never across an await.
@@ -134,7 +134,7 @@ impl Outage {
     }
 }
 
-/// Backoff that grow.
+/// Waits that grow from attempt to attempt.
 pub(super) struct Backoff(Duration);
 
 impl Default for Backoff {

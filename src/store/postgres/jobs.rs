@@ -1,7 +1,7 @@
 //! Jobs in the database, whose chunks all replicas compute.
 //!
 //! A worker has a lease on the chunk that it computes, and renews it. The chunks of a replica that is gone are claimed
-//! by others when its leases are over.
+//! by others when its leases have run out.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -120,7 +120,7 @@ impl ClientPool {
         Ok(true)
     }
 
-    /// Deletes the jobs past their time.
+    /// Deletes the expired jobs.
     pub(super) async fn purge_jobs(&self) -> Result<()> {
         while to_bigint(with_retries!(self, LONG_ANSWER, connection => purge(connection))?) == PURGED_AT_ONCE {}
         Ok(())

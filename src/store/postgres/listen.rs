@@ -14,7 +14,7 @@ use super::client_pool::ClientPool;
 use super::fault::{Backoff, Fault};
 use super::sql;
 
-/// How often listeners are woken where the database has no notifications.
+/// How often listeners are woken if the database has no notifications.
 const LOOK: Duration = Duration::from_secs(1);
 
 /// Wakes listeners when the database notifies of changes; never ends.

@@ -1,9 +1,9 @@
-//! PostgreSQL, shared by many processes: what one has acknowledged all the others find.
+//! PostgreSQL, shared by many processes: all of them read what one has acknowledged.
 //!
 //! Moves and new sessions queue at a writer, which sends what has gathered as one transaction in one round trip. The
 //! sequence of a contact decides which of several processes that move it at once wins; the primary key of the moves is
 //! a second barrier. Everything else goes through a pool of connections. A lost connection is replaced, and what is
-//! safe to repeat is repeated for a while; then the callers are told that the storage is out of reach.
+//! safe to repeat is repeated for a while; then the callers get an error.
 //!
 //! `docs/postgres.md` describes the tables and what the database must support.
 
@@ -47,7 +47,7 @@ use writer::Writer;
 
 /// How long a start waits for the database.
 const START: Duration = Duration::from_secs(15);
-/// How long the question whether the database is there may take.
+/// How long the check whether the database is reachable may take.
 const READY: Duration = Duration::from_secs(2);
 
 /// Sessions in a PostgreSQL database.
@@ -82,7 +82,7 @@ impl PostgresStore {
         Ok(PostgresStore { pool, writer, changes, listener })
     }
 
-    /// Connects to a database to look at, beside the processes that work with it. Its tables must be there already.
+    /// Connects to a database for reading, while other processes may use it. Its tables must exist.
     ///
     /// # Errors
     /// [`StoreError::Unavailable`] if it cannot be reached, [`StoreError::Failed`] if its tables cannot be used.
@@ -154,7 +154,7 @@ impl Store for PostgresStore {
         };
         match timeout(READY, asked).await.unwrap_or_else(|_| Err(Fault::no_answer())) {
             Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
-            Ok(_) => Err(StoreError::Unavailable("the database takes no changes".to_owned())),
+            Ok(_) => Err(StoreError::Unavailable("the database accepts no changes".to_owned())),
             Err(fault) => Err(fault.into_store_error()),
         }
     }
@@ -179,7 +179,7 @@ impl Store for PostgresStore {
     }
 
     async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
-        // Nothing lies before the nil identifier, and no session has it.
+        // No session has the nil identifier, which is the lowest.
         let (after, limit) = (after.unwrap_or_default(), to_bigint(limit as u64));
         let found = match tenant {
             None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,

@@ -1,4 +1,4 @@
-//! Why a change was not made, and whether it was after all: a connection may be lost between a commit and its answer.
+//! The outcome of a change whose answer was lost: a connection may be lost between a commit and its answer.
 
 use crate::store::{RECEIPT_LIFETIME, StoreError, Tenant};
 
@@ -7,17 +7,17 @@ use super::columns::{from_bigint, to_bigint};
 use super::request::{Change, WriteRequest};
 use super::sql;
 
-/// What became of a request.
+/// The outcome of a request.
 pub(super) enum Outcome {
     /// It is stored.
     Stored,
-    /// It is not, and this is why.
+    /// It is not stored, for this reason.
     Refused(StoreError),
-    /// It is not, and nothing forbids it now.
+    /// It is not stored, and may be tried again.
     NotStored,
 }
 
-/// Looks what became of a request; `in_doubt` if an earlier attempt at it may have been committed.
+/// Reads the outcome of a request; `in_doubt` if an earlier attempt at it may have been committed.
 pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest, in_doubt: bool) -> Outcome {
     let (id, expected, last) = match &request.change {
         Change::Create(session, _) => (session.id, None, 0),
@@ -28,7 +28,7 @@ pub(super) async fn outcome_of(pool: &ClientPool, request: &WriteRequest, in_dou
     let lifetime = RECEIPT_LIFETIME.as_secs_f64();
     let row = match pool.row(sql::OUTCOME, &[&id, &request.key(), &lifetime, &to_bigint(last)]).await {
         Ok(Some(row)) => row,
-        Ok(None) => return Outcome::Refused(StoreError::Failed("a question without an answer".to_owned())),
+        Ok(None) => return Outcome::Refused(StoreError::Failed("the database returned no row".to_owned())),
         Err(error) => return Outcome::Refused(error),
     };
     let (sequence, expired, taken): (Option<i64>, Option<&str>, bool) = (row.get(0), row.get(1), row.get(2));

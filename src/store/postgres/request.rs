@@ -12,7 +12,7 @@ const REQUESTS: usize = 512;
 /// Moves in one transaction, unless a single request has more.
 const MOVES: usize = 20_000;
 
-/// What is to be changed.
+/// The change.
 pub(super) enum Change {
     /// A new session, with its definition as text.
     Create(Session, String),
@@ -20,11 +20,11 @@ pub(super) enum Change {
     Append { id: Uuid, expected: u64, records: Vec<Record> },
 }
 
-/// A change, and who waits for it.
+/// A change, and the channel for its answer.
 pub(super) struct WriteRequest {
     pub(super) change: Change,
     pub(super) receipt: Option<Receipt>,
-    /// A number that no other request has: tells, after a lost connection, whose moves were stored.
+    /// A random number of the request: it shows, after a lost connection, whose moves were stored.
     pub(super) stamp: i64,
     pub(super) answer: oneshot::Sender<Result<()>>,
 }

@@ -7,17 +7,17 @@ pub(super) const CHANNEL: &str = "stickslip_changes";
 pub(super) const PREPARE_CONNECTION: &str =
     "SET statement_timeout = '10s'; SET lock_timeout = '5s'; SET client_min_messages = 'warning'";
 
-/// For the statements that copy or delete whole pasts.
+/// For the statements that copy or delete all moves of a contact.
 pub(super) const ALLOW_LONG: &str = "SET LOCAL statement_timeout = '60s'";
 
 pub(super) const BEGIN: &str = "BEGIN ISOLATION LEVEL READ COMMITTED";
 pub(super) const COMMIT: &str = "COMMIT";
 
 /// Locks the sessions of a batch in the order of their identifiers, so that two batches never wait for each other, and
-/// tells where they are.
+/// returns their sequences.
 pub(super) const LOCK: &str = "SELECT id, sequence FROM contacts WHERE id = ANY($1) ORDER BY id FOR UPDATE";
 
-/// Appends moves to the sessions that are where their movers think they are, and keeps the receipts of these alone.
+/// Appends moves to the sessions that are at the expected sequence, and stores the receipts of these alone.
 pub(super) const APPEND: &str = "
 WITH won AS (
     UPDATE contacts
@@ -61,13 +61,13 @@ ORDER BY receipt.key";
 /// Announces changes; a payload names as many sessions as fit.
 pub(super) const NOTIFY: &str = "SELECT pg_notify($1, payload) FROM unnest($2::text[]) AS payload";
 
-/// Fails where the database has no notifications.
+/// Fails if the database has no notifications.
 pub(super) const PROBE_NOTIFY: &str = "SELECT pg_notify('stickslip_changes', '')";
 
 /// Begins to receive notifications.
 pub(super) const LISTEN: &str = "LISTEN stickslip_changes";
 
-/// What became of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
+/// The outcome of a request: the sequence of its session, whose it was if it has expired, whether its key is taken, and
 /// the stamp of its last move.
 pub(super) const OUTCOME: &str = "
 SELECT (SELECT sequence FROM contacts WHERE id = $1),
@@ -167,7 +167,7 @@ WITH RECURSIVE owners (contact) AS (
 SELECT contact FROM owners
 WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.id = owners.contact)";
 
-/// Held while the jobs of a tenant are to_bigint and another is made.
+/// Held while the jobs of a tenant are counted and another is made.
 pub(super) const LOCK_TENANT: &str = "SELECT pg_advisory_xact_lock($1)";
 
 pub(super) const JOBS_OF_TENANT: &str = "
@@ -232,7 +232,7 @@ SELECT content FROM job_chunks WHERE job = $1 AND chunk >= $2 AND content IS NOT
 
 pub(super) const DELETE_JOB: &str = "DELETE FROM jobs WHERE id = $1";
 
-/// Jobs whose time is over, some at a time. What another replica is deleting is left to it.
+/// Expired jobs, some at a time. What another replica is deleting is left to it.
 pub(super) const PURGE_JOBS: &str = "
 DELETE FROM jobs WHERE id IN (
     SELECT id FROM jobs

@@ -36,7 +36,7 @@ impl ClientPool {
         }
     }
 
-    /// Why a session is not at a sequence where it was a moment ago.
+    /// Why a session is no longer at the expected sequence.
     async fn not_at(&self, id: Uuid) -> StoreError {
         match self.row(sql::SEQUENCE, &[&id]).await {
             Ok(Some(row)) => StoreError::Stale { found: super::columns::from_bigint(row.get(0)) },
@@ -104,7 +104,7 @@ impl ClientPool {
         let keep = async |connection: &Object| {
             let statement = connection.prepare_cached(sql::SAVE_SNAPSHOT).await?;
             match connection.execute(&statement, &[&id, &to_bigint(snapshot.sequence), &snapshot.state]).await {
-                // The session went at this very moment.
+                // The session has just been deleted.
                 Err(error) if error.code() == Some(&SqlState::FOREIGN_KEY_VIOLATION) => Ok(()),
                 other => Ok(other.map(drop)?),
             }
@@ -127,7 +127,7 @@ impl ClientPool {
                 gone.extend(with_retries!(self, LONG_ANSWER, connection =>
                     self.purge_idle(connection, &[&some, &since, &since_ns]))?);
             }
-            // A page of which nothing went is in the hands of another replica.
+            // Another replica is deleting a page of which nothing was deleted here.
             if to_bigint(ids.len() as u64) < IDLE_PAGE || gone.len() == before {
                 return Ok(gone);
             }
@@ -163,7 +163,7 @@ struct Fork {
 }
 
 impl Fork {
-    /// Makes it, unless the session is at another sequence or gone.
+    /// Makes it, unless the session is at another sequence or deleted.
     async fn make(&self, connection: &mut Object, commit_sent: &AtomicBool) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         let lifetime = RECEIPT_LIFETIME.as_secs_f64();
@@ -200,7 +200,7 @@ pub(super) async fn begin(connection: &mut Object) -> Result<Transaction<'_>, Fa
     Ok(transaction)
 }
 
-/// Tells how many rows a statement has touched.
+/// The number of rows that a statement has changed.
 pub(super) async fn execute(
     transaction: &Transaction<'_>,
     statement: &str,

@@ -1,4 +1,4 @@
-//! The writer: what waits while a transaction is under way goes together in the next one.
+//! The writer: changes that arrive during a transaction go together in the next one.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -22,12 +22,12 @@ use super::sql;
 const QUEUE: usize = 4096;
 /// How long a change waits for a place in the queue.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How often a batch may collide with what others do before its clients are told.
+/// How often a batch may conflict with other transactions before its requests fail.
 const COLLISIONS: usize = 8;
 /// How often a connection may be lost under one batch: perhaps the batch itself is the cause.
 const LOSSES: usize = 4;
 
-/// Where changes are handed in.
+/// The handle to which changes are sent.
 pub(super) struct Writer {
     queue: mpsc::Sender<WriteRequest>,
     pub(super) commits: Arc<Commits>,
@@ -83,7 +83,7 @@ impl WriterTask {
         }
     }
 
-    /// Sees to it that each of the changes is made or refused, and answers them; `in_doubt` if an earlier attempt may
+    /// Makes or refuses each of the changes, and answers them; `in_doubt` if an earlier attempt may
     /// have been committed.
     async fn commit_or_answer(&mut self, mut batch: Vec<WriteRequest>, mut in_doubt: bool) {
         let (mut backoff, mut collisions, mut losses) = (Backoff::default(), 0, 0);
@@ -129,7 +129,7 @@ impl WriterTask {
                     batch = self.without_duplicates(batch, in_doubt).await;
                 }
                 Fault::Refused(StoreError::Full(text)) => return answer_all(batch, || StoreError::Full(text.clone())),
-                // One of them is to blame, and the others shall not suffer for it.
+                // One of them is the cause: each is tried alone, so that the others succeed.
                 Fault::Refused(StoreError::Failed(_)) if batch.len() > 1 => {
                     for request in batch {
                         Box::pin(self.commit_or_answer(vec![request], in_doubt)).await;
@@ -185,7 +185,7 @@ impl WriterTask {
         let keys: Vec<&str> = batch.iter().filter_map(WriteRequest::key).collect();
         let freed = self.pool.rows(sql::DELETE_OLD_KEYS, &[&keys, &RECEIPT_LIFETIME.as_secs_f64()]).await;
         if let Err(error) = freed {
-            tracing::warn!(%error, "idempotency keys past their time could not be freed");
+            tracing::warn!(%error, "expired idempotency keys could not be freed");
         }
         let outcome = join_all(batch.iter().map(|request| outcome_of(&self.pool, request, in_doubt))).await;
         let mut rest = Vec::new();

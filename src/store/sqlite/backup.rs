@@ -10,7 +10,7 @@ use super::file::{beside, lock, sync_folder};
 use super::readers::open_reader;
 use super::schema::{self, APPLICATION};
 
-/// A connection that only reads, to a store that this program knows.
+/// A read-only connection to a store of a version that this program supports.
 pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     // SQLite would say no more than that it cannot open it.
     fs::metadata(path).map_err(|error| error.to_string())?;
@@ -33,7 +33,7 @@ pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
     }
     let database = open_read_only(path)?;
     let partial = beside(copy, ".new");
-    // What a copy that was cut off has left is written over; the lock tells it from one under way.
+    // The remains of an interrupted copy are overwritten; the lock distinguishes them from a copy under way.
     let file =
         OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&partial).map_err(describe)?;
     lock(&file).map_err(|why| format!("{}: {why}", partial.display()))?;
@@ -42,7 +42,7 @@ pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
         Ok(bytes)
     });
     if copied.is_err() {
-        // Best effort: what stays is written over by the next attempt.
+        // Best effort: what stays is overwritten by the next attempt.
         let _ = fs::remove_file(&partial);
     }
     copied

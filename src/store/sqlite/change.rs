@@ -39,11 +39,11 @@ pub(super) struct Transaction<'a> {
     pub(super) number: i64,
 }
 
-/// What a change came to.
+/// The result of a change.
 pub(super) enum Done {
-    /// It is made, and counts so much.
+    /// It is made, with this count.
     Made(u64),
-    /// So many contacts are deleted; their moves are removed later.
+    /// This many contacts are deleted; their moves are removed later.
     Removed(u64),
     /// The fork has begun; copying goes on in small steps.
     Copying(Arc<Fork>, Copying),
@@ -116,7 +116,7 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    /// Deletes receipts past their time; counts 1 if there may be more of them.
+    /// Deletes expired receipts; returns 1 if there may be more of them.
     pub(super) fn purge_receipts(&self) -> Result<Done, ChangeError> {
         let cutoff = clamped_nanoseconds(receipt_cutoff());
         let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
@@ -136,7 +136,7 @@ impl Transaction<'_> {
         Ok(Done::Made(u64::from(count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE)))
     }
 
-    /// Lets those of the sessions expire that are still there and have not moved since; counts them.
+    /// Expires those of the sessions that still exist and have not moved since; returns their number.
     pub(super) fn expire(&mut self, ids: &[Uuid], since: Timestamp) -> Result<Done, ChangeError> {
         let mut expired = 0;
         for id in ids {
@@ -157,7 +157,7 @@ pub(super) fn check_key(database: &Connection, receipt: Option<&Receipt>) -> Res
     Ok(())
 }
 
-/// Stores a receipt, in place of one past its time.
+/// Stores a receipt, in place of an expired one.
 pub(super) fn insert_receipt(database: &Connection, receipt: Option<&Receipt>) -> rusqlite::Result<()> {
     let Some(Receipt { request, reply }) = receipt else { return Ok(()) };
     let sql = "INSERT OR REPLACE INTO receipts (key, fingerprint, created, sequence, body, at)
@@ -179,7 +179,7 @@ pub(super) fn receipt_cutoff() -> Timestamp {
     Timestamp::now().checked_sub(lifetime).unwrap_or(Timestamp::MIN)
 }
 
-/// Writes a session that has inherited so many moves.
+/// Writes a session that has inherited this many moves.
 pub(super) fn insert_session(
     database: &Connection,
     number: i64,
@@ -233,7 +233,7 @@ fn delete_contact(database: &Connection, number: i64) -> rusqlite::Result<()> {
     Ok(())
 }
 
-/// Lets a session expire, unless it is gone or has moved meanwhile.
+/// Expires a session, unless it has been deleted or has moved meanwhile.
 fn expire(database: &Connection, id: Uuid, since: Timestamp) -> rusqlite::Result<bool> {
     let sql = format!(
         "SELECT c.number, c.tenant FROM {CONTACTS}

@@ -4,16 +4,16 @@ use rusqlite::{Error, ErrorCode, ffi};
 
 use crate::store::StoreError;
 
-/// When a failure came.
+/// When a failure occurred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stage {
-    /// Before the changes were to become durable: they have been taken back.
+    /// Before the commit: the changes have been rolled back.
     Before,
-    /// While they were to become durable.
+    /// During the commit.
     Commit,
 }
 
-/// Whether another attempt at fewer changes may fare better.
+/// Whether another attempt with fewer changes may succeed.
 pub(super) fn worth_splitting(error: &Error) -> bool {
     !matches!(
         error.sqlite_error_code(),
@@ -30,7 +30,7 @@ pub(super) fn store_error(error: &Error, stage: Stage) -> StoreError {
         Some(ErrorCode::DiskFull) => StoreError::Full(why),
         // A failed sync leaves open what has reached the disk.
         Some(ErrorCode::SystemIoFailure) if stage == Stage::Commit && is_sync(error) => StoreError::Unavailable(why),
-        // Quotas and shared memory on a full disk come as failures to write.
+        // Quotas and shared memory on a full disk are reported as failures to write.
         Some(ErrorCode::SystemIoFailure) if is_write(error) => StoreError::Full(why),
         Some(
             ErrorCode::DatabaseBusy

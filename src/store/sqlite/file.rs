@@ -1,4 +1,4 @@
-//! Opening the file: made whole or not at all, used by one process at a time, and refused untouched if it is not sound.
+//! Opening the file: created completely or not at all, used by one process at a time, and not modified if it is damaged.
 
 use std::ffi::OsString;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -19,7 +19,7 @@ const MAGIC: &[u8] = b"SQLite format 3\0";
 const SMALL: u64 = 32 * 1024 * 1024;
 /// Pages of the write-ahead log (16 MiB) at which its content moves to the file.
 const CHECKPOINT_PAGES: i32 = 4_000;
-/// Bytes of the write-ahead log that are kept on the disk to be written over.
+/// Bytes of the write-ahead log that are kept on the disk to be overwritten.
 const LOG_BYTES: i64 = 64 * 1024 * 1024;
 /// KiB of pages that the writer caches; SQLite wants the number negative.
 const CACHE: i32 = -65_536;
@@ -52,7 +52,7 @@ pub(super) fn open(path: &Path) -> Result<Opened, String> {
     match connect(path) {
         Ok(database) => Ok(Opened { database, lock }),
         Err(why) => {
-            // What SQLite has laid beside a file that is refused goes with it.
+            // Removes the files that SQLite has created beside a refused file.
             for (file, had) in [(log, had_log), (shared_memory, had_shared_memory)] {
                 if !had
                     && let Err(error) = std::fs::remove_file(&file)
@@ -75,7 +75,7 @@ fn create(path: &Path) -> Result<File, String> {
     let partial = beside(path, ".new");
     let made = make(path, &partial);
     if made.is_err() && length_at(path) == 0 {
-        // Best effort: what stays is written over by the next start.
+        // Best effort: what stays is overwritten by the next start.
         let _ = std::fs::remove_file(&partial);
     }
     made
@@ -97,7 +97,7 @@ fn make(path: &Path, partial: &Path) -> Result<File, String> {
     Ok(file)
 }
 
-/// Looks at the file alone, without SQLite, which would write beside it.
+/// Checks the file without SQLite, which would create files beside it.
 fn inspect(path: &Path, file: &File) -> Result<(), String> {
     let mut header = [0; 100];
     let length = length(file)?;
@@ -142,7 +142,7 @@ fn connect(path: &Path) -> Result<Connection, String> {
     database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(describe)?;
     database.set_prepared_statement_cache_capacity(STATEMENTS);
     schema::migrate(&mut database, MIGRATIONS).map_err(|error| error.to_string())?;
-    // The version is to stand in the file itself, where the next start looks for it first.
+    // The version must be in the file itself, where the next start looks for it first.
     database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(describe)?;
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(describe)?;
     Ok(database)

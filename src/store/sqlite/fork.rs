@@ -83,7 +83,7 @@ impl Fork {
 }
 
 impl Copying {
-    /// Gives a fork up: its copy is removed like all moves without a contact.
+    /// Abandons a fork: its copy is removed like all moves without a contact.
     pub(super) fn abandon(self, database: &Connection) -> rusqlite::Result<()> {
         database.prepare_cached("UPDATE unowned SET forming = 0 WHERE contact = ?1")?.execute([self.to]).map(drop)
     }
@@ -100,7 +100,7 @@ impl Copying {
     }
 }
 
-/// Gives up the forks that a crash has left incomplete.
+/// Abandons the forks that a crash has left incomplete.
 pub(super) fn abandon_all(database: &Connection) -> rusqlite::Result<()> {
     database.execute("UPDATE unowned SET forming = 0 WHERE forming = 1", []).map(drop)
 }

@@ -1,4 +1,4 @@
-//! Jobs in the file. Only the process knows which chunks are worked on: all claims end with it.
+//! Jobs in the file. Claims are kept in the process alone, and end with it.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -82,7 +82,7 @@ impl Transaction<'_> {
         }
     }
 
-    /// Deletes a job past its time, if there is one; counts it. One at a time: their results are large.
+    /// Deletes an expired job, if there is one; returns their number. One at a time: their results are large.
     fn purge_job(&self) -> Result<Done, ChangeError> {
         let before = |time| {
             let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
@@ -134,7 +134,7 @@ fn chunks(database: &Connection, id: Uuid, first: u64, limit: usize) -> Result<V
 }
 
 impl SqliteStore {
-    /// Deletes the jobs past their time.
+    /// Deletes the expired jobs.
     pub(super) async fn purge_jobs(&self) -> Result<()> {
         while self.change(1, [], |transaction| transaction.purge_job()).await? > 0 {}
         Ok(())

@@ -3,7 +3,7 @@
 //! One thread writes (`writer.rs`): requests that wait share a transaction and its wait for the disk. Reads have
 //! connections of their own (`readers.rs`) and do not wait. Long work, such as the copy of a million moves, is done in
 //! small steps between the transactions of others (`fork.rs`). The tables are in `schema.rs`, and explained in
-//! `docs/storage.md`. What may fail, and what it means then, is in `fault.rs`.
+//! `docs/storage.md`. Failures and their meanings are in `fault.rs`.
 
 mod backup;
 mod change;
@@ -40,7 +40,7 @@ use writer::{Request, Writer};
 
 /// Requests that may wait for the writer; further ones wait for a place.
 const QUEUE: usize = 1_024;
-/// How long to wait for a foreign program that holds the file.
+/// How long to wait for another program that has locked the file.
 const BUSY: Duration = Duration::from_secs(5);
 /// Sessions that expire in one transaction.
 const EXPIRE_AT_ONCE: usize = 200;
@@ -57,7 +57,7 @@ pub struct SqliteStore {
 }
 
 impl SqliteStore {
-    /// Opens a file, brings its tables up to date, and keeps other processes from opening it so; or makes one.
+    /// Opens a file, migrates its tables, and locks it against other writers; or makes one.
     ///
     /// # Errors
     /// Why it cannot be used, in one line. The file is as it was then.
@@ -80,7 +80,7 @@ impl SqliteStore {
         Ok(SqliteStore { requests: Some(sender), writer: Some(thread), readers, changes, commits, queue })
     }
 
-    /// Opens a file to look at, beside the process that serves it or alone. Changes fail.
+    /// Opens a file for reading, while a process may serve it. Changes fail.
     ///
     /// # Errors
     /// Why it cannot be read, in one line.
@@ -99,7 +99,7 @@ impl SqliteStore {
         backup::backup(path, copy)
     }
 
-    /// Has the writer make a change of so many rows, and returns its count when it is durable. The listeners of
+    /// Has the writer make a change of about `weight` rows, and returns its count when it is durable. The listeners of
     /// `touched` are woken then.
     async fn change(
         &self,

@@ -1,4 +1,4 @@
-//! The questions that readers ask. Each is asked within one transaction, and so sees one state of the database.
+//! The queries of readers. Each runs within one transaction, and so sees one state of the database.
 
 use jiff::Timestamp;
 use rusqlite::{Connection, OptionalExtension as _, Row, params};
@@ -12,7 +12,7 @@ use super::change::missing;
 use super::columns::{CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, clamped_nanoseconds, reader, record, to_integer};
 use super::readers::ReadError;
 
-/// Sessions that one look for idle ones passes.
+/// Sessions that one search for idle ones examines.
 const IDLE_PAGE: i64 = 1_000;
 
 /// Whether the database can be read at all.
@@ -100,7 +100,7 @@ pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Resul
     Ok((idle, (passed == IDLE_PAGE).then_some(last)))
 }
 
-/// What is wrong with the file, or with what belongs to no session alone.
+/// Faults of the file, and of data that belongs to no single session.
 pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, ReadError> {
     let texts = |sql: &str| -> rusqlite::Result<Vec<String>> {
         database.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
@@ -122,7 +122,7 @@ pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, Read
         "SELECT 'the snapshot of contact number ' || contact || ' belongs to no contact' FROM snapshots
          WHERE contact NOT IN (SELECT number FROM contacts)",
     )?);
-    // The last move of a session says itself how many there are; a reply that was sent is a second witness.
+    // The last move of a session gives the number of its moves; the receipt of a reply is a second source.
     found.extend(texts(
         "WITH replies AS (
              SELECT CASE WHEN json_valid(CAST(body AS TEXT)) THEN CAST(body AS TEXT) ->> '$.id' END AS id,

@@ -1,4 +1,4 @@
-//! Reading the database beside the writer. In write-ahead mode neither waits for the other.
+//! Reading the database beside the writer. In write-ahead mode readers and the writer do not wait for each other.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -32,9 +32,9 @@ struct Idle {
     _lock: Option<Arc<File>>,
 }
 
-/// Why a read came to nothing.
+/// Why a read failed.
 pub(super) enum ReadError {
-    /// The answer is a refusal.
+    /// The store refuses it.
     Store(StoreError),
     /// SQLite failed.
     Sqlite(rusqlite::Error),
@@ -61,7 +61,7 @@ impl Readers {
         Readers { permits: Arc::new(Semaphore::new(READERS)), idle: Arc::new(idle) }
     }
 
-    /// Asks one state of the database, on the blocking pool.
+    /// Runs a query in one transaction, on the blocking pool.
     pub(super) async fn read<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,

@@ -1,4 +1,4 @@
-//! The version of the tables in a file, and the way to the newest one.
+//! The version of the tables in a file, and its migration to the newest one.
 
 use rusqlite::{Connection, TransactionBehavior};
 
@@ -31,11 +31,11 @@ pub(super) fn check(connection: &Connection) -> Result<(), SchemaError> {
     Ok(schema::check(version(connection)?, MIGRATIONS)?)
 }
 
-/// Whether this program knows a version of tables, which it may then migrate.
+/// Whether this program supports a version of tables, and so may migrate it.
 pub(super) fn known(version: i32) -> Result<(), String> {
     match schema::pending(version, MIGRATIONS) {
         Err(error) => Err(error.to_string()),
-        Ok(_) if version < 1 => Err("it is not whole: its tables have no version".to_owned()),
+        Ok(_) if version < 1 => Err("it is incomplete: its tables have no version".to_owned()),
         Ok(_) => Ok(()),
     }
 }

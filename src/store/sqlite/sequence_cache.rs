@@ -17,7 +17,7 @@ impl SequenceCache {
         SequenceCache { by_id: LruCache::new(CAPACITY) }
     }
 
-    /// The number of a contact that is known to be at a sequence. None says nothing about it.
+    /// The number of a contact that is known to be at a sequence. `None` means unknown.
     pub(super) fn number(&mut self, id: Uuid, expected: u64) -> Option<i64> {
         self.by_id.get(&id).filter(|(_, sequence)| *sequence == expected).map(|(number, _)| *number)
     }

@@ -1,8 +1,8 @@
 //! The one thread that writes. Requests that wait share a transaction, and so the wait for the disk; no request is
 //! answered before it is durable.
 //!
-//! Each request is checked before it writes, so that a refusal spoils nothing for its neighbours. When SQLite itself
-//! fails, the transaction is taken back and its requests are tried one by one.
+//! Each request is checked before it writes, so that a refusal does not affect the other requests. When SQLite itself
+//! fails, the transaction is rolled back and its requests are tried one by one.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -24,13 +24,13 @@ const BATCH: usize = 512;
 /// Rows that they may write before the transaction ends.
 const BATCH_WEIGHT: usize = 10_000;
 
-/// A change somebody waits for.
+/// A change whose caller waits.
 pub(super) struct Request {
     pub(super) change: Change,
     pub(super) reply: Reply,
 }
 
-/// Where the outcome of a change goes.
+/// The channel for the outcome of a change.
 type Reply = oneshot::Sender<Result<u64>>;
 
 /// The state of the writing thread.
@@ -49,7 +49,7 @@ pub(super) struct Writer {
     healthy: bool,
 }
 
-/// A transaction that failed, taken back.
+/// A transaction that failed and was rolled back.
 struct Failure {
     error: rusqlite::Error,
     stage: Stage,
@@ -160,7 +160,7 @@ impl Writer {
         change.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
-    /// One step of what takes long.
+    /// One step of the background work.
     fn background_step(&mut self) {
         if let Some((fork, copying, reply)) = self.forks.pop_front() {
             let mut proceeded = copying;
@@ -190,7 +190,7 @@ impl Writer {
         }
     }
 
-    /// Runs a transaction to its durable end, or takes it back.
+    /// Runs a transaction to its durable commit, or rolls it back.
     fn transaction<T>(
         &mut self,
         work: impl FnOnce(&Connection, &mut SequenceCache) -> rusqlite::Result<T>,
@@ -207,7 +207,7 @@ impl Writer {
             if !self.database.is_autocommit()
                 && let Err(error) = self.run_statement("ROLLBACK")
             {
-                tracing::error!(%error, "a transaction could not be taken back");
+                tracing::error!(%error, "a transaction could not be rolled back");
             }
             Failure { error, stage }
         })
@@ -219,10 +219,10 @@ impl Writer {
             Some(error) => {
                 self.commits.failed.inc();
                 if self.healthy {
-                    tracing::error!(%error, "the database takes no changes; their clients are told until it does");
+                    tracing::error!(%error, "the database accepts no changes; requests fail until it does");
                 }
             }
-            None if !self.healthy => tracing::info!("the database takes changes again"),
+            None if !self.healthy => tracing::info!("the database accepts changes again"),
             None => {}
         }
         self.healthy = failure.is_none();

@@ -129,7 +129,7 @@ fn text(schema: &Value, random: &mut Random) -> String {
     (0..random.below(most + 2)).map(|_| *pick(&letters, random)).collect()
 }
 
-/// Something that nobody expects.
+/// An unexpected value.
 fn odd(random: &mut Random) -> Value {
     let all = [
         Value::Null,

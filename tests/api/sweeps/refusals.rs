@@ -1,4 +1,4 @@
-//! What is wrong with a sweep, and where.
+//! Refusals of sweeps, with the place of the fault.
 
 use serde_json::{Value, json};
 
@@ -90,7 +90,7 @@ async fn every_fault_is_named_with_its_place() {
         assert_eq!(refusal.errors[0].pointer, pointer, "{body}: {refusal:?}");
         assert!(refusal.errors[0].detail.contains(word), "{body}: {refusal:?}");
     }
-    // As it stands, and not as a parser would mend it.
+    // Unchanged, not as a lenient parser would correct it.
     let raw = server.http.post(format!("{}/sweep", server.base)).header("content-type", "application/json");
     let refusal = problem(raw.body(repeated).send().await.unwrap()).await;
     assert!(refusal.errors[0].detail.contains("duplicate field"), "{refusal:?}");

@@ -12,7 +12,7 @@ use crate::common::{PATIENCE, Server, run, until};
 /// Enough points that a process can be killed in the middle of them.
 const POINTS: usize = 250_000;
 
-/// What the sweep comes to without any accident.
+/// The result of the sweep without a failure.
 fn undisturbed(sweep: &Value) -> String {
     let folder = tempdir().unwrap();
     let file = folder.path().join("sweep.json");
@@ -84,7 +84,7 @@ async fn replicas_share_a_job_and_one_that_is_killed_leaves_its_part_to_the_othe
     assert!(left > 0, "the job was over before the kill");
     let server = Server::at(&second.base);
     assert_eq!(server.job_result(&path).await, undisturbed(&sweep));
-    assert_eq!(count("count(*) FILTER (WHERE owner IS NOT NULL)").await, 0, "nobody holds what is done");
+    assert_eq!(count("count(*) FILTER (WHERE owner IS NOT NULL)").await, 0, "finished chunks have no owner");
     second.stop().await;
 }
 

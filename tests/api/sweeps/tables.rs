@@ -98,7 +98,7 @@ async fn figure_5_is_one_call() {
 }
 
 #[tokio::test]
-async fn a_point_without_an_answer_is_a_row_without_numbers_and_stands_among_the_failures() {
+async fn a_point_without_an_answer_is_a_row_without_numbers_and_is_listed_as_a_failure() {
     let server = Server::start().await;
     let mut base = base();
     base["contact"]["profile"] = json!({"type": "exact_sphere", "radius": 0.01});

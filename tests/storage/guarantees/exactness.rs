@@ -1,4 +1,4 @@
-//! What goes in comes out, to the last bit.
+//! A store returns what was saved, to the last bit.
 
 use jiff::{SignedDuration, Timestamp};
 use stickslip::store::{Record, Session, Store};
@@ -54,7 +54,7 @@ fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
     Record { step, tolerance: number(), state, ..record(sequence) }
 }
 
-pub async fn every_number_comes_back_to_the_last_bit(store: &dyn Store) {
+pub async fn every_number_is_read_to_the_last_bit(store: &dyn Store) {
     let (session, _) = stored(store, 0).await;
     let mut given: Vec<Record> = Vec::new();
     for number in AWKWARD {
@@ -83,7 +83,7 @@ pub async fn every_number_comes_back_to_the_last_bit(store: &dyn Store) {
     assert_eq!(given.len(), found.len());
 }
 
-pub async fn times_come_back_to_the_nanosecond(store: &dyn Store) {
+pub async fn times_are_read_to_the_nanosecond(store: &dyn Store) {
     let origin: Timestamp = "1969-12-31T23:59:59.999999999Z".parse().unwrap();
     let mut random = Random(3);
     for nanoseconds in [0, 1, -1, 999_999_999, 1_000_000_000, 1_234_567_890_123_456_789, random.next() as i64 / 2] {

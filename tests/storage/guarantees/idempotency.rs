@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::common::kill::exact;
 use crate::fixtures::{receipt, record, records, session, stored};
 
-pub async fn a_receipt_comes_back_as_it_was_given(store: &dyn Store) {
+pub async fn a_receipt_is_returned_as_it_was_stored(store: &dyn Store) {
     let made = session(None);
     let long = "k".repeat(255);
     let born = Receipt {
@@ -26,7 +26,7 @@ pub async fn a_receipt_comes_back_as_it_was_given(store: &dyn Store) {
     let forked = receipt("forked", Some(copy.id), 1);
     store.fork(made.id, copy, Some(forked.clone())).await.unwrap();
     assert_eq!(store.receipt("forked").await.unwrap(), Some(forked));
-    // A retry is owed its reply even when the session is gone.
+    // A retry gets its reply even when the session is deleted.
     store.delete(made.id, 1).await.unwrap();
     assert_eq!(store.receipt("moved").await.unwrap(), Some(moved));
     assert_eq!(store.receipt("Moved").await.unwrap(), None);
@@ -68,7 +68,7 @@ pub async fn one_of_many_with_the_same_key_or_sequence_wins(store: Arc<dyn Store
     for _ in 0..8 {
         sessions.push(stored(&*store, 0).await.0.id);
     }
-    // Mixed, so that those who lose share their transactions with those who win.
+    // Mixed, so that requests that fail share transactions with those that succeed.
     let tasks = (0..160_u64).map(|index| {
         let (store, id) = (Arc::clone(&store), sessions[index as usize % 8]);
         let key = (index % 3 == 0).then(|| receipt(&format!("key {}", index % 24), None, 1));

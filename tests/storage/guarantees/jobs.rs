@@ -49,7 +49,7 @@ pub async fn each_chunk_is_given_once_and_heard_once(store: &dyn Store) {
     let jobs: Vec<Uuid> = claims.iter().map(|claim| claim.job).collect();
     assert_eq!(jobs, [first.id, second.id, first.id, second.id, first.id, second.id]);
     assert_eq!(claims.iter().map(|claim| (claim.job, claim.chunk)).collect::<BTreeSet<_>>().len(), 6);
-    // What is given back is given again.
+    // A released chunk is claimed again.
     assert!(store.renew(claims[0], LEASE).await.unwrap());
     store.release(claims[0]).await.unwrap();
     assert!(!store.renew(claims[0], LEASE).await.unwrap());
@@ -71,7 +71,7 @@ pub async fn each_chunk_is_given_once_and_heard_once(store: &dyn Store) {
     let all: Vec<Vec<u8>> = (0..3).map(|chunk| vec![chunk; 10]).collect();
     assert_eq!(store.chunks(first.id, 0, 10).await.unwrap(), all);
     assert_eq!(store.chunks(first.id, 1, 1).await.unwrap(), all[1..2]);
-    // One that has failed is not worked on, nor one that is deleted.
+    // Chunks of a failed or a deleted job are not claimed.
     store.fail_job(second.id, "no use".to_owned()).await.unwrap();
     let failed = store.job(second.id).await.unwrap();
     assert!(failed.finished_at.is_some() && failed.error.as_deref() == Some("no use"));
@@ -99,7 +99,7 @@ pub async fn a_taken_key_or_a_full_tenant_takes_no_job(store: &dyn Store) {
     let twin = store.create_job(again.clone(), String::new(), LIMITS, Some(receipt("sweep", Some(again.id), 0))).await;
     assert!(matches!(twin, Err(StoreError::KeyTaken)), "{twin:?}");
     assert!(matches!(store.job(again.id).await, Err(StoreError::NotFound)));
-    // The work of a job counts while it has not ended, its place until it goes.
+    // The work of a job counts until it has ended, its place until it is deleted.
     create(store, &Job { cost: 900, ..job("lab") }).await.unwrap();
     assert!(refused(create(store, &job("lab")).await));
     store.fail_job(keyed.id, String::new()).await.unwrap();

@@ -52,17 +52,17 @@ async fn are_given<F: Future<Output = Arc<dyn Store>>>(store: impl Fn() -> F) {
     contacts::a_long_past_is_forked_and_deleted_while_others_move(store().await).await;
     contacts::what_is_deleted_is_gone(&*store().await).await;
     contacts::the_newest_snapshot_is_kept(&*store().await).await;
-    exactness::every_number_comes_back_to_the_last_bit(&*store().await).await;
-    exactness::times_come_back_to_the_nanosecond(&*store().await).await;
-    idempotency::a_receipt_comes_back_as_it_was_given(&*store().await).await;
+    exactness::every_number_is_read_to_the_last_bit(&*store().await).await;
+    exactness::times_are_read_to_the_nanosecond(&*store().await).await;
+    idempotency::a_receipt_is_returned_as_it_was_stored(&*store().await).await;
     idempotency::a_taken_key_refuses_every_change_and_changes_nothing(&*store().await).await;
     idempotency::a_refused_change_takes_no_key(&*store().await).await;
     idempotency::one_of_many_with_the_same_key_or_sequence_wins(store().await).await;
     expiry::idle_sessions_expire_and_the_others_stay(&*store().await).await;
     expiry::receipts_in_their_time_survive_a_sweep(&*store().await).await;
     tenants::a_session_is_its_tenants_for_ever(&*store().await).await;
-    tenants::who_asks_for_what_has_expired_is_told_whose_it_was(&*store().await).await;
+    tenants::a_request_for_an_expired_contact_gets_its_tenant(&*store().await).await;
     jobs::each_chunk_is_given_once_and_heard_once(&*store().await).await;
     jobs::a_taken_key_or_a_full_tenant_takes_no_job(&*store().await).await;
-    wake_ups::whoever_waits_is_woken_by_a_change(&*store().await).await;
+    wake_ups::a_waiting_listener_is_woken_by_a_change(&*store().await).await;
 }

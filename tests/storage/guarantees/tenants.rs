@@ -44,7 +44,7 @@ pub async fn a_session_is_its_tenants_for_ever(store: &dyn Store) {
     assert!(store.list(Some(Tenant::new("nobody")), None, 10).await.unwrap().is_empty());
 }
 
-pub async fn who_asks_for_what_has_expired_is_told_whose_it_was(store: &dyn Store) {
+pub async fn a_request_for_an_expired_contact_gets_its_tenant(store: &dyn Store) {
     let (stays, _) = stored(store, 0).await;
     let long_ago = Timestamp::now() - SignedDuration::from_hours(5);
     let old = |tenant: &str| Session {

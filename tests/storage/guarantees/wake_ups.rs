@@ -10,12 +10,12 @@ use crate::fixtures::{records, session, stored};
 
 const PATIENCE: Duration = Duration::from_secs(10);
 
-pub async fn whoever_waits_is_woken_by_a_change(store: &dyn Store) {
+pub async fn a_waiting_listener_is_woken_by_a_change(store: &dyn Store) {
     let (moved, _) = stored(store, 0).await;
     let mut waits = store.changes().subscribe(moved.id);
     store.append(moved.id, 0, records(0, 1), None).await.unwrap();
     timeout(PATIENCE, waits.changed()).await.expect("a move wakes").unwrap();
-    // What woke can be read by then.
+    // The change that woke the listener can be read by then.
     assert_eq!(store.find(moved.id).await.unwrap().sequence, 1);
     waits.mark_unchanged();
     store.delete(moved.id, 1).await.unwrap();

@@ -1,4 +1,4 @@
-//! How often the costly functions are called, counted in tests alone.
+//! Counts of calls of the costly functions, in tests alone.
 
 use std::cell::Cell;
 
@@ -28,7 +28,7 @@ pub(crate) fn add(which: impl Fn(&mut Calls) -> &mut usize) {
     CALLS.set(calls);
 }
 
-/// What `work` calls.
+/// The calls that `work` makes.
 pub(crate) fn during<T>(work: impl FnOnce() -> T) -> (Calls, T) {
     CALLS.set(Calls::default());
     let result = work();

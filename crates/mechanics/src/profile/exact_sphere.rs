@@ -1,4 +1,4 @@
-//! Sphere as it is, f = R - sqrt(R^2 - r^2): g(x) = x artanh(x/R), int x dg = ((R^2 + x^2) artanh(x/R) - x R)/2 (Segedin 1957).
+//! Exact sphere, f = R - sqrt(R^2 - r^2): g(x) = x artanh(x/R), int x dg = ((R^2 + x^2) artanh(x/R) - x R)/2 (Segedin 1957).
 //!
 //! With x = R tanh(sigma): g = R sigma tanh(sigma), all of it smooth for |Im sigma| < pi/2. For the kernel let C = sqrt(R^2 - x^2),
 //! D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
@@ -198,7 +198,7 @@ impl Shape for ExactSphere {
 
     fn moments(&self, span: &Span) -> Moments {
         let (_, outer, length) = self.ends(span);
-        // Poles of the fourth order at i pi/2: kept at arm's length.
+        // Poles of the fourth order at i pi/2: keep a margin.
         let singular = Singular { below: 1.1, above: f64::INFINITY };
         let (mut done, mut first, mut second) = (0.0, 0.0, 0.0);
         while done < length {
@@ -257,7 +257,7 @@ impl Shape for ExactSphere {
     }
 
     fn known_to(&self) -> Option<End> {
-        // Nearer to R than a millionth of a millionth X says nothing of the level.
+        // Within 1e-12 of R, X no longer determines the level.
         Some(End { radius: self.radius * (1.0 - 1e-12), falls: false })
     }
 }

@@ -1,10 +1,10 @@
-//! What measured profiles leave open: the error of the curve between their points, and the noise of their heights.
+//! Errors of measured profiles: the error of the curve between their points, and the noise of their heights.
 
 use super::shape::Shape;
 use super::{InterpolationError, Profile};
 
 impl Profile {
-    /// What the interpolation of tables leaves open in a contact of this radius, m; zero for everything else.
+    /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.
     #[must_use]
     pub fn interpolation_error(&self, radius: f64) -> InterpolationError {
         Shape::interpolation_error(self, radius)

@@ -34,7 +34,7 @@ pub(super) struct Roots {
     rings: Vec<Inward>,
 }
 
-/// What is left of a ring once its outer end is known.
+/// The terms of a ring that do not depend on its outer end.
 struct Inward {
     /// x_inner^2, m^2, both parts.
     square: f64,

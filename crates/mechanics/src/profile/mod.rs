@@ -1,9 +1,9 @@
-//! The shape of the indenter, as the few functions that the solver asks of it.
+//! The shape of the indenter, as the few functions that the solver needs.
 //!
 //! By the method of dimensionality reduction a profile z = f(r) is known through g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr.
 //! A *level* y is a value of g, a *radius* x its inverse X(y); a level beyond the last radius (a vertical edge) keeps that
 //! radius. Normal contact, slip history and stresses read a profile through rings between two levels, so no other module
-//! knows which family it deals with.
+//! depends on the family.
 //!
 //! # Adding a family
 //! 1. Write `my_family.rs`: a struct, its checked constructor, and its `shape::Shape`.
@@ -284,7 +284,7 @@ impl Profile {
         Shape::rim(self).map(|(radius, _)| radius)
     }
 
-    /// Gives a contact radius back.
+    /// Checks a contact radius and returns it.
     ///
     /// # Errors
     /// If it is not below [`Profile::limit_radius`]: [`Error::NotConvexEnough`] where g falls from there on,
@@ -326,13 +326,13 @@ impl Profile {
     }
 }
 
-/// What the levels at a vertical edge add to a kernel.
+/// The contribution of the levels at a vertical edge to a kernel.
 fn edge(at: &StressRadius, span: &Span) -> f64 {
     let square = (span.outer - at.square).value();
     if square < 0.0 { 0.0 } else { span.edge / square.sqrt() }
 }
 
-/// What they add to its slope.
+/// Their contribution to its slope.
 fn edge_slope(at: &StressRadius, span: &Span) -> f64 {
     let square = (span.outer - at.square).value();
     if square < 0.0 { 0.0 } else { 0.5 * span.edge / square / square.sqrt() }

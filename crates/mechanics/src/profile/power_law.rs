@@ -14,7 +14,7 @@ use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 const MOST_TERMS: u16 = 24;
 /// Exponents up to half of this get a square with twice the digits.
 const MOST_HALVES: i32 = 16;
-/// Radii beyond this many r do not feel the r under the root.
+/// Beyond this many r the r under the root is negligible.
 const FAR: f64 = 1e8;
 
 /// A body of revolution whose height is a power of the radius.

@@ -1,4 +1,4 @@
-//! What a profile is asked about: levels, rings between two of them, and radii of stress.
+//! The arguments of the functions of a profile: levels, rings between two of them, and radii of stress.
 
 use super::DoubleDouble;
 
@@ -35,7 +35,7 @@ pub struct Moments {
     pub second: f64,
 }
 
-/// A radius at which a stress is asked for.
+/// A radius at which a stress is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StressRadius {
     /// r, m.

@@ -1,6 +1,6 @@
-//! Roots of increasing functions, whatever their size.
+//! Roots of increasing functions of any magnitude.
 
-/// More steps than any of these functions takes; a guard, never the way out.
+/// More steps than any of these functions takes; a safeguard only.
 const MOST_STEPS: usize = 200;
 
 /// The root of a convex increasing function that is not negative at `start`: Newton's steps then come down on it from above

@@ -1,4 +1,4 @@
-//! What a family must offer, and what follows for all of them.
+//! The functions that a family must provide, and those that follow for all families.
 
 use super::roots::increasing;
 use super::smooth_interval::{Node, SmoothInterval};
@@ -53,7 +53,7 @@ pub(super) trait Shape {
         increasing(start, |gap| {
             let span = Span::under(outer.square, outer.radius, gap.min(square));
             let (rise, steepness) = (self.rise(&span), steepness(span.inner_radius.max(f64::MIN_POSITIVE)));
-            // Where f' jumps the slope is infinite, and beyond the centre it is none: a step of Newton's would go nowhere.
+            // Where f' jumps the slope is infinite, and beyond the centre it is undefined: a Newton step would fail.
             (rise - depth, if steepness.is_finite() && gap < square { steepness } else { rise / gap })
         })
         .min(square)
@@ -204,7 +204,7 @@ pub(super) trait Shape {
         true
     }
 
-    /// What interpolation leaves open in a contact of this radius.
+    /// The interpolation error in a contact of this radius.
     fn interpolation_error(&self, _radius: f64) -> InterpolationError {
         InterpolationError::default()
     }

@@ -1,11 +1,11 @@
-//! Where stresses are not smooth, whatever has been done to the contact, and where they are known to fall.
+//! Radii where stresses are not smooth, whatever the history of the contact, and where they are known to fall.
 
 use super::Profile;
 use super::shape::Shape;
 
 impl Profile {
     /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of the
-    /// shear stress skip what can hold none; `false` is always safe.
+    /// shear stress skip intervals without any; `false` is always safe.
     ///
     /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
     #[must_use]

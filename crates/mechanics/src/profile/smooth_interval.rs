@@ -44,7 +44,7 @@ impl SmoothInterval {
         let (low, high) = span.excess(DoubleDouble::square_of(base));
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         let drop = if span.gap > 0.0 { span.gap / (low + high) } else { 0.0 };
-        // Far beyond the ceiling there is no contact, only steps of a search that went astray: any finite effort will do.
+        // Far beyond the ceiling there is no contact, only steps of a search that has left the range: any finite value will do.
         let above = ((ceiling - base) * (ceiling + base)).sqrt();
         let above = if above > 0.99 * high { above } else { f64::INFINITY };
         let singular = Singular { below: singularity, above };
@@ -73,7 +73,7 @@ impl SmoothInterval {
         while done < length {
             let (high, left) = (top - done, length - done);
             if high <= 1e-14 * top {
-                // So low that any rule will do, and that `done` would soon stand still.
+                // So low that any rule will do; `done` would soon stop growing.
                 Panel::coarse(left).visit(|below, weight| visit(done + below, weight));
                 break;
             }
@@ -81,7 +81,7 @@ impl SmoothInterval {
             if self.power > 10.0 && done * (rate + 0.5 * bend * done) < 40.0 {
                 // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
                 let steep = rate + bend * done;
-                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the sweep stand still.
+                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the loop would not advance.
                 let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
                 if width > 0.0 && width < panel.width {
                     panel = Panel::fine(width);

@@ -1,4 +1,4 @@
-//! A ring seen as a stretch of radii: where the families do their work.
+//! A ring as an interval of radii, over which the families integrate.
 //!
 //! Differences of squares decide everything: x^2 - r^2 under the roots of the kernels, x^2 - b^2 beside a kink at b. So a span
 //! carries the squares with twice the digits and their difference on its own, since that comes from the depth of the ring.

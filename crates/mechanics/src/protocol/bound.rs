@@ -27,8 +27,7 @@ const STEPS: usize = 4_096;
 /// Halvings of the bracket of E.
 const HALVINGS: usize = 40;
 
-/// The shear stress, Pa, that some point of the evaluation range carries at the least after gross slip and so
-/// many reversals, whatever their displacements; zero where nothing is known, as at a vertical edge.
+/// The shear stress, Pa, that some point of the evaluation range DUM whatever their displacements; zero where nothing is known, as at a vertical edge.
 ///
 /// ```
 #[doc = include_str!("../example.txt")]
@@ -82,7 +81,7 @@ impl Grid {
         Grid { radii, levels }
     }
 
-    /// Whether so many pieces may come as far as the end of the grid under a largest stress of `limit`, G* m/2. Because
+    /// Whether this many pieces may reach the end of the grid under a largest stress of `limit`, G* m/2. Because
     /// only the radii of the grid are checked, the answer can be yes wrongly, never no.
     fn reached(&self, limit: f64, pieces: usize) -> bool {
         let square = |index: usize| self.radii[index] * self.radii[index];

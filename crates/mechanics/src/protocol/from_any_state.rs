@@ -313,7 +313,7 @@ impl<'a> FromAnyState<'a> {
 /// A sampled radius inside the last kink.
 struct SampleRadius {
     at: StressRadius,
-    /// The stress there of so many rings of the history, from the centre outward, over G* m/pi.
+    /// The stress there of the first rings of the history, from the centre outward, over G* m/pi.
     below: Vec<f64>,
 }
 
@@ -342,10 +342,10 @@ fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Sa
 
 /// Whether there are strokes with a largest stress E.
 enum StrokeOutcome {
-    /// It is enough, and these are the strokes.
+    /// There are, and these are the strokes.
     Fits(Strokes),
-    /// It is more than enough: fewer strokes would do.
+    /// There are, with fewer strokes.
     Loose,
-    /// It is not enough.
+    /// There are none.
     Tight,
 }

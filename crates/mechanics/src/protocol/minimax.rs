@@ -1,7 +1,7 @@
 //! The sequence of amplitudes whose largest remaining shear stress is smallest, by equal alternating extrema.
 //!
 //! After gross slip and N reversals the shear stress is an alternating sum of kernels between the radii where slip
-//! began. StressRadius such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the
+//! began. At such a radius only the kinks beyond it count. So, for a largest stress E, the kinks follow one after the
 //! other from the edge inwards: each where the stress first meets E with the other sign. E is then lowered until the
 //! centre meets it too.
 

@@ -43,7 +43,7 @@ pub struct Springs {
 struct Spring {
     radius: f64,
     level: f64,
-    /// How many springs of the row it stands for: two, but one at the centre.
+    /// How many springs of the row it represents: two, but one at the centre.
     weight: f64,
     carried: f64,
 }
@@ -133,7 +133,7 @@ impl Springs {
         self.initial
     }
 
-    /// The exact contact that the foundation stands for, before its first move.
+    /// The exact contact that the foundation approximates, before its first move.
     #[must_use]
     pub fn virgin(&self) -> &Contact {
         &self.virgin

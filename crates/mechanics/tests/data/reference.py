@@ -5,7 +5,7 @@ It needs mpmath alone (gmpy2 makes it ten times faster). It shares no code and n
 - a profile is its g and g' in closed form, each checked against the definition g = x int_0^x f'(r)/sqrt(x^2 - r^2) dr by
   quadrature, and against a numerical derivative;
 - the tangential state w(y) is a list of nodes that every move clamps as a whole, whatever the order of slip; it is checked
-  against points that are followed one by one from event to event and know nothing of each other;
+  against independent points that are followed one by one from event to event;
 - forces, energies and fields are integrals over x by the tanh-sinh rule, broken at every kink, the singular end of a stress
   substituted away by x^2 = r^2 + v^2; friction work is summed point by point over the events;
 - paths straight in a force are cut where slip sets in or ends; each arc is checked against itself in more arcs.
@@ -327,7 +327,7 @@ class RoundedCone(Profile):
 
 class Tabulated(Profile):
     """Points joined by parabolas, f' without jumps. The rule, as documented: f' at a point is that of the parabola through it
-    and its neighbours, nought at the centre, at a peak and beside a flat, and drawn to the chords where these change little; between two points
+    and its neighbours, zero at the centre, at a peak and beside a flat, and drawn to the chords where these change little; between two points
     one parabola if it fits, else two (Schumaker 1983)."""
 
     def __init__(self, *numbers):

@@ -177,7 +177,7 @@ def hard_scenes():
     steps = [oblique(0.05 * k + (0.03 if k % 2 else 0.0), 0.2 + 0.1 * k) for k in range(1, 9)]
     yield Scene("rising load in zigzag", ball, UNIT, ("indentation", 0.2), [*steps, slide(0.3), oblique(0.31, 0.7)], EVERYWHERE)
     yield Scene(
-        "rising load from nought", ball, UNIT, ("normal_force", 0.0), [oblique(0.25, 0.5), slide(0.0), oblique(0.25, 1.0)], EVERYWHERE
+        "rising load from zero", ball, UNIT, ("normal_force", 0.0), [oblique(0.25, 0.5), slide(0.0), oblique(0.25, 1.0)], EVERYWHERE
     )
     yield Scene("normal force up and down", ball, UNIT, ("normal_force", 1.0), [
         slide(0.2), Target(None, ("N", 2.0)), slide(-0.1), Target(None, ("N", -1.2), True), slide(0.1)], EVERYWHERE)
@@ -249,7 +249,7 @@ def hard_scenes():
         ("rounded punch", lambda b: ("rounded_punch", b, 1.0), lambda b: ("rounded_punch", b, 1e6)),
         ("rounded cone", lambda b: ("rounded_cone", 0.2, b), lambda b: ("rounded_cone", 0.2, b)),
     ]:
-        # b/a from nought to one: the flat vanishes, or all but a sliver is flat.
+        # b/a from zero to one: the flat vanishes, or all but a sliver is flat.
         for b in (1e-15, 1e-8, 1e-3, 0.3, 0.9, 0.9999, 1.0 - 1e-8, 1.0 - 1e-12):
             ask = OFF_CENTRE if b < 1e-6 else EVERYWHERE
             ask = [*ask, ("shear", parts_of_radius(mpf(b) / 2, (1 + mpf(b)) / 2))]

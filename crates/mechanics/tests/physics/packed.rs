@@ -73,7 +73,7 @@ fn wander(contact: &mut Contact, virgin: &Contact, count: usize, random: &mut Ra
     }
 }
 
-/// All that there is to know, digit by digit: every field, and what is computed from them.
+/// All fields, and the results that are computed from them, digit by digit.
 fn digest_of(contact: &Contact) -> String {
     let radius = contact.contact_radius();
     let shear: Vec<u64> = (0..20).map(|part| contact.shear(radius * f64::from(part) / 19.0).to_bits()).collect();

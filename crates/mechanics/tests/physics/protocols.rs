@@ -112,7 +112,7 @@ fn minimax_is_what_is_known_of_the_sphere() {
 }
 
 #[test]
-fn minimax_ends_where_it_is_to_end_and_is_never_above_the_others() {
+fn minimax_meets_the_required_end_and_is_never_above_the_others() {
     let shapes = [
         sphere(10.0),
         power(1.5),

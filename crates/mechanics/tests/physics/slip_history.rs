@@ -178,7 +178,7 @@ fn moves_of_one_unit_in_the_last_place() {
         forces.close(contact.force(), strides.force(), UNIT.force_limit(1.0));
         assert!(contact.memory_depth() <= 4, "{} pieces", contact.memory_depth());
     }
-    // To and fro between neighbours.
+    // Back and forth between neighbours.
     let before = contact.force();
     for _ in 0..20_000 {
         contact.apply(&displace(here.next_up())).unwrap();
@@ -228,7 +228,7 @@ fn a_rise_taken_back_the_same_way_slips_nothing_and_is_forgotten() {
         // The kink where the rise began is the one extremum there is.
         assert_eq!(depths, [(2, 1), (2, 1), (2, 1), (1, 0)]);
         assert!(contact.force().abs() <= 1e-15 * PLAIN.force_limit(PLAIN.radius));
-        // To and fro for long.
+        // Back and forth for many moves.
         let mut random = Random(1);
         for _ in 0..300 {
             let part = random.within(0.0, 1.0);

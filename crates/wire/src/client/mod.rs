@@ -28,7 +28,7 @@ pub struct Client {
     http: reqwest::Client,
 }
 
-/// What makes a change safe to repeat.
+/// Headers that make a change safe to repeat.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Change only a contact that is at this sequence.
@@ -37,7 +37,7 @@ pub struct Options {
     pub idempotency_key: Option<String>,
 }
 
-/// What the event stream of a contact sends.
+/// An event of the event stream of a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// The contact is in this state.
@@ -55,7 +55,7 @@ pub enum Error {
     /// The service could not be reached, or its reply not be read.
     #[error(transparent)]
     Transport(#[from] reqwest::Error),
-    /// What answered is not this service.
+    /// The reply does not come from this service.
     #[error("unexpected reply with status {status}: {detail}")]
     Unexpected {
         /// Its status code.
@@ -160,7 +160,7 @@ impl Client {
         json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
-    /// `GET /contacts/{id}/loop`: a page of moves with so many points for each, by default the recorded states alone.
+    /// `GET /contacts/{id}/loop`: a page of moves with `points` points for each, by default the recorded states alone.
     pub async fn hysteresis_loop(
         &self,
         id: Uuid,
@@ -264,7 +264,7 @@ fn refusal(status: StatusCode, body: &[u8]) -> Error {
     }
 }
 
-/// An event as it came, unless it is of a kind that later services may have.
+/// An event as received, unless its kind is that of a later version of the service.
 fn event_of(
     status: StatusCode,
     event: Result<eventsource_stream::Event, EventStreamError<reqwest::Error>>,

@@ -147,7 +147,7 @@ limits!(Robustness {
     amplitude_error: Range { quantity: Quantity::AmplitudeError, unit: "", min: 0.0, max: 1.0 },
     friction_error: Range { quantity: Quantity::FrictionError, unit: "", min: 0.0, max: 0.9 },
     samples: 2..=10_000_usize,
-    // What every JSON reader takes for a whole number.
+    // Integers that every JSON parser reads exactly.
     seed: 0..=0x1f_ffff_ffff_ffff_u64,
 });
 
@@ -161,9 +161,9 @@ fn samples() -> usize {
 /// A number of reversals, or what they are to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
-    /// So many reversals.
+    /// This many reversals.
     Reversals(usize),
-    /// The fewest that leave so much, over the unit of stress.
+    /// The fewest that leave at most this stress, over the unit of stress.
     Target(f64),
 }
 
@@ -190,7 +190,7 @@ impl AimMembers {
                 return None;
             }
             (Some(_), Some(_)) => {
-                faults.add(at.member("target"), "stands beside `reversals`: one of the two is allowed");
+                faults.add(at.member("target"), "conflicts with `reversals`: one of the two is allowed");
                 return None;
             }
         };
@@ -199,7 +199,7 @@ impl AimMembers {
     }
 }
 
-/// What is asked of a protocol, checked.
+/// The checked options of a protocol.
 #[derive(Clone, Copy, Debug)]
 pub struct ProtocolTask {
     /// How many reversals.
@@ -208,16 +208,16 @@ pub struct ProtocolTask {
     pub kind: ProtocolKind,
     /// The end.
     pub end: ProtocolEnd,
-    /// What may be off.
+    /// The errors for the estimate of robustness.
     pub robustness: Option<Robustness>,
 }
 
-/// The contact that a protocol is asked for, checked.
+/// The checked contact of a protocol.
 #[derive(Clone, Debug)]
 pub enum ProtocolSubject {
     /// One that has never moved, and the displacement to begin with.
     Virgin(Box<(ContactDefinition, Setup)>, Option<f64>),
-    /// One on the server, and the definition that the request says it has.
+    /// One on the server, with the definition in the request, if there is one.
     Living(Uuid, Option<Box<ContactDefinition>>),
 }
 
@@ -231,7 +231,7 @@ impl Document for ProtocolRequest {
         let subject = match (self.start, self.contact, setup) {
             (Some(ProtocolStart::ContactId(id)), definition, _) => {
                 if self.robustness.is_some_and(|robustness| robustness.friction_error > 0.0) {
-                    let detail = "not for a contact that lives: its history belongs to its own coefficient of friction";
+                    let detail = "not for a stored contact: its history belongs to its own coefficient of friction";
                     faults.add(at("robustness").member("friction_error"), detail);
                 }
                 Some(ProtocolSubject::Living(id, definition.map(Box::new)))
@@ -257,14 +257,14 @@ impl Document for ProtocolRequest {
     }
 }
 
-/// How a contact is to be relaxed, checked.
+/// The checked options of a relaxation.
 #[derive(Clone, Copy, Debug)]
 pub struct Relaxation {
     /// The protocol.
     pub task: ProtocolTask,
-    /// Whether it is only shown.
+    /// Whether it is a dry run.
     pub dry_run: bool,
-    /// Which states are asked for.
+    /// Which states are requested.
     pub steps: Option<Steps>,
 }
 
@@ -285,7 +285,7 @@ impl ProtocolStart {
         let ProtocolStart::Displacement(first) = *self else { return None };
         self.check_members(at, faults);
         if first.abs() <= 0.0 {
-            faults.add(at.member("displacement"), "0 is no amplitude: allowed is any other displacement");
+            faults.add(at.member("displacement"), "must not be 0: allowed is any other displacement");
         }
         Some(first)
     }

@@ -1,4 +1,4 @@
-//! From f' to the panels of a table.
+//! Builds the panels of a table from f'.
 //!
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
 //! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
@@ -29,7 +29,7 @@ struct Stretch {
     high: f64,
 }
 
-/// What the knots become.
+/// The panels of a table, with its ends.
 pub(super) struct Built {
     pub(super) panels: Vec<Panel>,
     /// The first radius at which g falls, if it does.
@@ -120,7 +120,7 @@ fn stretches(knots: &[Knot], segments: &[Segment]) -> Vec<Stretch> {
     all
 }
 
-/// g' in a block of panels: what comes from afar, and the segments that are near.
+/// g' in a block of panels: the far field, and the segments that are near.
 struct Field {
     near: Vec<usize>,
     far: Sampled,

@@ -1,10 +1,10 @@
-//! Sums of w/sqrt(|X - Y|) over many sources Y, far from X: sources in clusters, each stood for by a few at fixed places.
+//! Sums of w/sqrt(|X - Y|) over many sources Y, far from X: sources in clusters, each replaced by a few at fixed points.
 //!
 //! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
 //! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table
 //! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about).
 
-/// Points that stand for a cluster.
+/// Points that replace a cluster.
 const PROXIES: usize = 20;
 /// Items in the smallest clusters.
 const LEAF: usize = 4;

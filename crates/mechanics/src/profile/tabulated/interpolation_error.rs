@@ -1,4 +1,4 @@
-//! How far the curve through a table may be off the surface that was measured: what half of the points would have changed.
+//! The error of the curve through a table, estimated from the curve through half of the points.
 //!
 //! f' of the curve through every other point is taken from f' of the curve through all. On smooth data the difference is some
 //! three times the error of the latter, whose order is n^-2, and nearer to once where the surface has a kink: half of it is
@@ -10,7 +10,7 @@ use super::spline::{Knot, knots};
 /// Radii at which errors are estimated.
 const RADII: usize = 16;
 
-/// What the interpolation leaves open up to a radius.
+/// The interpolation error up to a radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InterpolationError {
     /// int |error of g| dx + a max |error of g|, m^2: a force over 2 E*.

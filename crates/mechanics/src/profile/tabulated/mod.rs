@@ -2,7 +2,7 @@
 //! punches (Schubert 1942) of strength half the jump. It is not summed that way: between two knots g is analytic in
 //! t = sqrt(x^2 - k^2), and one short series there replaces the thousand terms.
 //!
-//! f'(0) = 0: a sharp tip would be the noise of the first two points, and a log-infinite pressure; who wants one adds a cone.
+//! f'(0) = 0: a sharp tip would come from the noise of the first two points, with a log-infinite pressure; to model one, add a cone.
 //! With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up to r = 1.5: 3e-5 of g at
 //! n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the first at which g falls, exist:
 //! but for the part of a sum, whose g may fall as long as that of the sum does not.
@@ -34,7 +34,7 @@ pub struct Tabulated {
     heights: Vec<f64>,
     /// Estimate of the noise of the heights, m.
     noise: f64,
-    /// What the interpolation leaves open, at increasing radii.
+    /// The interpolation error at increasing radii.
     interpolation_errors: Vec<(f64, InterpolationError)>,
     panels: Vec<Panel>,
     /// Moments and depth of all runs of panels, as a binary tree with the leaves in its second half.
@@ -58,7 +58,7 @@ impl Tabulated {
         Tabulated::through(radii, heights, false)
     }
 
-    /// The part of a sum through the points (r, z), m, whose g may fall: what a body departs from a ball by, say. On its own, g
+    /// The part of a sum through the points (r, z), m, whose g may fall: for example the deviation of a body from a sphere. On its own, g
     /// has no inverse from there on, and contacts end there.
     ///
     /// # Errors
@@ -132,7 +132,7 @@ impl Tabulated {
             sources,
             knots,
             end,
-            // Where the curve was cut at the fall, that is its end, however it is rounded.
+            // A curve that was cut where g falls ends there, however that radius is rounded.
             falls: falls_at.map(|radius| if whole { radius.min(end.0) } else { end.0 }),
         })
     }
@@ -211,7 +211,7 @@ impl Tabulated {
         (low, if whole { inner } else { inner + 1 }..outer, high)
     }
 
-    /// Sums over the panels of a span: `panel` for one, `far` for sources that stand for many; only what lies beyond r counts.
+    /// Sums over the panels of a span: `panel` for one, `far` for sources that replace many; only radii beyond r count.
     fn gather(
         &self,
         at: &StressRadius,

@@ -84,7 +84,7 @@ fn keep_shape(slopes: &mut [f64], chords: &[f64]) {
     }
 }
 
-/// An offset from the chord, brought within [`RATIO`] times the one at the other end.
+/// An offset from the chord, limited to [`RATIO`] times the one at the other end.
 fn limited(offset: f64, other: f64) -> f64 {
     let most = RATIO * other.abs();
     offset.clamp(-most, most)

@@ -1,4 +1,4 @@
-//! What the physics tests share: references that know nothing of the solver, random paths, and bookkeeping of errors.
+//! What the physics tests share: references that are independent of the solver, random paths, and bookkeeping of errors.
 
 pub mod masing;
 pub mod paths;

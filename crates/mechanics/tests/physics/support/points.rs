@@ -1,4 +1,4 @@
-//! Brute force for oblique paths on a sphere: points that know nothing of each other, each followed event by event.
+//! Brute force for oblique paths on a sphere: independent points, each followed event by event.
 //!
 //! A point at level y carries w, is bounded by |w| <= d - y, and follows the indenter while it sticks. On a straight
 //! move bound and indenter change at constant rates, so that a point which starts to slip slips to the end: there are
