@@ -1,21 +1,24 @@
-//! stickslip simulates the frictional contact of two elastic bodies: exactly, with all of its history, over HTTP or as a
-//! library. Its modules are layers; a module imports only from those below it.
+//! The service stickslip: frictional contact of two elastic bodies, exact and with all of its history, over HTTP. The physics
+//! is in `stickslip-mechanics`, the JSON types are in `stickslip-wire`. A module imports only from those below it here.
 //!
-//! [`simulation`] runs a checked request against the mechanics, at once or on a thread of its own.
+//! [`api`] is HTTP: routes, middleware, formats, problem documents, the OpenAPI document, the page. The binary adds the
+//! command line.
 //!
-//! [`store`] saves definitions of contacts, their moves, and replies for retries. It contains no physics.
-//!
-//! [`sessions`] are stored contacts: a cache over the store, one writer at a time each, replay, and retries.
-//!
-//! [`jobs`] are sweeps over many simulations, answered at once or run after the request has been answered.
+//! [`server`] accepts connections: how many, how long a client may take, how much memory all of it may use.
 //!
 //! [`access`] is access control: keys, roles and tenants.
 //!
-//! [`metrics`] are the counters that every layer may use.
+//! [`jobs`] are sweeps over many simulations, at once or beyond the request that asks for them.
 //!
-//! [`otlp`] sends spans of requests and of their parts to an OpenTelemetry collector.
+//! [`sessions`] are the contacts that live on the server: a cache over the store, one writer at a time each, replay, retries.
 //!
-//! [`api`] is HTTP: the routes, the problem documents, the OpenAPI document. The binary adds the command line.
+//! [`simulation`] computes the reply to a checked request, and estimates what that costs.
+//!
+//! [`admission`] gives permits for solver threads, places and memory, and ends work that takes too long or is not waited for.
+//!
+//! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no physics.
+//!
+//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both.
 
 pub mod access;
 pub mod admission;

@@ -19,7 +19,7 @@ use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
 
 use super::params::IdempotencyKey;
-use super::problem::{Kind, Problem};
+use super::problem::{Code, Problem};
 use super::reply;
 use super::state::App;
 
@@ -73,14 +73,14 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<App> for CheckedBo
         let (parts, body) = request.into_parts();
         let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| is_json(value.as_bytes()));
         if declared == Some(false) || (declared.is_none() && !OPTIONAL) {
-            return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
+            return Err(Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json"));
         }
         if let Some(coding) =
             parts.headers.get(header::CONTENT_ENCODING).filter(|coding| !is_identity(coding.as_bytes()))
         {
             let coding: String = String::from_utf8_lossy(coding.as_bytes()).chars().take(40).collect();
             let detail = format!("Content-Encoding `{coding}` is not supported: send the body unencoded");
-            return Err(Problem::new(Kind::UnsupportedMediaType, detail));
+            return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
         let (mut bytes, mut memory) = read(body, &app.pool).await?;
         // Only once the body has arrived, so that a slow client takes no place from others.
@@ -88,7 +88,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<App> for CheckedBo
         if OPTIONAL && bytes.is_empty() {
             bytes.extend_from_slice(b"{}");
         } else if declared.is_none() {
-            return Err(Problem::new(Kind::UnsupportedMediaType, "Content-Type must be application/json"));
+            return Err(Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json"));
         }
         let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
         let length = bytes.len();
@@ -139,16 +139,16 @@ async fn read(body: Body, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem
     }
     if length > BODY_LIMIT {
         let detail = format!("the body has more than the {} bytes that are allowed", BODY_LIMIT);
-        return Err(Problem::new(Kind::TooLarge, detail));
+        return Err(Problem::new(Code::TooLarge, detail));
     }
     Ok((bytes, memory))
 }
 
 fn broken(error: axum::Error) -> Problem {
     if error.source().is_some_and(|source| source.is::<SlowBody>()) {
-        Problem::new(Kind::RequestTimeout, "the body did not arrive in time")
+        Problem::new(Code::RequestTimeout, "the body did not arrive in time")
     } else {
-        Problem::new(Kind::NotJson, "the connection ended before the body was complete")
+        Problem::new(Code::NotJson, "the connection ended before the body was complete")
     }
 }
 

@@ -9,7 +9,9 @@ mod params;
 pub mod problem;
 mod query;
 mod reply;
+mod request_metrics;
 mod resources;
+mod routes;
 mod state;
 
 use std::future::Future;
@@ -34,8 +36,8 @@ use crate::admission::Pool;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 
 use middleware::request_id::{OwnId, REQUEST_ID};
-use middleware::request_metrics::RequestMetrics;
 use middleware::{access_control, compression, request_id, request_log, security_headers};
+use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
 use resources::{accuracy, contacts, events, history, hysteresis_loop, jobs, meta, metrics, moves, page};
 use resources::{protocols, simulate, stress, sweep};

@@ -8,7 +8,7 @@ use axum::http::{HeaderMap, header};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use super::problem::{Kind, Problem};
+use super::problem::{Code, Problem};
 use super::state::App;
 
 /// Characters of an idempotency key.
@@ -73,7 +73,7 @@ impl FromRequestParts<App> for ContactPath {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        Ok(ContactPath { id: identifier(parts, app, Kind::ContactNotFound, "contact").await? })
+        Ok(ContactPath { id: identifier(parts, app, Code::ContactNotFound, "contact").await? })
     }
 }
 
@@ -81,13 +81,13 @@ impl FromRequestParts<App> for JobPath {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        Ok(JobPath { id: identifier(parts, app, Kind::JobNotFound, "job").await? })
+        Ok(JobPath { id: identifier(parts, app, Code::JobNotFound, "job").await? })
     }
 }
 
 /// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
 /// invalid.
-async fn identifier(parts: &mut Parts, app: &App, kind: Kind, noun: &str) -> Result<Uuid, Problem> {
+async fn identifier(parts: &mut Parts, app: &App, kind: Code, noun: &str) -> Result<Uuid, Problem> {
     let missing = |id: &str| Problem::new(kind, format!("there is no {noun} {id}"));
     match Path::<String>::from_request_parts(parts, app).await {
         Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
@@ -108,7 +108,7 @@ impl FromRequestParts<App> for IfMatch {
         match (text, sequence) {
             ("*", _) => Ok(IfMatch { sequence: None }),
             (_, Some(Ok(sequence))) => Ok(IfMatch { sequence: Some(sequence) }),
-            _ => Err(Problem::new(Kind::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
+            _ => Err(Problem::new(Code::InvalidInput, "If-Match must be a sequence in quotes, such as \"3\", or *")),
         }
     }
 }
@@ -125,7 +125,7 @@ impl IdempotencyKey {
         let key = value.to_str().ok().filter(|key| (1..=KEY_LENGTH).contains(&key.len()));
         let key = key.filter(|key| key.bytes().all(|byte| byte.is_ascii_graphic()));
         let refusal = || format!("Idempotency-Key must be 1 to {KEY_LENGTH} visible ASCII characters");
-        let key = key.ok_or_else(|| Problem::new(Kind::InvalidInput, refusal()))?;
+        let key = key.ok_or_else(|| Problem::new(Code::InvalidInput, refusal()))?;
         Ok(IdempotencyKey { key: Some(key.to_owned()) })
     }
 }
@@ -139,7 +139,7 @@ impl FromRequestParts<App> for LastEventId {
         };
         let sequence = value.to_str().ok().and_then(|text| text.trim().parse().ok());
         let refusal = "Last-Event-ID must be the number of a move, such as 3";
-        let refused = || Problem::at(Kind::InvalidInput, "/Last-Event-ID", refusal);
+        let refused = || Problem::at(Code::InvalidInput, "/Last-Event-ID", refusal);
         sequence.map(|sequence| LastEventId { sequence: Some(sequence) }).ok_or_else(refused)
     }
 }

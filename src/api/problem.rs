@@ -1,5 +1,5 @@
-//! Errors as clients see them: every refusal is a problem document (RFC 9457). The table of
-//! [`Code`](stickslip_wire::Code) says when to use which code.
+//! Errors as clients see them: every refusal is a problem document (RFC 9457). The table of [`Code`] says when to use
+//! which code.
 //!
 //! The errors of the lower layers have no status codes; only the `From` implementations here assign them.
 
@@ -15,7 +15,7 @@ use stickslip_wire::{Fault, ProblemDocument, Rejection};
 
 use crate::api::limits;
 
-pub use stickslip_wire::{Code, Code as Kind};
+pub use stickslip_wire::Code;
 
 /// The media type of a problem document.
 pub const MEDIA_TYPE: &str = "application/problem+json";

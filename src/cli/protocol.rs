@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
 use stickslip::admission::Stop;
-use stickslip::api::problem::{Kind, Problem};
+use stickslip::api::problem::{Code, Problem};
 use stickslip::simulation;
 use stickslip_wire::protocol::ProtocolSubject;
 use stickslip_wire::{self as wire, ProtocolReply, ProtocolRequest};
@@ -63,7 +63,7 @@ impl Protocol {
     pub fn run(self) -> Result<(), String> {
         let (subject, task) = wire::read::<ProtocolRequest>(&self.body()?).map_err(problem)?;
         let ProtocolSubject::Virgin(made, first) = subject else {
-            return Err(problem(Problem::at(Kind::InvalidInput, "/start/contact_id", "needs a running service")));
+            return Err(problem(Problem::at(Code::InvalidInput, "/start/contact_id", "needs a running service")));
         };
         let reply: ProtocolReply =
             simulation::protocol_for(&made.0, &made.1, first, &task, &Stop::default()).map_err(problem)?;

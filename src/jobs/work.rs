@@ -123,8 +123,8 @@ impl Jobs {
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
         let plan = move || wire::read::<SweepRequest>(request.as_bytes()).and_then(Sweep::plan);
         let sweep = self.common.pool.run(INLINE, plan).await?;
-        let sweep =
-            sweep.map_err(|error| JobError::Broken(format!("this version refuses the stored request: {error}")))?;
+        let sweep = sweep
+            .map_err(|error| JobError::Broken(format!("this version does not accept the stored request: {error}")))?;
         Ok((job, Arc::new(sweep)))
     }
 

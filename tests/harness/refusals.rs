@@ -2,18 +2,18 @@
 
 use serde_json::Value;
 use stickslip::api::Problem;
-use stickslip::api::problem::Kind;
+use stickslip::api::problem::Code;
 
 /// # Panics
 /// If the refusal of `body` violates the API contract.
 pub fn check(body: &[u8], problem: Problem) {
     let code = problem.code();
-    assert!(!matches!(code, Kind::Internal | Kind::Overloaded), "{problem:?}");
+    assert!(!matches!(code, Code::Internal | Code::Overloaded), "{problem:?}");
     let document = problem.document("fuzz");
     assert!((400..500).contains(&document.status), "{document:?}");
     assert!(!document.detail.is_empty() && !document.detail.contains("NaN"), "{document:?}");
     let parsed = serde_json::from_slice::<Value>(body);
-    if code == Kind::NotJson {
+    if code == Code::NotJson {
         assert!(parsed.is_err(), "it is JSON: {document:?}");
         return;
     }

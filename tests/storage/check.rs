@@ -211,9 +211,11 @@ async fn damage_is_found_in_a_database_beside_its_service() {
 async fn what_cannot_be_checked_is_refused_in_one_line() {
     let folder = tempdir().unwrap();
     let missing = url(&folder.path().join("missing.db"));
-    for (store, why) in
-        [("memory:", "only in"), (&*missing, "No such file"), ("postgres://me:secret@127.0.0.1:1/x", "127.0.0.1")]
-    {
+    for (store, why) in [
+        ("memory:", "only in the process"),
+        (&*missing, "No such file"),
+        ("postgres://me:secret@127.0.0.1:1/x", "127.0.0.1"),
+    ] {
         let output = check(store, &[]).await;
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{said}");

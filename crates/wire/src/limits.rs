@@ -1,4 +1,4 @@
-//! Limits of the members of documents. Each is declared once, beside its document, by [`limits!`]: from that declaration
+//! Limits of the members of documents. Each is declared once, beside its document, by `limits!`: from that declaration
 //! come the check of the member and the keywords of its schema in the OpenAPI document.
 //!
 //! The constants here are those that more than one document, or the service, needs.

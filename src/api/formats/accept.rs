@@ -3,13 +3,13 @@
 use axum::http::{HeaderMap, header};
 
 use super::Format;
-use crate::api::problem::{Kind, Problem};
+use crate::api::problem::{Code, Problem};
 
 impl Format {
     /// The format that the query names, or the one out of `formats` that `Accept` prefers.
     ///
     /// # Errors
-    /// [`Kind::NotAcceptable`] if `Accept` admits none of them.
+    /// [`Code::NotAcceptable`] if `Accept` admits none of them.
     pub fn chosen(named: Option<Format>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
         if let Some(format) = named {
             return Ok(format);
@@ -30,7 +30,7 @@ impl Format {
         best.1.ok_or_else(|| {
             let known: Vec<String> =
                 formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
-            Problem::new(Kind::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
+            Problem::new(Code::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))
         })
     }
 }

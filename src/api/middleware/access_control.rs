@@ -9,7 +9,8 @@ use axum::response::{IntoResponse as _, Response};
 
 use crate::access::{Keys, Role};
 
-use crate::api::problem::{Kind, Problem};
+use crate::api::problem::{Code, Problem};
+use crate::api::routes;
 
 /// What a request needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,13 +46,13 @@ const ROUTE_ROLES: &[(&str, &str, Need)] = &[
     ("GET", "/contacts/{id}/history", Key(Role::Read)),
     ("GET", "/contacts/{id}/loop", Key(Role::Read)),
     ("GET", "/contacts/{id}/events", Key(Role::Read)),
-    ("GET", "/metrics", Key(Role::Metrics)),
+    ("GET", routes::METRICS, Key(Role::Metrics)),
     ("GET", "/healthz", Nothing),
     ("GET", "/readyz", Nothing),
     ("GET", "/openapi.json", Nothing),
     ("GET", "/problems/{code}", Nothing),
-    ("GET", "/", Nothing),
-    ("GET", crate::api::resources::page::FOLDER, Nothing),
+    ("GET", routes::PAGE, Nothing),
+    ("GET", routes::PAGE_FILES, Nothing),
     ("GET", "/docs", Nothing),
     ("GET", "/docs/{*rest}", Nothing),
 ];
@@ -73,11 +74,11 @@ pub async fn admit(State(keys): State<Arc<Keys>>, mut request: Request, next: Ne
     };
     let Some(holder) = presented(request.headers()).and_then(|key| keys.holder(key)) else {
         let detail = "send a key of this service as `Authorization: Bearer KEY`";
-        return Problem::new(Kind::Unauthorized, detail).into_response();
+        return Problem::new(Code::Unauthorized, detail).into_response();
     };
     if !holder.roles.allow(role) {
         let detail = format!("this needs a key with the role `{}`", role.name());
-        return Problem::new(Kind::Forbidden, detail).into_response();
+        return Problem::new(Code::Forbidden, detail).into_response();
     }
     tracing::debug!(key = &*holder.name, tenant = holder.tenant.name(), "a key was accepted");
     request.extensions_mut().insert(holder.tenant.clone());

@@ -4,5 +4,4 @@ pub mod access_control;
 pub mod compression;
 pub mod request_id;
 pub mod request_log;
-pub mod request_metrics;
 pub mod security_headers;

@@ -14,10 +14,10 @@ use tracing::{Instrument as _, Span, info_span};
 use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 
 use crate::api::limits;
-use crate::api::middleware::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::middleware::security_headers;
-use crate::api::problem::{Kind, MEDIA_TYPE, Problem};
-use crate::api::resources::{metrics, page};
+use crate::api::problem::{Code, MEDIA_TYPE, Problem};
+use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
+use crate::api::routes;
 use crate::metrics::Counted;
 use crate::otlp;
 
@@ -35,7 +35,7 @@ struct RequestGuard<'a> {
 }
 
 /// Serves a request, and adds what is common to every reply.
-pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request: Request, next: Next) -> Response {
+pub async fn log_request(State(metrics): State<Arc<RequestMetrics>>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     let id = request.extensions().get::<RequestId>().map(|id| id.header_value().clone());
     let id = id.as_ref().and_then(|id| id.to_str().ok()).unwrap_or_default();
@@ -45,10 +45,10 @@ pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
-    if route == Some(metrics::ROUTE) {
-        request.extensions_mut().insert(Arc::clone(&traffic));
+    if route == Some(routes::METRICS) {
+        request.extensions_mut().insert(Arc::clone(&metrics));
     }
-    let endpoint = traffic.endpoint(route, &method);
+    let endpoint = metrics.endpoint(route, &method);
     let _in_flight = Counted::by(&endpoint.in_flight);
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
     let span = span(&request, route.unwrap_or(NO_ROUTE), id);
@@ -63,7 +63,7 @@ pub async fn log_request(State(traffic): State<Arc<RequestMetrics>>, mut request
         response = with_document(response, problem, id);
     }
     let kind = match route {
-        Some("/" | page::FOLDER) => security_headers::Kind::Page,
+        Some(routes::PAGE | routes::PAGE_FILES) => security_headers::Kind::Page,
         Some(route) if route.starts_with("/docs") => security_headers::Kind::Docs,
         _ => security_headers::Kind::Data,
     };
@@ -143,12 +143,12 @@ impl Drop for RequestGuard<'_> {
 fn foreign(response: &Response) -> Option<Problem> {
     let status = response.status();
     let kind = match status {
-        StatusCode::METHOD_NOT_ALLOWED => Kind::MethodNotAllowed,
-        StatusCode::NOT_FOUND => Kind::NotFound,
-        StatusCode::PAYLOAD_TOO_LARGE => Kind::TooLarge,
-        StatusCode::UNSUPPORTED_MEDIA_TYPE => Kind::UnsupportedMediaType,
+        StatusCode::METHOD_NOT_ALLOWED => Code::MethodNotAllowed,
+        StatusCode::NOT_FOUND => Code::NotFound,
+        StatusCode::PAYLOAD_TOO_LARGE => Code::TooLarge,
+        StatusCode::UNSUPPORTED_MEDIA_TYPE => Code::UnsupportedMediaType,
         _ if status.is_server_error() => return Some(Problem::internal(format!("the framework answered {status}"))),
-        _ if status.is_client_error() => Kind::InvalidInput,
+        _ if status.is_client_error() => Code::InvalidInput,
         _ => return None,
     };
     Some(Problem::new(kind, kind.title()))

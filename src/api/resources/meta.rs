@@ -10,7 +10,7 @@ use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
 use crate::admission::PoolError;
-use crate::api::problem::{Kind, Problem};
+use crate::api::problem::{Code, Problem};
 use crate::api::reply;
 use crate::api::state::App;
 use crate::server::connections::Refusal;
@@ -32,7 +32,7 @@ pub async fn check_health() -> Result<Response, Problem> {
 pub async fn check_readiness(State(app): State<App>) -> Result<Response, Problem> {
     match app.sessions.ready().await {
         Ok(()) => Ok(reply::json(reply::written(&json!({"status": "ready"}))?)),
-        Err(error) => Err(Problem::new(Kind::Overloaded, "the store is not ready").because(error.to_string())),
+        Err(error) => Err(Problem::new(Code::Overloaded, "the store is not ready").because(error.to_string())),
     }
 }
 
@@ -59,7 +59,7 @@ pub async fn get_openapi(Extension(OpenApiText(text)): Extension<OpenApiText>) -
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
 pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
-    let Some(kind) = Kind::parse(&code) else {
+    let Some(kind) = Code::parse(&code) else {
         return Err(nothing_at(&uri));
     };
     Ok(reply::json(reply::written(&json!({"code": code, "title": kind.title(), "status": kind.status()}))?))
@@ -73,7 +73,7 @@ pub async fn not_found(uri: Uri) -> Problem {
 /// The answer to a request that is refused before routing.
 pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
     match refusal {
-        Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Kind::AmbiguousRequest, why),
+        Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Code::AmbiguousRequest, why),
         Some(Extension(Refusal::Full(error))) => error.into(),
         None => PoolError::Busy.into(),
     }
@@ -81,7 +81,7 @@ pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
 
 fn nothing_at(uri: &Uri) -> Problem {
     let path: String = uri.path().chars().take(100).collect();
-    Problem::new(Kind::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
+    Problem::new(Code::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
 }
 
 /// The answer when a handler panicked.

@@ -17,12 +17,9 @@ use crate::metrics::process::Process;
 use crate::sessions::Readings;
 use crate::store::Commits;
 
-use crate::api::middleware::request_metrics::RequestMetrics;
 use crate::api::problem::Problem;
+use crate::api::request_metrics::RequestMetrics;
 use crate::api::state::App;
-
-/// Where the numbers are.
-pub const ROUTE: &str = "/metrics";
 
 /// The text format of Prometheus that the library writes.
 const MEDIA_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";

@@ -10,10 +10,7 @@ use axum::routing::get;
 use sha2::{Digest as _, Sha256};
 
 use super::meta;
-use crate::api::reply;
-
-/// Where the files are, below the page itself.
-pub const FOLDER: &str = "/page/{name}";
+use crate::api::{reply, routes};
 
 /// One file of the page.
 struct Asset {
@@ -30,7 +27,7 @@ static HASHES: LazyLock<Vec<String>> = LazyLock::new(|| ASSETS.iter().map(|asset
 
 /// The routes of the page.
 pub fn routes() -> Router {
-    Router::new().route("/", get(index)).route(FOLDER, get(file))
+    Router::new().route(routes::PAGE, get(index)).route(routes::PAGE_FILES, get(file))
 }
 
 async fn index(headers: HeaderMap, uri: Uri) -> Response {

@@ -11,7 +11,7 @@ use stickslip_wire::{Field, JsonPath, Sampling, StressReply, StressRequest};
 
 use crate::api::formats::{Format, STRESS_ROW, plots, tables};
 use crate::api::params::ContactPath;
-use crate::api::problem::{Kind, Problem};
+use crate::api::problem::{Code, Problem};
 use crate::api::query::{COUNT, CheckedQuery, QueryParams, QueryReader};
 use crate::api::reply;
 use crate::api::state::TenantApp;
@@ -102,7 +102,7 @@ pub async fn get_stress(
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     if residual && format != Format::Columns {
         let detail = "the extrema are no column: ask for them with the format `columns`";
-        return Err(Problem::at(Kind::InvalidInput, "/residual", detail));
+        return Err(Problem::at(Code::InvalidInput, "/residual", detail));
     }
     if headers.contains_key(header::IF_NONE_MATCH) {
         // Before anything is computed.

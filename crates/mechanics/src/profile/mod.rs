@@ -6,7 +6,7 @@
 //! depends on the family.
 //!
 //! # Adding a family
-//! 1. Write `my_family.rs`: a struct, its checked constructor, and its [`shape::Shape`].
+//! 1. Write `my_family.rs`: a struct, its checked constructor, and its `shape::Shape`.
 //! 2. Add `mod my_family;` below and its entry to [`for_each_family!`](crate::for_each_family), parameters in the order of
 //!    the constructor; a new parameter also needs its range in [`range`](super::range).
 //! 3. The JSON documents, their checks and the OpenAPI document follow from that entry.
