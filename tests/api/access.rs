@@ -146,7 +146,7 @@ fn operations() -> BTreeSet<(String, String)> {
 }
 
 #[tokio::test]
-async fn every_role_may_do_at_every_endpoint_what_it_is_for() {
+async fn every_role_has_its_permissions_at_every_endpoint() {
     let described = operations();
     for (method, path) in &described {
         let listed = ENDPOINTS.iter().any(|(other, at, ..)| other == method && at == path);

@@ -33,7 +33,7 @@ async fn compared(server: &Server, body: &Value) -> AccuracyReply {
 }
 
 #[tokio::test]
-async fn rows_of_springs_are_off_by_what_their_midpoint_sums_are() {
+async fn errors_of_springs_are_those_of_their_midpoint_sums() {
     let server = Server::start().await;
     let counts = [10, 101, 1000];
     let solvers: Vec<Value> = counts.iter().map(|&count| springs(count)).collect();
@@ -134,7 +134,7 @@ async fn infinite_stresses_are_left_out_and_counted() {
 }
 
 #[tokio::test]
-async fn who_cannot_follow_the_path_says_so_in_its_row() {
+async fn a_solver_that_cannot_follow_the_path_has_the_reason_in_its_row() {
     let server = Server::start().await;
     let limit = FRICTION * 4.0 / 3.0 * E_STAR * (RADIUS * INDENTATION).sqrt() * INDENTATION;
     let near = json!({"contact": parabola(), "path": {"moves": [

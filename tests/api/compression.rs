@@ -79,7 +79,7 @@ async fn each_format_decodes_to_the_bytes_that_it_has_without_a_coding() {
 }
 
 #[tokio::test]
-async fn what_is_short_or_packed_or_a_stream_stays_as_it_is() {
+async fn short_compressed_and_streamed_replies_stay_unchanged() {
     let (server, contact) = moved().await;
     let accept = [("accept-encoding", "gzip, zstd")];
     for path in ["/healthz", &format!("{contact}/stress?format=png"), &format!("{contact}/events"), "/none"] {

@@ -177,7 +177,7 @@ async fn a_fault_in_last_event_id_is_named() {
 }
 
 #[tokio::test]
-async fn there_are_so_many_listeners_and_no_more() {
+async fn the_number_of_listeners_is_limited() {
     let pool = Pool::with_defaults();
     let sessions = Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY);
     let server = Server::over(sessions.clone(), pool).await;

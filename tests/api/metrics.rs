@@ -204,7 +204,7 @@ async fn sample(server: &Server, name: &str) -> u64 {
 }
 
 #[tokio::test]
-async fn what_is_not_in_memory_counts_as_a_miss() {
+async fn an_uncached_contact_counts_as_a_miss() {
     let server = Server::with(Arc::new(MemoryStore::new()), 1).await;
     let id = server.contact().await;
     for _ in 0..3 {

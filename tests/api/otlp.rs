@@ -150,7 +150,7 @@ async fn a_collector_gets_a_span_for_each_request() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_collector_that_is_away_costs_nothing_but_traces() {
+async fn an_unreachable_collector_costs_only_traces() {
     let server = Binary::start(&["--otlp-endpoint", "http://127.0.0.1:1"]);
     let id = server.client.create(&create(), &Options::default()).await.unwrap().id;
     server.client.apply(id, &Move::displacement(1e-9).into(), &Options::default()).await.unwrap();

@@ -107,7 +107,7 @@ async fn only_what_is_asked_for_is_in_the_reply() {
 }
 
 #[tokio::test]
-async fn infinite_stresses_are_null_and_spoil_nothing() {
+async fn infinite_stresses_are_null_and_change_nothing_else() {
     let server = common::Server::start().await;
     let mut body = request(&json!({"type": "flat_punch", "radius": 1e-3}), &json!({"normal_force": 10.0}));
     body["path"] = json!({"displacement": [1e-9]});

@@ -54,7 +54,7 @@ async fn wandered(server: &Server, contact: &Value, moves: u32) -> String {
 }
 
 #[tokio::test]
-async fn the_path_of_a_protocol_leaves_in_simulate_what_it_says() {
+async fn the_path_of_a_protocol_leaves_the_predicted_stress_in_simulate() {
     let server = Server::start().await;
     for contact in [ball(), table()] {
         for kind in ["linear", "equal_peaks", "minimax"] {

@@ -198,7 +198,7 @@ async fn several_sweep_at_once_and_each_idle_session_goes_once() {
 }
 
 #[tokio::test]
-async fn changes_by_another_process_wake_those_who_wait() {
+async fn changes_by_another_process_wake_waiting_listeners() {
     let cluster = Cluster::shared();
     let url = cluster.database().await;
     let (here, there) = (PostgresStore::open(&url).await.unwrap(), PostgresStore::open(&url).await.unwrap());

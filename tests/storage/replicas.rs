@@ -144,7 +144,7 @@ fn replay(past: &[HistoryItem]) -> Vec<State> {
 }
 
 #[tokio::test]
-async fn a_reply_is_owed_after_a_restart_and_by_the_other_replica() {
+async fn a_retry_gets_its_reply_after_a_restart_and_from_the_other_replica() {
     let url = Cluster::shared().database().await;
     let (here, there) = (Process::start(&url).await, Process::start(&url).await);
     let http = reqwest::Client::new();

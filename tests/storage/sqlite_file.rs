@@ -61,7 +61,7 @@ fn cut(path: &Path, length: u64) {
 }
 
 #[test]
-fn what_is_no_store_of_ours_is_refused_and_left_alone() {
+fn a_file_that_is_no_store_is_refused_and_left_unchanged() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("file.db");
     for text in ["x", "not a database\n", "SQLite format 3\0", &"a letter to a friend\n".repeat(1_000)] {
@@ -91,7 +91,7 @@ fn what_is_no_store_of_ours_is_refused_and_left_alone() {
 }
 
 #[tokio::test]
-async fn what_is_torn_is_refused_and_left_alone() {
+async fn a_truncated_file_is_refused_and_left_unchanged() {
     for gracefully in [true, false] {
         let folder = tempdir().unwrap();
         let path = folder.path().join("torn.db");
@@ -182,7 +182,7 @@ async fn receipts_are_gone_after_a_day() {
 }
 
 #[tokio::test]
-async fn what_a_crash_left_half_made_is_cleared_away() {
+async fn remains_of_a_crash_are_removed() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("half.db");
     let id = used(&path, true).await;
