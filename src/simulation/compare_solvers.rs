@@ -29,7 +29,8 @@ const MAX_RUNS: usize = 9;
 const REASON_EXACT: &str =
     "every move of this path has an exact solution: what is left is rounding, or the points of a table";
 const REASON_REFINED: &str = "the exact solver, held to a sixteenth of the tolerance where moves are curved";
-const REASON_UNREFINED: &str = "the exact solver, held to the tolerance where moves are curved: a smaller one would exceed the limit of the slip history";
+const REASON_UNREFINED: &str =
+    "the exact solver, held to the tolerance where moves are curved: a smaller one would exceed the slip history";
 
 /// The result of one solver: forces, N, after each move, and shear stresses, Pa, at the end.
 struct Answer {
