@@ -114,10 +114,10 @@ fn raw_bytes() {
 
 #[test]
 fn damaged_requests() {
-    fuzz(20_000, crate::damage::damaged(), Clone::clone);
+    fuzz(35_000, crate::damage::damaged(), Clone::clone);
 }
 
 #[test]
 fn sound_requests() {
-    fuzz(8_000, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes());
+    fuzz(10_000, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes());
 }

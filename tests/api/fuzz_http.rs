@@ -171,7 +171,7 @@ async fn requests_by_the_schemas() {
     let (http, answered, refused) = (reqwest::Client::new(), AtomicU64::new(0), AtomicU64::new(0));
     let base = format!("http://{}", service.address);
     let contacts: Vec<&[String]> = contacts.chunks(CONTACTS_PER_TASK).collect();
-    run(15_000, async |task, number, random| {
+    run(50_000, async |task, number, random| {
         let request = request(&schemas, contacts[task], random);
         // Most cases should find their contact.
         if request.method == "DELETE" && number % 50 != 0 {
@@ -223,7 +223,7 @@ async fn bytes_on_the_socket() {
          5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
             .to_owned(),
     ];
-    run(40_000, async |_, number, random| {
+    run(60_000, async |_, number, random| {
         let mut bytes = pick(&sound, random).clone().into_bytes();
         if random.below(6) == 0 {
             bytes = (0..random.below(3_000)).map(|_| random.next() as u8).collect();
