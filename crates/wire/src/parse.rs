@@ -189,7 +189,7 @@ mod tests {
             (with(sphere, r#"{"displacement":[0,1e999]}"#), "/path/displacement/1", "out of range"),
             (with(sphere, r#"{"moves":[{"force":1},{"force":null}]}"#), "/path/moves/1/force", "null"),
             (with(sphere, r#"{"wave":[1]}"#), "/path", "`falling_amplitude`"),
-            (with(sphere, r#"{"force":[1],"displacement":[1]}"#), "/path", "beside"),
+            (with(sphere, r#"{"force":[1],"displacement":[1]}"#), "/path", "conflicts"),
             (with(sphere, "{}"), "/path", "one key"),
             (with(sphere, "7"), "/path", "one key"),
             (with(r#"["sphere",1]"#, r#"{"force":[1]}"#), "/contact/profile", "an object"),
