@@ -306,13 +306,13 @@ impl DesignTask<'_> {
             let begun = self.after(&[first])?;
             // The first of the strokes goes back.
             let last = if self.reversals.is_multiple_of(2) { sign } else { -sign };
-            if let Some(path) = self.relieved(&begun, self.reversals, last) {
+            for path in self.relieved(&begun, self.reversals, last) {
                 offer(self.judge([vec![first], path].concat(), first_move, None))?;
             }
         }
         if first_move == FirstMove::GrossSlip {
             for last in [1.0, -1.0] {
-                if let Some(path) = self.relieved(self.contact, self.reversals + 1, last) {
+                for path in self.relieved(self.contact, self.reversals + 1, last) {
                     let wiped = self.after(&path[..1])?.state().regime == Regime::GrossSlip;
                     offer(self.judge(path, if wiped { FirstMove::GrossSlip } else { FirstMove::Partial }, None))?;
                 }
@@ -349,17 +349,18 @@ impl DesignTask<'_> {
         }
     }
 
-    /// Strokes by [`FromAnyState`], m, if they meet the condition of the end.
-    fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Option<Vec<f64>> {
-        let mut path = FromAnyState::new(from, strokes, last, self.end)?.solve(self.keep_going)?;
-        path.iter_mut().for_each(|position| *position *= from.scale());
-        let end = path.last_mut()?;
-        if self.end == PathEnd::DisplacementZero {
-            if end.abs() > ROUNDED * from.gross_slip_displacement() {
-                return None;
-            }
-            *end = 0.0;
+    /// Strokes by [`FromAnyState`], m, that meet the condition of the end.
+    fn relieved(&self, from: &Contact, strokes: usize, last: f64) -> Vec<Vec<f64>> {
+        let Some(strokes) = FromAnyState::new(from, strokes, last, self.end) else { return Vec::new() };
+        let mut paths = strokes.solve(self.keep_going);
+        for position in paths.iter_mut().flatten() {
+            *position *= from.scale();
         }
-        Some(path)
+        if self.end == PathEnd::DisplacementZero {
+            let near = ROUNDED * from.gross_slip_displacement();
+            paths.retain(|path| path.last().is_some_and(|end| end.abs() <= near));
+            paths.iter_mut().filter_map(|path| path.last_mut()).for_each(|end| *end = 0.0);
+        }
+        paths
     }
 }

@@ -11,6 +11,7 @@
 use super::super::contact::Contact;
 use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
+use super::descent::{Trial, search};
 use super::minimax::Problem;
 use super::{DoubleDouble, PathEnd, cutoff_of, outermost_singular};
 
@@ -19,8 +20,10 @@ const MAX_DEPTH: usize = 256;
 /// Number of sampled radii besides the kinks of the history, and of cuts that are tried.
 const GRID: usize = 64;
 const CUTS: usize = 16;
-/// The best of the cuts tried is within this factor of the best of all.
-const COARSE: f64 = 1.1;
+/// Up to this many strokes all sequences are searched; from more the search would take longer than it gains.
+const SEARCHED: usize = 6;
+/// The step of the difference that gives the slope of the stress at a kink by its own level, over that of the edge.
+const PROBE: f64 = 1e-6;
 /// Halvings of a bracket.
 const HALVINGS: usize = 60;
 /// The largest number of evaluations of E, and the factors that bracket it.
@@ -49,9 +52,10 @@ pub(super) struct FromAnyState<'a> {
     end: PathEnd,
 }
 
-/// The strokes of one E, scaled by m, for a last stroke forwards.
+/// A sequence of strokes, scaled by m, for a last stroke forwards.
 struct Strokes {
     kinks: Vec<Point>,
+    cut: Point,
     /// Where the first stroke leads to.
     first: f64,
 }
@@ -185,56 +189,184 @@ impl<'a> FromAnyState<'a> {
             return Ok(StrokeOutcome::Loose);
         }
         let kinks = marched.kinks;
-        let profile = self.problem.profile;
         let outside = self.outside(&kinks);
-        let last = kinks.last().unwrap_or(&self.problem.edge).level;
-        let fits = |cut: &Point| self.worst(&outside, &kinks, cut) <= limit * (1.0 + 1e-12);
-        if self.end == PathEnd::Free {
-            let outermost = kinks.last().unwrap_or(&self.problem.edge).radius;
-            let cut = |part: f64| profile.point(DoubleDouble::from(profile.level(part * outermost).min(last.value())));
-            let worst = |part: f64| self.worst(&outside, &kinks, &cut(part));
-            let tried = (0..=CUTS).map(|index| index as f64 / CUTS as f64).map(|part| (part, worst(part)));
-            let (mut best, mut least) = tried.fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
-            // Ever smaller steps to both sides of the best.
-            let mut step = 0.5 / CUTS as f64;
-            while step > 1e-7 && (limit..COARSE * limit).contains(&least) && keep_going() {
-                let sides = [best - step, best + step].map(|part| part.clamp(0.0, 1.0)).map(|part| (part, worst(part)));
-                match sides.into_iter().find(|(_, value)| *value < least) {
-                    Some(side) => (best, least) = side,
-                    None => step *= 0.5,
-                }
-            }
-            let cut = cut(best);
-            let first = self.first_to(cut.level);
-            return Ok(if least <= limit {
-                StrokeOutcome::Fits(Strokes { kinks, first })
-            } else {
-                StrokeOutcome::Tight
-            });
-        }
-        let (mut low, mut high) = (DoubleDouble::ZERO, last);
-        if self.miss(&kinks, high) > 0.0 {
+        let Some((cut, first)) = (if self.end == PathEnd::Free {
+            let cut = self.free_cut(limit, &outside, &kinks, keep_going);
+            Some((cut, self.first_to(cut.level)))
+        } else {
+            self.prescribed_cut(&kinks)
+        }) else {
             return Ok(StrokeOutcome::Tight);
+        };
+        let fits = self.worst(&outside, &kinks, &cut) <= limit * (1.0 + 1e-12);
+        Ok(if fits { StrokeOutcome::Fits(Strokes { kinks, cut, first }) } else { StrokeOutcome::Tight })
+    }
+
+    /// The cut that leaves least inside the last kink.
+    fn free_cut(&self, limit: f64, outside: &[f64], kinks: &[Point], keep_going: &dyn Fn() -> bool) -> Point {
+        let profile = self.problem.profile;
+        let outermost = kinks.last().unwrap_or(&self.problem.edge);
+        let cut = |radius: f64| profile.point(DoubleDouble::from(profile.level(radius).min(outermost.level.value())));
+        let worst = |radius: f64| self.worst(outside, kinks, &cut(radius));
+        // Between the kinks of the history, each of which may be as near to the last as it likes, the stress is smooth.
+        let bends = self.history.iter().map(|(ring, _)| ring.outer.radius).filter(|bend| *bend < outermost.radius);
+        let bends: Vec<f64> = [0.0].into_iter().chain(bends).chain([outermost.radius]).collect();
+        let parts = (CUTS / (bends.len() - 1)).max(2);
+        let mut tried = Vec::with_capacity(bends.len() * parts);
+        for pair in bends.windows(2) {
+            let radius = |index: usize| pair[0] + (pair[1] - pair[0]) * index as f64 / parts as f64;
+            tried.extend((0..parts).map(|index| (radius(index), worst(radius(index)))));
         }
-        let over = self.miss(&kinks, low);
+        tried.push((outermost.radius, worst(outermost.radius)));
+        let best = (0..tried.len()).min_by(|a, b| tried[*a].1.total_cmp(&tried[*b].1)).unwrap_or(0);
+        let (mut radius, mut least) = tried[best];
+        let (low, high) = (tried[best.saturating_sub(1)].0, tried[(best + 1).min(tried.len() - 1)].0);
+        // Ever smaller steps to both sides of the best.
+        let mut step = 0.5 * (high - low);
+        while step > 1e-7 * outermost.radius && least > limit && keep_going() {
+            let sides =
+                [radius - step, radius + step].map(|side| side.clamp(low, high)).map(|side| (side, worst(side)));
+            match sides.into_iter().find(|(_, value)| *value < least) {
+                Some(side) => (radius, least) = side,
+                None => step *= 0.5,
+            }
+        }
+        cut(radius)
+    }
+
+    /// The cut that leads to the prescribed end, and where the first stroke leads to; `None` if no cut does.
+    fn prescribed_cut(&self, kinks: &[Point]) -> Option<(Point, f64)> {
+        let outermost = kinks.last().unwrap_or(&self.problem.edge).level;
+        let (mut low, mut high) = (DoubleDouble::ZERO, outermost);
+        if self.miss(kinks, high) > 0.0 {
+            return None;
+        }
+        let over = self.miss(kinks, low);
         if over < 0.0 {
             // Sliding on as a whole changes nothing but where it ends.
-            let first = self.first_to(low) - self.first * over;
-            let slides = self.end == PathEnd::DisplacementZero && fits(&profile.point(low));
-            return Ok(if slides { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight });
+            let slides = self.end == PathEnd::DisplacementZero;
+            return slides.then(|| (self.problem.profile.point(low), self.first_to(low) - self.first * over));
         }
         for _ in 0..HALVINGS {
             let middle = low + (high - low) * 0.5;
-            if self.miss(&kinks, middle) > 0.0 { low = middle } else { high = middle }
+            if self.miss(kinks, middle) > 0.0 { low = middle } else { high = middle }
         }
-        let cut = profile.point(high);
-        let first = self.first_to(cut.level);
-        Ok(if fits(&cut) { StrokeOutcome::Fits(Strokes { kinks, first }) } else { StrokeOutcome::Tight })
+        Some((self.problem.profile.point(high), self.first_to(high)))
     }
 
-    /// The displacements, scaled by m, of the strokes that leave least; `None` if there are none, or `keep_going`
-    /// returned false.
-    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<Vec<f64>> {
+    /// The displacements, scaled by m, of the strokes that leave least, found in two ways; fewer where a way finds none,
+    /// or `keep_going` returned false.
+    pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+        let marched = self.equal(keep_going);
+        let searched =
+            if self.problem.reversals < SEARCHED { self.searched(marched.as_ref(), keep_going) } else { Vec::new() };
+        marched.iter().chain(&searched).map(|strokes| self.positions(strokes)).collect()
+    }
+
+    /// The best of all sequences of few strokes, where the first stroke slips in part and where it slips as a whole.
+    fn searched(&self, known: Option<&Strokes>, keep_going: &dyn Fn() -> bool) -> Vec<Strokes> {
+        let edge = self.problem.edge.level.value();
+        let known = known.map(|known| {
+            let levels =
+                known.kinks.iter().chain([&known.cut]).map(|point| (point.level.value() / edge).clamp(0.0, 1.0));
+            levels.collect::<Vec<f64>>()
+        });
+        let slides = (self.end == PathEnd::DisplacementZero && self.problem.reversals > 0).then_some(true);
+        let ways = [false].into_iter().chain(slides);
+        let found = ways.filter_map(|slides| {
+            let count = self.problem.reversals + usize::from(!slides);
+            let known = known.iter().map(|known| known[..count].to_vec()).collect();
+            let evaluate = |levels: Vec<f64>| self.trial(levels, slides);
+            let levels = search(count, self.end != PathEnd::Free, known, &evaluate, keep_going)?;
+            let (kinks, cut) = self.points(&levels, slides);
+            let (cut, first) = match self.end {
+                PathEnd::Free => (cut, self.first_to(cut.level)),
+                _ => self.prescribed_cut(&kinks)?,
+            };
+            Some(Strokes { kinks, cut, first })
+        });
+        found.collect()
+    }
+
+    /// The kinks and the cut of the unknowns of the search; if the first stroke slides, the cut is none of them.
+    fn points(&self, levels: &[f64], slides: bool) -> (Vec<Point>, Point) {
+        let edge = self.problem.edge.level.value();
+        let point = |level: &f64| self.problem.profile.point(DoubleDouble::from(level * edge));
+        let mut points: Vec<Point> = levels.iter().chain(slides.then_some(&0.0)).map(point).collect();
+        let cut = points.pop().unwrap_or(self.problem.edge);
+        (points, cut)
+    }
+
+    /// What a sequence of the search leaves, with the slopes by its unknowns. That of the kernel by the level of a kink
+    /// is 1/sqrt(X^2 - r^2), and that of the load carried is X.
+    fn trial(&self, levels: Vec<f64>, slides: bool) -> Trial {
+        let (problem, edge) = (&self.problem, self.problem.edge.level.value());
+        let profile = problem.profile;
+        let (kinks, cut) = self.points(&levels, slides);
+        let sign = |index: usize| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
+        let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
+        let slope_inside = kept.map_or(0.0, |(_, line)| -self.last * line.slope.value());
+        let kept = kept.map(|(ring, _)| Ring::between(ring.inner, cut));
+        // By how much the slope of w changes at an unknown, from its outside to its inside.
+        let unknowns: Vec<(Point, f64)> = kinks
+            .iter()
+            .enumerate()
+            .map(|(index, kink)| (*kink, -2.0 * sign(index)))
+            .chain((!slides).then(|| (cut, slope_inside - sign(kinks.len()))))
+            .collect();
+        let by_levels = |radius: f64| -> Vec<f64> {
+            let slope = |(point, change): &(Point, f64)| {
+                let apart = (point.radius - radius) * (point.radius + radius);
+                // Within a thousandth of a kink no tangent holds.
+                let least = 1e-6 * problem.edge.radius * problem.edge.radius;
+                if apart > 0.0 { edge * change / apart.max(least).sqrt() } else { 0.0 }
+            };
+            unknowns.iter().map(slope).collect()
+        };
+        let mut stresses = Vec::with_capacity(self.samples.len() + unknowns.len());
+        for sample in &self.samples {
+            let mut stress = problem.shear_down_to(cut, &kinks, &sample.at);
+            if sample.at.radius <= cut.radius {
+                stress +=
+                    sample.below[whole] + kept.map_or(0.0, |ring| slope_inside * profile.kernel(&sample.at, &ring));
+            }
+            stresses.push((stress, by_levels(sample.at.radius)));
+        }
+        for (index, (point, _)) in unknowns.iter().enumerate() {
+            if point.radius <= problem.cutoff {
+                continue;
+            }
+            let beyond = &kinks[..index];
+            let stress = problem.shear_down_to(*point, beyond, &StressRadius::of_point(point));
+            let mut slope = by_levels(point.radius);
+            // Further in, which it always may go.
+            let probe = PROBE.min(0.5 * levels[index]);
+            let inner = profile.point(DoubleDouble::from((levels[index] - probe) * edge));
+            let further = problem.shear_down_to(inner, beyond, &StressRadius::of_point(&inner));
+            slope[index..].fill(0.0);
+            slope[index] = if probe > 0.0 { (stress - further) / probe } else { 0.0 };
+            stresses.push((stress, slope));
+        }
+        let miss = match self.end {
+            PathEnd::Free => (0.0, vec![0.0; levels.len()]),
+            PathEnd::DisplacementZero => {
+                let by_kinks = (0..kinks.len()).map(|index| -2.0 * sign(index) * self.first);
+                let by_cut = (!slides).then(|| -1.0 + self.first * slope_inside);
+                let miss = self.miss(&kinks, cut.level) / edge;
+                (if slides { miss.max(0.0) } else { miss }, by_kinks.chain(by_cut).collect())
+            }
+            PathEnd::ForceZero => {
+                let whole = problem.edge.radius * edge;
+                let slope = unknowns.iter().map(|(point, change)| self.first * change * point.radius * edge / whole);
+                (self.miss(&kinks, cut.level) / whole, slope.collect())
+            }
+        };
+        Trial { levels, stresses, miss }
+    }
+
+    /// The strokes of the smallest E; `None` if there are none, or `keep_going` returned false.
+    fn equal(&self, keep_going: &dyn Fn() -> bool) -> Option<Strokes> {
         let problem = &self.problem;
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
         let zero = problem.profile.point(DoubleDouble::ZERO);
@@ -292,7 +424,7 @@ impl<'a> FromAnyState<'a> {
             let middle = 0.5 * (low + high);
             if step(middle)? { high = middle } else { low = middle }
         }
-        best.map(|strokes| self.positions(&strokes))
+        best
     }
 
     fn positions(&self, strokes: &Strokes) -> Vec<f64> {
