@@ -261,28 +261,3 @@ impl Shape for ExactSphere {
         Some(End { radius: self.radius * (1.0 - 1e-12), falls: false })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::shape::Shape;
-    use super::{DoubleDouble, ExactSphere};
-
-    #[test]
-    fn far_from_the_limit_it_is_the_paraboloid() {
-        let sphere = ExactSphere::new(2.0).unwrap();
-        // R y (1 - y/(3R)) to second order.
-        let square = sphere.square(DoubleDouble::from(1e-20));
-        let rest = (square - DoubleDouble::from(1e-20) * 2.0).value() / (2e-20 * -1e-20 / 6.0) - 1.0;
-        assert!(rest.abs() < 1e-6, "{rest:e}");
-    }
-
-    #[test]
-    fn any_level_has_a_radius_below_the_limit() {
-        let sphere = ExactSphere::new(1e-3).unwrap();
-        for level in [1e-30, 1e-9, 1e-3, 1.0, 1e9] {
-            let radius = sphere.radius(level);
-            assert!(radius > 0.0 && radius <= 1e-3, "{level} {radius}");
-            assert!(sphere.square(DoubleDouble::from(level)).value() <= 1e-6 * (1.0 + 1e-15));
-        }
-    }
-}

@@ -294,28 +294,3 @@ impl Shape for PowerLaw {
         self.exponent.to_bits() == 2f64.to_bits()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::kappa;
-
-    #[test]
-    fn kappa_from_the_smallest_exponent_to_the_largest() {
-        // Reference values to 17 digits.
-        for (n, exact) in REFERENCE {
-            let relative: f64 = kappa(n) / exact - 1.0;
-            assert!(relative.abs() < 2e-15, "{n}: {relative:e}");
-        }
-    }
-
-    const REFERENCE: [(f64, f64); 8] = [
-        (0.1, 1.067672466624002),
-        (0.5, 1.3110287771460598),
-        (1.0, std::f64::consts::FRAC_PI_2),
-        (1.5, 1.7972103521033884),
-        (2.0, 2.0),
-        (3.0, 2.356194490192345),
-        (17.0, 5.244057134085929),
-        (1000.0, 39.643182531295324),
-    ];
-}

@@ -115,29 +115,3 @@ impl Shape for Sphere {
         Some(Roots::new(self.curvature_radius, rings).sums(radii))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::{Profile, Ring};
-    use super::{DoubleDouble, Sphere};
-
-    #[test]
-    fn moments_of_a_thin_ring_keep_their_digits() {
-        let sphere = Profile::Sphere(Sphere::new(2.0).unwrap());
-        let edge = DoubleDouble::from(0.5);
-        for depth in [0.5, 1e-3, 1e-8, 1e-14] {
-            let ring = Ring::between(sphere.point(edge - DoubleDouble::from(depth)), sphere.point(edge));
-            let m = sphere.moments(&ring);
-            // Series about the edge: X(y) = sqrt(2 y), X' = 1/X.
-            if depth < 1e-7 {
-                assert!((m.width / depth - 1.0).abs() < 1e-7);
-                assert!((m.first / (depth * depth / 2.0) - 1.0).abs() < 1e-7);
-                assert!((m.second / (depth.powi(3) / 3.0) - 1.0).abs() < 1e-7);
-            } else {
-                let (x1, x2) = (ring.inner.radius, ring.outer.radius);
-                let first = 0.5 * (x2 - x1) - (x2.powi(3) - x1.powi(3)) / 6.0;
-                assert!((m.first - first).abs() < 1e-15);
-            }
-        }
-    }
-}

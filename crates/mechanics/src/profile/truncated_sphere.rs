@@ -82,20 +82,3 @@ flat_core!(TruncatedSphere {
         Some(self.curvature_radius)
     }
 });
-
-#[cfg(test)]
-mod tests {
-    use super::super::shape::Shape;
-    use super::{DoubleDouble, TruncatedSphere};
-
-    #[test]
-    fn the_square_solves_its_equation_to_thirty_digits() {
-        let sphere = TruncatedSphere::new(3.0, 0.25).unwrap();
-        for level in [1e-9, 1e-3, 0.7] {
-            let square = sphere.square(DoubleDouble::from(level));
-            let excess = square - DoubleDouble::from(0.0625);
-            let rest = square * excess - DoubleDouble::square_of(level) * 9.0;
-            assert!(rest.value().abs() < 1e-29 * (square * excess).value() + 1e-33, "{level}: {rest:?}");
-        }
-    }
-}

@@ -4,7 +4,7 @@
 //!
 //! f'(0) = 0: a sharp tip would come from the noise of the first two points, with a log-infinite pressure; to model
 //! one, add a cone. With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up
-//! to r = 1.5: 3e-5 of g at n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the
+//! to r = 1.5: 3e-5 of g at n = 30, 1e-6 at 120 (`tests/physics/tables.rs`). Only radii below the last of the table, and below the
 //! first at which g falls, exist: but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
