@@ -4,10 +4,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::super::error::Error;
-use super::super::range;
 use super::shape::Shape;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A cone.
 #[derive(Clone, Copy, Debug, PartialEq)]

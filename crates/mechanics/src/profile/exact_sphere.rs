@@ -4,13 +4,11 @@
 //! D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
 //! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R.
 
-use super::super::error::Error;
-use super::super::range;
 use super::gauss::{Singular, along_strip};
 use super::roots::increasing;
 use super::shape::{End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -243,9 +241,7 @@ impl Shape for ExactSphere {
             return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
-        let start = 1e-9 * span.outer_radius;
-        let (radius, square) = (start, DoubleDouble::square_of(start));
-        smooth_coordinate::kernel_slope(self, &StressRadius { radius, square }, span)
+        smooth_coordinate::kernel_slope(self, &StressRadius::new(1e-9 * span.outer_radius), span)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -3,12 +3,10 @@
 //! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by I_m = [x^(m-1) v]/m + (1 - 1/m) r^2 I_(m-2), a sum of
 //! positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
-use super::super::error::Error;
-use super::super::range;
 use super::gauss::Singular;
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
 const MOST_TERMS: u16 = 24;
@@ -242,10 +240,7 @@ impl Shape for PowerLaw {
             return 0.0;
         }
         let far = FAR * at.radius;
-        if inner > 0.0 && span.inner_radius >= far {
-            return self.far(span);
-        }
-        if at.square.value() <= 0.0 {
+        if (inner > 0.0 && span.inner_radius >= far) || at.square.value() <= 0.0 {
             return self.far(span);
         }
         let limit = DoubleDouble::square_of(far);

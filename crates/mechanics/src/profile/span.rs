@@ -3,8 +3,7 @@
 //! Differences of squares decide everything: x^2 - r^2 under the roots of the kernels, x^2 - b^2 beside a kink at b. So a span
 //! carries the squares with twice the digits and their difference on its own, since that comes from the depth of the ring.
 
-use super::super::double_double::DoubleDouble;
-use super::{Moments, Ring, StressRadius};
+use super::{DoubleDouble, Moments, Ring, StressRadius};
 
 /// The radii of a ring, and the levels it crosses at a vertical edge.
 #[derive(Clone, Copy, Debug)]

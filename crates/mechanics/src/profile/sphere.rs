@@ -3,11 +3,9 @@
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
-use super::super::error::Error;
-use super::super::range;
 use super::kernel_sums::Roots;
 use super::shape::Shape;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,10 +3,8 @@
 //! gamma = dg/dt = T (phi t + b)/x, int x dg = (T/2)(x^2 phi + b t) (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure
 //! and shear are log-infinite there.
 
-use super::super::error::Error;
-use super::super::range;
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A truncated cone.
 #[derive(Clone, Copy, Debug, PartialEq)]

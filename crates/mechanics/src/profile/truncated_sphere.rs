@@ -3,10 +3,8 @@
 //! gamma = dg/dt = (b^2 + 2 t^2)/(R x), int x dg = t (3 b^2 + 2 t^2)/(3R), and X follows from a quadratic in t^2 (Ejike 1981;
 //! Popov & Hess 2015). f' jumps at b: pressure and shear are log-infinite there.
 
-use super::super::error::Error;
-use super::super::range;
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A paraboloid with a flat end.
 #[derive(Clone, Copy, Debug, PartialEq)]

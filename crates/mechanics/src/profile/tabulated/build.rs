@@ -3,11 +3,10 @@
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
 //! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
 
-use super::super::super::double_double::DoubleDouble;
-use super::super::gauss;
 use super::far_field::{FarField, Sampled};
 use super::panel::{self, Panel};
 use super::spline::Knot;
+use super::{DoubleDouble, gauss};
 
 /// Panels that share one far field.
 const BLOCK: usize = 4;
@@ -181,9 +180,7 @@ impl Field {
 
 /// The first t at which q is below zero by more than rounding could make it.
 fn first_fall(panel: &Panel) -> Option<f64> {
-    let mut places = panel::places(panel.low, panel.high).to_vec();
-    places.extend([panel.low, panel.high]);
-    places.sort_by(f64::total_cmp);
+    let places = panel.slope_check_places();
     let values: Vec<f64> = places.iter().map(|&t| panel.slope_over_radius(t)).collect();
     let size = values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
     let index = values.iter().position(|&value| value < -1e-12 * size)?;
@@ -191,11 +188,7 @@ fn first_fall(panel: &Panel) -> Option<f64> {
     let (mut low, mut high) = (places[before], places[index]);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if panel.slope_over_radius(middle) < 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
+        if panel.slope_over_radius(middle) < 0.0 { high = middle } else { low = middle }
     }
     Some(low)
 }
