@@ -110,17 +110,13 @@ impl Contact {
     #[must_use]
     pub fn virgin(&self) -> Contact {
         Contact {
-            profile: self.profile.clone(),
-            elasticity: self.elasticity,
-            friction: self.friction,
             history: SlipHistory::new(&self.profile, DoubleDouble::from(self.initial.indentation)),
             displacement: DoubleDouble::ZERO,
             normal_force: self.initial.normal_force,
             dissipated: DoubleDouble::ZERO,
-            initial: self.initial,
             path_error: 0.0,
             path_kernel: 0.0,
-            inverse_scale: self.inverse_scale,
+            ..self.clone()
         }
     }
 
@@ -132,16 +128,6 @@ impl Contact {
     /// U = m W, m.
     pub(super) fn unscaled(&self, position: DoubleDouble) -> DoubleDouble {
         if self.friction > 0.0 { position.over(self.inverse_scale) } else { DoubleDouble::ZERO }
-    }
-
-    pub(super) fn displacement(&self) -> DoubleDouble {
-        self.displacement
-    }
-
-    /// Adds the errors of a chord: errors of the force accumulate, those of the stress are local.
-    pub(super) fn add_path_error(&mut self, force: f64, kernel: f64) {
-        self.path_error += force;
-        self.path_kernel = self.path_kernel.max(kernel);
     }
 
     /// Normal force, N, at an indentation, m.

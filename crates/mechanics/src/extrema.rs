@@ -116,14 +116,8 @@ impl SmoothInterval {
             EndBehaviour::Logarithm if self.sparse && sign.abs() > 0.0 => Vec::new(),
             EndBehaviour::Logarithm if self.sparse => vec![floor],
             EndBehaviour::Logarithm => {
-                let mut places = vec![0.25, 0.5];
-                places.extend(
-                    std::iter::successors(Some(1.0), |place| Some(place * KNOT_STRIDE))
-                        .take_while(|&place| place < floor),
-                );
-                places.retain(|&place| place < floor);
-                places.push(floor);
-                places
+                let strides = std::iter::successors(Some(0.25), |place| Some(place * KNOT_STRIDE));
+                strides.take_while(|&place| place < floor).chain([floor]).collect()
             }
             EndBehaviour::Inverse => by_steps(1.0, floor),
         }

@@ -51,7 +51,7 @@ impl Contact {
         touched.then(|| {
             if self.friction <= 0.0 {
                 // The surface does not move at all, and the slip history does not follow the displacement.
-                return self.displacement().value() + 0.0;
+                return self.displacement.value() + 0.0;
             }
             let started = (self.history.position() - self.history.shift()).value();
             self.scale() * (started - self.relative_displacement(radius)) + 0.0
