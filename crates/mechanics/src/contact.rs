@@ -2,14 +2,9 @@
 
 use std::sync::Arc;
 
-use super::double_double::DoubleDouble;
-use super::elasticity::Elasticity;
-use super::error::Error;
-use super::normal::{self, ContactSummary, Preload};
-use super::profile::{Point, Profile, StressRadius};
-use super::range;
+use super::profile::{Point, StressRadius};
 use super::slip_history::SlipHistory;
-use super::state::Setup;
+use super::{ContactSummary, DoubleDouble, Elasticity, Error, Preload, Profile, Setup, normal, range};
 
 /// A frictional contact, solved exactly.
 ///

@@ -8,10 +8,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
-use super::error::Error;
 use super::profile::{Ring, StressRadius};
+use super::{Contact, DoubleDouble, Error};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;

@@ -6,10 +6,8 @@
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
 use super::profile::StressRadius;
-use super::shear_stress::Peak;
+use super::{Contact, DoubleDouble, Peak};
 
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
 /// derivative has structure of every size from the whole interval down to the ring's depth.

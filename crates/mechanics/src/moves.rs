@@ -1,12 +1,8 @@
 //! The moves of a contact: straight ones in one step, curved ones through `curved_move`; and the first part of a move,
 //! so that its path can be drawn point by point.
 
-use super::contact::Contact;
-use super::curved_move::{CurvedMove, DEFAULT_TOLERANCE, NormalPath, PathPoint, TangentialPath};
-use super::double_double::DoubleDouble;
-use super::error::Error;
-use super::range;
-use super::state::{Move, Normal, Tangential};
+use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use super::{Contact, DEFAULT_TOLERANCE, DoubleDouble, Error, Move, Normal, Tangential, range};
 
 impl Contact {
     /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].

@@ -10,10 +10,9 @@
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
 //! | the rest | the slip history, see `slip_history/packed.rs` |
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
 use super::profile::Point;
 use super::slip_history::SlipHistory;
+use super::{Contact, DoubleDouble};
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed

@@ -7,9 +7,8 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
 use super::profile::{Point, StressRadius};
+use super::{Contact, DoubleDouble};
 
 impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least zero, inside the contact or outside.

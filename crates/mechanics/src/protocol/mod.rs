@@ -21,11 +21,8 @@ pub use robustness::{ExecutionErrors, trials};
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
-use super::error::Error;
-use super::profile::Profile;
 use super::range::{Quantity, short};
+use super::{Contact, DoubleDouble, Error, Profile};
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;

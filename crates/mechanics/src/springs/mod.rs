@@ -10,12 +10,9 @@ mod stress;
 
 pub use shear_evaluation::ShearEvaluation;
 
-use super::state::{Move, Normal, Regime, Setup, State, Tangential};
-
-use super::error::{Error, UnsupportedMove};
-use super::normal::ContactSummary;
-use super::range;
-use super::{Contact, Profile};
+use super::{
+    Contact, ContactSummary, Error, Move, Normal, Profile, Regime, Setup, State, Tangential, UnsupportedMove, range,
+};
 
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]

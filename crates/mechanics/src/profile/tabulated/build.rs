@@ -28,16 +28,9 @@ struct Stretch {
     high: f64,
 }
 
-/// The panels of a table, with its ends.
-pub(super) struct Built {
-    pub(super) panels: Vec<Panel>,
-    /// The first radius at which g falls, if it does.
-    pub(super) falls_at: Option<f64>,
-}
-
 /// The panels from the first knot at which the surface leaves the plane, up to the last or, unless it is the `whole` curve that
-/// is wanted, to where g falls.
-pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
+/// is wanted, to where g falls; and the first radius at which it falls, if it does.
+pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
     let segments: Vec<Segment> = knots
         .windows(2)
         .map(|pair| {
@@ -55,7 +48,7 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
     });
     let stretches = stretches(knots, &segments);
     let cosines = panel::cosines();
-    let mut built = Built { panels: Vec::with_capacity(stretches.len()), falls_at: None };
+    let (mut panels, mut falls_at) = (Vec::with_capacity(stretches.len()), None);
     for block in stretches.chunks(BLOCK) {
         let field = Field::new(block, &segments, &far);
         for stretch in block {
@@ -65,21 +58,21 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
                 |low, high| Panel::new((stretch.base, stretch.singularity), (low, high), &values(low, high), &cosines);
             let panel = make(stretch.low, stretch.high);
             let Some(t) = first_fall(&panel) else {
-                built.panels.push(panel);
+                panels.push(panel);
                 continue;
             };
-            built.falls_at = built.falls_at.or(Some(stretch.radius(t)));
+            falls_at = falls_at.or(Some(stretch.radius(t)));
             if whole {
-                built.panels.push(panel);
+                panels.push(panel);
                 continue;
             }
             if t > stretch.low {
-                built.panels.push(make(stretch.low, t));
+                panels.push(make(stretch.low, t));
             }
-            return built;
+            return (panels, falls_at);
         }
     }
-    built
+    (panels, falls_at)
 }
 
 impl Stretch {

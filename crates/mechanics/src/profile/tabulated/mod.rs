@@ -90,7 +90,7 @@ impl Tabulated {
 
     /// The profile whose slope is linear between knots, as far as g rises or `whole`.
     fn from_knots(knots: &[Knot], whole: bool) -> Result<Tabulated, Error> {
-        let build::Built { mut panels, falls_at } = build::panels(knots, whole);
+        let (mut panels, falls_at) = build::panels(knots, whole);
         let (level, load) = build::accumulate(&mut panels);
         let Some(last) = panels.last() else {
             return Err(match falls_at {
