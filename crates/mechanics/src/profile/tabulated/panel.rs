@@ -163,9 +163,9 @@ impl Panel {
         for _ in 0..100 {
             let (value, slope) = f(t);
             if value > 0.0 {
-                high = t;
+                high = t
             } else {
-                low = t;
+                low = t
             }
             let newton = t - value / slope;
             let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
