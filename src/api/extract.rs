@@ -1,6 +1,7 @@
 //! The body of a request: read within limits, checked, and counted against the memory of the server.
 
 use std::error::Error as _;
+use std::sync::Arc;
 
 use axum::body::Body;
 use axum::extract::{FromRequest, Request};
@@ -66,10 +67,10 @@ impl HeldResources {
 /// A body that may be left out.
 pub type OptionalBody<T> = CheckedBody<T, true>;
 
-impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<App> for CheckedBody<T, OPTIONAL> {
+impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for CheckedBody<T, OPTIONAL> {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
+    async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Problem> {
         let (parts, body) = request.into_parts();
         let declared = parts.headers.get(header::CONTENT_TYPE).map(|value| is_json(value.as_bytes()));
         if declared == Some(false) || (declared.is_none() && !OPTIONAL) {

@@ -19,14 +19,11 @@ use std::io;
 use std::sync::{Arc, OnceLock};
 
 use axum::http::header::AUTHORIZATION;
-use axum::middleware::{from_fn, from_fn_with_state};
+use axum::middleware::from_fn_with_state;
 use axum::{Extension, Router};
 use tokio::net::TcpListener;
 use tower::ServiceBuilder;
-use tower_http::CompressionLevel;
 use tower_http::catch_panic::CatchPanicLayer;
-use tower_http::compression::CompressionLayer;
-use tower_http::request_id::{PropagateRequestIdLayer, SetRequestIdLayer};
 use tower_http::sensitive_headers::SetSensitiveRequestHeadersLayer;
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
@@ -35,8 +32,7 @@ use utoipa_swagger_ui::{Config, SwaggerUi};
 use crate::admission::Pool;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 
-use middleware::request_id::{OwnId, REQUEST_ID};
-use middleware::{access_control, compression, request_id, request_log, security_headers};
+use middleware::{access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
 use resources::{accuracy, contacts, events, history, hysteresis_loop, jobs, meta, metrics, moves, page};
@@ -82,7 +78,7 @@ fn router(app: App, metrics: Arc<RequestMetrics>) -> Router {
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let access = app.access.clone();
     let pool = app.pool.clone();
-    let routes = api.with_state(app).merge(docs).merge(page::routes()).fallback(meta::not_found);
+    let routes = api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found);
     with_middleware(routes, access, metrics, pool)
 }
 
@@ -96,14 +92,8 @@ fn with_middleware(routes: Router, access: Access, metrics: Arc<RequestMetrics>,
     let origins = (!access.origins.is_empty()).then(|| security_headers::cross_origin(&access.origins));
     let keys = access.keys.map(|keys| from_fn_with_state(keys, access_control::admit));
     let layers = ServiceBuilder::new()
-        .map_request(request_id::without_unsound)
-        .layer(SetRequestIdLayer::new(REQUEST_ID, OwnId))
-        .layer(PropagateRequestIdLayer::new(REQUEST_ID))
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
-        .layer(from_fn(compression::tag))
-        .layer(CompressionLayer::new().quality(CompressionLevel::Fastest).compress_when(compression::is_offered))
-        .layer(from_fn_with_state(pool, compression::offer))
-        .layer(from_fn_with_state(metrics, request_log::log_request))
+        .layer(from_fn_with_state((metrics, pool), observe))
         .layer(CatchPanicLayer::custom(meta::panicked))
         // Before keys are asked for: a browser asks whether it may send one.
         .option_layer(origins)
@@ -118,7 +108,7 @@ pub fn document() -> &'static str {
 }
 
 /// The routes that the OpenAPI document describes. `document` is its text, which one of them serves.
-fn described(document: &'static str) -> OpenApiRouter<App> {
+fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
     OpenApiRouter::with_openapi(openapi::base())
         .routes(routes!(simulate::simulate_path))
         .routes(routes!(accuracy::compare_solvers))

@@ -1,6 +1,7 @@
 //! Path and header parameters. Each type is both what a handler takes and what the OpenAPI document says of it.
 
 use std::convert::Infallible;
+use std::sync::Arc;
 
 use axum::extract::{FromRequestParts, Path};
 use axum::http::request::Parts;
@@ -69,25 +70,25 @@ pub struct Prefer {
     pub respond_async: bool,
 }
 
-impl FromRequestParts<App> for ContactPath {
+impl FromRequestParts<Arc<App>> for ContactPath {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
         Ok(ContactPath { id: identifier(parts, app, Code::ContactNotFound, "contact").await? })
     }
 }
 
-impl FromRequestParts<App> for JobPath {
+impl FromRequestParts<Arc<App>> for JobPath {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
         Ok(JobPath { id: identifier(parts, app, Code::JobNotFound, "job").await? })
     }
 }
 
 /// The identifier in the path. A text that is not a UUID cannot name anything, so it is "not found" rather than
 /// invalid.
-async fn identifier(parts: &mut Parts, app: &App, kind: Code, noun: &str) -> Result<Uuid, Problem> {
+async fn identifier(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -> Result<Uuid, Problem> {
     let missing = |id: &str| Problem::new(kind, format!("there is no {noun} {id}"));
     match Path::<String>::from_request_parts(parts, app).await {
         Ok(Path(id)) => Uuid::parse_str(&id).map_err(|_| missing(&id)),
@@ -96,10 +97,10 @@ async fn identifier(parts: &mut Parts, app: &App, kind: Code, noun: &str) -> Res
     }
 }
 
-impl FromRequestParts<App> for IfMatch {
+impl FromRequestParts<Arc<App>> for IfMatch {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
         let Some(value) = parts.headers.get(header::IF_MATCH) else {
             return Ok(IfMatch { sequence: None });
         };
@@ -130,10 +131,10 @@ impl IdempotencyKey {
     }
 }
 
-impl FromRequestParts<App> for LastEventId {
+impl FromRequestParts<Arc<App>> for LastEventId {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
         let Some(value) = parts.headers.get("last-event-id") else {
             return Ok(LastEventId { sequence: None });
         };
@@ -144,10 +145,10 @@ impl FromRequestParts<App> for LastEventId {
     }
 }
 
-impl FromRequestParts<App> for Prefer {
+impl FromRequestParts<Arc<App>> for Prefer {
     type Rejection = Infallible;
 
-    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, Infallible> {
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Infallible> {
         let is_async = |preference: &str| without_parameters(preference).eq_ignore_ascii_case("respond-async");
         Ok(Prefer { respond_async: list_members(&parts.headers, "prefer").any(is_async) })
     }

@@ -3,6 +3,7 @@
 
 use std::ops::RangeInclusive;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use axum::extract::{FromRequestParts, Query};
 use axum::http::HeaderMap;
@@ -40,10 +41,10 @@ impl QueryParams for () {
 /// The checked parameters of a request.
 pub struct CheckedQuery<T>(pub T);
 
-impl<T: QueryParams> FromRequestParts<App> for CheckedQuery<T> {
+impl<T: QueryParams> FromRequestParts<Arc<App>> for CheckedQuery<T> {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
         let given = match Query::<Vec<(String, String)>>::from_request_parts(parts, app).await {
             Ok(Query(given)) => given,
             Err(error) => {

@@ -12,8 +12,7 @@ use crate::jobs::Jobs;
 use crate::sessions::Sessions;
 use crate::store::Tenant;
 
-/// The state that all handlers share. Clones refer to the same state.
-#[derive(Clone)]
+/// The state that all handlers share.
 pub struct App {
     /// The contacts.
     pub sessions: Sessions,
@@ -35,17 +34,16 @@ pub struct Access {
 }
 
 /// The state restricted to the tenant of the request.
-pub struct TenantApp(pub App);
+pub struct TenantApp(pub Arc<App>);
 
-impl FromRequestParts<App> for TenantApp {
+impl FromRequestParts<Arc<App>> for TenantApp {
     type Rejection = std::convert::Infallible;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Self::Rejection> {
-        let mut scoped = app.clone();
-        if let Some(tenant) = parts.extensions.get::<Tenant>() {
-            scoped.sessions = app.sessions.for_tenant(tenant.clone());
-            scoped.jobs = app.jobs.for_tenant(tenant.clone());
-        }
-        Ok(TenantApp(scoped))
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Self::Rejection> {
+        let scoped = parts.extensions.get::<Tenant>().map(|tenant| {
+            let (sessions, jobs) = (app.sessions.for_tenant(tenant.clone()), app.jobs.for_tenant(tenant.clone()));
+            Arc::new(App { sessions, jobs, pool: app.pool.clone(), access: app.access.clone() })
+        });
+        Ok(TenantApp(scoped.unwrap_or_else(|| Arc::clone(app))))
     }
 }

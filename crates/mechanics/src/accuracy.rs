@@ -35,20 +35,20 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn accuracy(&self) -> ErrorEstimate {
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let carried = self.friction * self.normal_force();
         let summed = self.force_unit() * self.history.force_size();
         let terms = if carried > 0.0 { summed / carried } else { 0.0 };
         let (radius, indentation) = (self.contact_radius(), self.indentation());
         // Where g is steep, a rounded radius moves the indentation by this many units.
         let steepness = radius * self.profile.slope(radius) / indentation;
-        let steepness = if steepness.is_finite() { steepness.clamp(0.0, MAX_STEEPNESS) } else { 0.0 };
+        let steepness = finite(steepness).clamp(0.0, MAX_STEEPNESS);
         let mean_pressure = mean_pressure(self.normal_force(), radius);
         let doubt = self.profile.interpolation_error(radius);
         let kernel =
             self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * doubt.kernel) / mean_pressure;
-        let kernel = if kernel.is_finite() { kernel } else { 0.0 };
-        let unresolved = 2.0 * self.elasticity.e_star() * doubt.load / self.normal_force();
-        let unresolved = if unresolved.is_finite() { unresolved } else { 0.0 };
+        let kernel = finite(kernel);
+        let unresolved = finite(2.0 * self.elasticity.e_star() * doubt.load / self.normal_force());
         let unit = f64::EPSILON * self.profile.cancellation(radius);
         ErrorEstimate {
             path_error: self.path_error,

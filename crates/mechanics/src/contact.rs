@@ -2,14 +2,9 @@
 
 use std::sync::Arc;
 
-use super::double_double::DoubleDouble;
-use super::elasticity::Elasticity;
-use super::error::Error;
-use super::normal::{self, ContactSummary, Preload};
-use super::profile::{Point, Profile, StressRadius};
-use super::range;
+use super::profile::{Point, StressRadius};
 use super::slip_history::SlipHistory;
-use super::state::Setup;
+use super::{ContactSummary, DoubleDouble, Elasticity, Error, Preload, Profile, Setup, normal, range};
 
 /// A frictional contact, solved exactly.
 ///
@@ -110,17 +105,13 @@ impl Contact {
     #[must_use]
     pub fn virgin(&self) -> Contact {
         Contact {
-            profile: self.profile.clone(),
-            elasticity: self.elasticity,
-            friction: self.friction,
             history: SlipHistory::new(&self.profile, DoubleDouble::from(self.initial.indentation)),
             displacement: DoubleDouble::ZERO,
             normal_force: self.initial.normal_force,
             dissipated: DoubleDouble::ZERO,
-            initial: self.initial,
             path_error: 0.0,
             path_kernel: 0.0,
-            inverse_scale: self.inverse_scale,
+            ..self.clone()
         }
     }
 
@@ -132,16 +123,6 @@ impl Contact {
     /// U = m W, m.
     pub(super) fn unscaled(&self, position: DoubleDouble) -> DoubleDouble {
         if self.friction > 0.0 { position.over(self.inverse_scale) } else { DoubleDouble::ZERO }
-    }
-
-    pub(super) fn displacement(&self) -> DoubleDouble {
-        self.displacement
-    }
-
-    /// Adds the errors of a chord: errors of the force accumulate, those of the stress are local.
-    pub(super) fn add_path_error(&mut self, force: f64, kernel: f64) {
-        self.path_error += force;
-        self.path_kernel = self.path_kernel.max(kernel);
     }
 
     /// Normal force, N, at an indentation, m.

@@ -6,10 +6,10 @@
 //! estimated from the distance between the middle of the curve and the chord. While nothing slips, dU/dd = (E*/G*)
 //! dF_x/dF_N: such stretches are straight and cost one chord.
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
-use super::error::Error;
+use std::ops::{Add, Mul, Sub};
+
 use super::profile::{Ring, StressRadius};
+use super::{Contact, DoubleDouble, Error};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -73,11 +73,7 @@ fn relaxation(chords: usize) -> f64 {
     (0..intervals).fold(1.0, |factor, _| 4.0 * factor)
 }
 
-fn between(from: f64, to: f64, part: f64) -> f64 {
-    if part < 1.0 { from + (to - from) * part } else { to }
-}
-
-fn between_doubles(from: DoubleDouble, to: DoubleDouble, part: f64) -> DoubleDouble {
+fn between<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>>(from: T, to: T, part: f64) -> T {
     if part < 1.0 { from + (to - from) * part } else { to }
 }
 
@@ -93,7 +89,7 @@ impl Contact {
         if matches!(path.normal, NormalPath::Force { .. }) && self.history.edge().level < DoubleDouble::ZERO {
             // A gap closes before any force can rise.
             let touch =
-                PathPoint { indentation: DoubleDouble::ZERO, normal_force: 0.0, displacement: self.displacement() };
+                PathPoint { indentation: DoubleDouble::ZERO, normal_force: 0.0, displacement: self.displacement };
             self.advance(&touch);
         }
         let unit = self.force_unit();
@@ -115,8 +111,10 @@ impl Contact {
                 step = (next - done) * shorter.clamp(0.02, 0.5);
                 continue;
             }
-            // Before the move, because gross slip wipes out the error of the chord that leads into it too.
-            self.add_path_error(error, deviation.kernel);
+            // Errors of the force accumulate, those of the stress are local. Before the move, because gross slip wipes
+            // out the error of the chord that leads into it too.
+            self.path_error += error;
+            self.path_kernel = self.path_kernel.max(deviation.kernel);
             self.advance(&end);
             done = next;
             chords += 1;
@@ -157,18 +155,18 @@ impl Contact {
         match path.normal {
             NormalPath::Force { from, to } => between(from, to, part),
             NormalPath::Indentation { from, to } if from == to => self.normal_force(),
-            NormalPath::Indentation { from, to } => self.normal_force_at(between_doubles(from, to, part)),
+            NormalPath::Indentation { from, to } => self.normal_force_at(between(from, to, part)),
         }
     }
 
     fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
         let normal_force = self.normal_force_on(path, part);
         let indentation = match path.normal {
-            NormalPath::Indentation { from, to } => between_doubles(from, to, part),
+            NormalPath::Indentation { from, to } => between(from, to, part),
             NormalPath::Force { .. } => self.indentation_for(normal_force),
         };
         let displacement = match path.tangential {
-            TangentialPath::Displacement { from, to } => between_doubles(from, to, part),
+            TangentialPath::Displacement { from, to } => between(from, to, part),
             TangentialPath::Force { from, to } => {
                 self.unscaled(self.position_for(indentation, normal_force, between(from, to, part)))
             }

@@ -6,10 +6,8 @@
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
 use super::profile::StressRadius;
-use super::shear_stress::Peak;
+use super::{Contact, DoubleDouble, Peak};
 
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
 /// derivative has structure of every size from the whole interval down to the ring's depth.
@@ -116,14 +114,8 @@ impl SmoothInterval {
             EndBehaviour::Logarithm if self.sparse && sign.abs() > 0.0 => Vec::new(),
             EndBehaviour::Logarithm if self.sparse => vec![floor],
             EndBehaviour::Logarithm => {
-                let mut places = vec![0.25, 0.5];
-                places.extend(
-                    std::iter::successors(Some(1.0), |place| Some(place * KNOT_STRIDE))
-                        .take_while(|&place| place < floor),
-                );
-                places.retain(|&place| place < floor);
-                places.push(floor);
-                places
+                let strides = std::iter::successors(Some(0.25), |place| Some(place * KNOT_STRIDE));
+                strides.take_while(|&place| place < floor).chain([floor]).collect()
             }
             EndBehaviour::Inverse => by_steps(1.0, floor),
         }

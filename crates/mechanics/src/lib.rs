@@ -45,7 +45,6 @@
 //! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |
 //! | `force_control` | which displacement gives a tangential force? |
 //! | `curved_move` | how is a move followed that is straight in a force? |
-//! | `partial_move` | where does a part of a move lead? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
@@ -67,7 +66,6 @@ mod friction_work;
 mod moves;
 mod normal;
 mod packed;
-mod partial_move;
 pub mod profile;
 pub mod protocol;
 mod quantity;

@@ -1,11 +1,8 @@
-//! The moves of a contact: straight ones in one step, curved ones through `curved_move`.
+//! The moves of a contact: straight ones in one step, curved ones through `curved_move`; and the first part of a move,
+//! so that its path can be drawn point by point.
 
-use super::contact::Contact;
-use super::curved_move::{CurvedMove, DEFAULT_TOLERANCE, NormalPath, PathPoint, TangentialPath};
-use super::double_double::DoubleDouble;
-use super::error::Error;
-use super::range;
-use super::state::{Move, Normal, Tangential};
+use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use super::{Contact, DEFAULT_TOLERANCE, DoubleDouble, Error, Move, Normal, Tangential, range};
 
 impl Contact {
     /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
@@ -134,13 +131,38 @@ impl Contact {
         })
     }
 
+    /// The move, with absolute targets, to the fraction `part` (0 to 1) of `step`. It is straight in the same
+    /// quantities: a sequence of such moves with rising fractions follows the same line.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let half = contact.partial_move(&slide(0.002), 0.5);
+    /// assert_eq!(half.tangential, Some(Tangential::Displacement(0.001)));
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn partial_move(&self, step: &Move, part: f64) -> Move {
+        let towards = |from: f64, target: f64| from + part * if step.relative { target } else { target - from };
+        Move {
+            tangential: step.tangential.map(|target| match target {
+                Tangential::Displacement(to) => Tangential::Displacement(towards(self.displacement.value(), to)),
+                Tangential::Force(to) => Tangential::Force(towards(self.force(), to)),
+            }),
+            normal: step.normal.map(|target| match target {
+                Normal::Indentation(to) => Normal::Indentation(towards(self.indentation(), to)),
+                Normal::NormalForce(to) => Normal::NormalForce(towards(self.normal_force(), to)),
+            }),
+            relative: false,
+        }
+    }
+
     /// The straight move in displacement and indentation that every other move is made of.
     pub(super) fn advance(&mut self, point: &PathPoint) {
         self.displacement = point.displacement;
         self.normal_force = point.normal_force;
-        let result = self.history.advance(&self.profile, point.indentation, self.scaled(point.displacement));
+        let scaled_work = self.history.advance(&self.profile, point.indentation, self.scaled(point.displacement));
         let scale = self.scale();
-        let work = 2.0 * self.elasticity.g_star() * scale * scale * result.work;
+        let work = 2.0 * self.elasticity.g_star() * scale * scale * scaled_work;
         self.dissipated = self.dissipated + DoubleDouble::from(work);
         if self.history.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
             // Gross slip wipes out the history, and its errors with it.

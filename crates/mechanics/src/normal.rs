@@ -3,10 +3,9 @@
 //! d = g(a), F_N = 2 E* int_0^a (d - g) dx = 2 E* int_0^d X(y) dy, p(r) = (E*/pi) int dy/sqrt(X(y)^2 - r^2) over
 //! X(y) > r (Popov & Hess 2015; the last form takes in a vertical edge as well).
 
-use super::elasticity::Elasticity;
-use super::error::Error;
-use super::profile::{Point, Profile, Ring, StressRadius};
+use super::profile::{Point, Ring, StressRadius};
 use super::range::{Quantity, short};
+use super::{Elasticity, Error, Profile};
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;

@@ -10,10 +10,9 @@
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
 //! | the rest | the slip history, see `slip_history/packed.rs` |
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
 use super::profile::Point;
 use super::slip_history::SlipHistory;
+use super::{Contact, DoubleDouble};
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
@@ -49,22 +48,20 @@ impl Writer {
 }
 
 impl Reader<'_> {
-    fn version(&mut self) -> Option<u16> {
+    fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (head, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
-        Some(u16::from_le_bytes(*head))
+        Some(*head)
     }
 
     /// Reads the versions at the beginning, and compares them with those of this program.
     fn is_current(&mut self) -> bool {
-        self.version() == Some(LAYOUT) && self.version() == Some(ENGINE)
+        [LAYOUT, ENGINE].into_iter().all(|version| self.bytes() == Some(version.to_le_bytes()))
     }
 
     /// A number whatever its bits.
     fn any(&mut self) -> Option<f64> {
-        let (head, rest) = self.0.split_first_chunk()?;
-        self.0 = rest;
-        Some(f64::from_le_bytes(*head))
+        self.bytes().map(f64::from_le_bytes)
     }
 
     pub(super) fn number(&mut self) -> Option<f64> {
@@ -157,25 +154,14 @@ impl Contact {
         for value in self.definition_marks() {
             reader.any().filter(|found| found.to_bits() == value.to_bits())?;
         }
-        let displacement = reader.double()?;
-        let normal_force = reader.number()?;
-        let dissipated = reader.double()?;
+        let mut contact = self.clone();
+        contact.displacement = reader.double()?;
+        contact.normal_force = reader.number()?;
+        contact.dissipated = reader.double()?;
         // The error of a stress may be without bound.
-        let (path_error, path_kernel) = (reader.any()?, reader.any()?);
-        let history = SlipHistory::unpack(&mut reader)?;
-        Some(Contact {
-            profile: self.profile.clone(),
-            elasticity: self.elasticity,
-            friction: self.friction,
-            history,
-            displacement,
-            normal_force,
-            dissipated,
-            initial: self.initial,
-            path_error,
-            path_kernel,
-            inverse_scale: self.inverse_scale,
-        })
+        (contact.path_error, contact.path_kernel) = (reader.any()?, reader.any()?);
+        contact.history = SlipHistory::unpack(&mut reader)?;
+        Some(contact)
     }
 
     /// Numbers that distinguish contacts of different definitions, and machines that compute a preload differently.

@@ -116,11 +116,7 @@ impl Range {
 /// assert!(check_friction(0.0).is_ok() && check_friction(0.3).is_ok() && check_friction(1e-12).is_err());
 /// ```
 pub fn check_friction(friction: f64) -> Result<f64, Error> {
-    if friction > 0.0 && friction < MIN_POSITIVE_FRICTION {
-        let allowed = format!("0, or {} to {}", short(MIN_POSITIVE_FRICTION), short(FRICTION.max));
-        return Err(Error::OutOfRange { quantity: FRICTION.quantity, value: friction, allowed });
-    }
-    FRICTION.check(friction)
+    zero_or_from(MIN_POSITIVE_FRICTION, &FRICTION, friction)
 }
 
 /// Gives a normal force back: zero, or from [`MIN_POSITIVE_NORMAL_FORCE`] on.
@@ -134,12 +130,16 @@ pub fn check_friction(friction: f64) -> Result<f64, Error> {
 /// assert!(check_normal_force(0.0).is_ok() && check_normal_force(-1.0).is_err());
 /// ```
 pub fn check_normal_force(force: f64) -> Result<f64, Error> {
-    if force > 0.0 && force < MIN_POSITIVE_NORMAL_FORCE {
-        let allowed =
-            format!("0, or {} to {} {}", short(MIN_POSITIVE_NORMAL_FORCE), short(NORMAL_FORCE.max), NORMAL_FORCE.unit);
-        return Err(Error::OutOfRange { quantity: NORMAL_FORCE.quantity, value: force, allowed });
+    zero_or_from(MIN_POSITIVE_NORMAL_FORCE, &NORMAL_FORCE, force)
+}
+
+/// Gives `value` back if it is zero, or from `least` on in the range.
+fn zero_or_from(least: f64, range: &Range, value: f64) -> Result<f64, Error> {
+    if value > 0.0 && value < least {
+        let allowed = format!("0, or {}", Range { min: least, ..*range });
+        return Err(Error::OutOfRange { quantity: range.quantity, value, allowed });
     }
-    NORMAL_FORCE.check(force)
+    range.check(value)
 }
 
 impl fmt::Display for Range {

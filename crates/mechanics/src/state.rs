@@ -1,9 +1,6 @@
 //! The definition of a contact, its moves and its state.
 
-use super::contact::Contact;
-use super::elasticity::Elasticity;
-use super::normal::Preload;
-use super::profile::Profile;
+use super::{Contact, Elasticity, Preload, Profile};
 
 /// What a contact is made of.
 #[derive(Clone, Debug, PartialEq)]

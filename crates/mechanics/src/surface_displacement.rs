@@ -7,9 +7,8 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
 use super::profile::{Point, StressRadius};
+use super::{Contact, DoubleDouble};
 
 impl Contact {
     /// Tangential displacement u(r) of the surface, m, at a radius (m) of at least zero, inside the contact or outside.
@@ -51,7 +50,7 @@ impl Contact {
         touched.then(|| {
             if self.friction <= 0.0 {
                 // The surface does not move at all, and the slip history does not follow the displacement.
-                return self.displacement().value() + 0.0;
+                return self.displacement.value() + 0.0;
             }
             let started = (self.history.position() - self.history.shift()).value();
             self.scale() * (started - self.relative_displacement(radius)) + 0.0

@@ -2,15 +2,18 @@
 
 use std::sync::Arc;
 
-use axum::body::HttpBody as _;
-use axum::extract::{Request, State};
-use axum::http::{Extensions, HeaderMap, HeaderName, HeaderValue, StatusCode, Version, header};
-use axum::middleware::Next;
-use axum::response::Response;
+use axum::body::{Body, HttpBody as _};
+use axum::extract::Request;
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse as _, Response};
+use tower::{ServiceExt as _, service_fn};
+use tower_http::CompressionLevel;
+use tower_http::compression::Compression;
+use tower_http::compression::predicate::SizeAbove;
 
 use crate::admission::{Pool, Reservation};
 use crate::api::formats::Format;
-use crate::api::problem;
+use crate::api::problem::{self, Problem};
 
 /// What is compressed; event streams must not wait for more to come, and PNG is packed already.
 const COMPRESSED: [&str; 7] = [
@@ -31,85 +34,87 @@ const CODINGS: [(&str, &str); 2] = [("gzip", "+gzip\""), ("zstd", "+zstd\"")];
 /// The headers in which clients send tags.
 const CONDITIONS: [HeaderName; 2] = [header::IF_MATCH, header::IF_NONE_MATCH];
 
-/// A reply to a client that accepts codings, as it was before compression.
-#[derive(Clone, Copy)]
-struct Offer {
-    compress: bool,
-    status: StatusCode,
+/// What the client of a request accepts and has.
+pub struct Client {
+    accepted: Option<HeaderValue>,
+    /// The tags that it sent, if one is that of a compressed reply.
+    tags: Option<HeaderValue>,
 }
 
-/// Decides which replies are compressed, if there is memory for it. It is inside the layer that compresses.
-pub async fn offer(State(pool): State<Pool>, request: Request, next: Next) -> Response {
-    let accepts = request.headers().contains_key(header::ACCEPT_ENCODING);
-    let mut response = next.run(request).await;
-    let worthwhile = is_worthwhile(&response);
-    if worthwhile {
-        response.headers_mut().append(header::VARY, HeaderValue::from_static("accept-encoding"));
-    }
-    if accepts {
-        let room = if worthwhile { pool.try_reserve(ENCODER) } else { None };
-        let offer = Offer { compress: room.is_some(), status: response.status() };
-        let extensions = response.extensions_mut();
-        if let Some(room) = room {
-            // This is still the only handle.
-            let held = extensions.remove::<Arc<Reservation>>().and_then(Arc::into_inner).unwrap_or_default();
-            extensions.insert(Arc::new(held.with(room)));
+impl Client {
+    /// The client of a request, in which the tags of compressed replies become those of the plain ones.
+    pub fn of(request: &mut Request) -> Client {
+        let accepted = request.headers().get(header::ACCEPT_ENCODING).cloned();
+        let mut tags = None;
+        for name in CONDITIONS {
+            if let Some(plain) = request.headers().get(&name).and_then(without_coding) {
+                tags = request.headers_mut().insert(name, plain);
+            }
         }
-        extensions.insert(offer);
+        Client { accepted, tags }
+    }
+}
+
+/// Compresses a reply as its client accepts it, if that is worth its time and there is memory for it. A compressed reply
+/// gets a tag of its own.
+pub async fn compress(mut response: Response, client: Client, pool: &Pool) -> Response {
+    if let Some(tags) = client.tags.filter(|_| response.status() == StatusCode::NOT_MODIFIED) {
+        // The tag that the client sent, not that of a representation which it does not have.
+        let tags = tags.to_str().unwrap_or_default();
+        vary(&mut response);
+        add_suffix(&mut response, |tag| tags.contains(tag));
+    }
+    if !is_worthwhile(&response) {
+        return response;
+    }
+    vary(&mut response);
+    let (Some(accepted), Some(room)) = (client.accepted, pool.try_reserve(ENCODER)) else {
+        return response;
+    };
+    // This is still the only handle.
+    let held = response.extensions_mut().remove::<Arc<Reservation>>().and_then(Arc::into_inner).unwrap_or_default();
+    response.extensions_mut().insert(Arc::new(held.with(room)));
+    encode(response, accepted).await
+}
+
+/// The reply in the coding that suits `accepted` best.
+async fn encode(response: Response, accepted: HeaderValue) -> Response {
+    let status = response.status();
+    let mut request = axum::http::Request::new(());
+    request.headers_mut().insert(header::ACCEPT_ENCODING, accepted);
+    let mut response = Some(response);
+    let reply = service_fn(move |_| std::future::ready(response.take().ok_or(())));
+    let coded = Compression::new(reply).quality(CompressionLevel::Fastest).compress_when(SizeAbove::new(0));
+    let Ok(mut response) = coded.oneshot(request).await.map(|response| response.map(Body::new)) else {
+        return Problem::internal("a reply was compressed twice").into_response();
+    };
+    // The library refuses a client that accepts no coding that there is, but the work is done: it gets the reply as it is.
+    *response.status_mut() = status;
+    if let Some(coding) = response.headers().get(header::CONTENT_ENCODING).cloned() {
+        let suffix = CODINGS.iter().find(|(name, _)| coding == name).map(|(_, suffix)| *suffix);
+        add_suffix(&mut response, |tag| suffix.is_some_and(|suffix| tag.ends_with(suffix)));
     }
     response
 }
 
 fn is_worthwhile(response: &Response) -> bool {
     let kind = response.headers().get(header::CONTENT_TYPE).map(HeaderValue::as_bytes);
-    kind.is_some_and(|kind| COMPRESSED.iter().any(|known| known.as_bytes() == kind))
+    response.body().size_hint().exact().is_some_and(|size| size >= SMALLEST)
+        && kind.is_some_and(|kind| COMPRESSED.iter().any(|known| known.as_bytes() == kind))
         && !response.headers().contains_key(header::CONTENT_ENCODING)
-        && response.body().size_hint().exact().is_some_and(|size| size >= SMALLEST)
 }
 
-/// Whether a reply has been offered for compression.
-pub fn is_offered(_: StatusCode, _: Version, _: &HeaderMap, extensions: &Extensions) -> bool {
-    extensions.get::<Offer>().is_some_and(|offer| offer.compress)
+fn vary(response: &mut Response) {
+    response.headers_mut().append(header::VARY, HeaderValue::from_static("accept-encoding"));
 }
 
-/// Gives compressed replies tags of their own, and maps those tags back in requests. It is outside the layer that
-/// compresses.
-pub async fn tag(mut request: Request, next: Next) -> Response {
-    let given = request.headers().get(header::IF_NONE_MATCH).cloned();
-    for name in CONDITIONS {
-        if let Some(plain) = request.headers().get(&name).and_then(without_coding) {
-            request.headers_mut().insert(name, plain);
-        }
-    }
-    let mut response = next.run(request).await;
-    let offer = response.extensions_mut().remove::<Offer>();
-    if let Some(offer) = offer {
-        // The layer refuses a client that accepts no available coding, but the work is done: send the reply
-        // uncompressed.
-        *response.status_mut() = offer.status;
-    }
-    let Some(plain) = response.headers().get(header::ETAG).and_then(|tag| tag.to_str().ok()) else {
-        return response;
-    };
-    let coded = |suffix: &str| Some(format!("{}{suffix}", plain.strip_suffix('"')?));
-    let tag = if response.status() == StatusCode::NOT_MODIFIED {
-        // The tag that the client sent, not that of a representation which it does not have.
-        let given = given.as_ref().and_then(|given| given.to_str().ok()).unwrap_or_default();
-        CODINGS.iter().filter_map(|(_, suffix)| coded(suffix)).find(|tag| given.contains(tag.as_str()))
-    } else if offer.is_some_and(|offer| offer.compress) {
-        let coding = response.headers().get(header::CONTENT_ENCODING);
-        let suffix = CODINGS.iter().find(|(name, _)| coding.is_some_and(|coding| coding == name));
-        suffix.and_then(|(_, suffix)| coded(suffix))
-    } else {
-        None
-    };
-    if let Some(tag) = tag.and_then(|tag| HeaderValue::try_from(tag).ok()) {
-        if response.status() == StatusCode::NOT_MODIFIED {
-            response.headers_mut().append(header::VARY, HeaderValue::from_static("accept-encoding"));
-        }
+/// Gives the tag of a reply the first suffix of a coding with which it is `right`.
+fn add_suffix(response: &mut Response, right: impl Fn(&str) -> bool) {
+    let plain = response.headers().get(header::ETAG).and_then(|tag| tag.to_str().ok()?.strip_suffix('"'));
+    let mut coded = CODINGS.iter().filter_map(|(_, suffix)| Some(format!("{}{suffix}", plain?)));
+    if let Some(tag) = coded.find(|tag| right(tag)).and_then(|tag| HeaderValue::try_from(tag).ok()) {
         response.headers_mut().insert(header::ETAG, tag);
     }
-    response
 }
 
 /// A list of tags without the suffixes of codings; none if no tag has one.

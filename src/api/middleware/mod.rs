@@ -5,3 +5,23 @@ pub mod compression;
 pub mod request_id;
 pub mod request_log;
 pub mod security_headers;
+
+use std::sync::Arc;
+
+use axum::extract::{Request, State};
+use axum::middleware::Next;
+use axum::response::Response;
+
+use crate::admission::Pool;
+use crate::api::request_metrics::RequestMetrics;
+
+/// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a box.
+pub async fn observe(
+    State((metrics, pool)): State<(Arc<RequestMetrics>, Pool)>,
+    mut request: Request,
+    next: Next,
+) -> Response {
+    let client = compression::Client::of(&mut request);
+    let response = request_log::log_request(&metrics, request, next).await;
+    compression::compress(response, client, &pool).await
+}

@@ -4,16 +4,16 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::body::Body;
-use axum::extract::{MatchedPath, Request, State};
+use axum::extract::{MatchedPath, Request};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::Response;
-use tower_http::request_id::RequestId;
 use tracing::field::Empty;
 use tracing::{Instrument as _, Span, info_span};
 use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 
 use crate::api::limits;
+use crate::api::middleware::request_id::{self, REQUEST_ID};
 use crate::api::middleware::security_headers;
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
 use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
@@ -35,10 +35,10 @@ struct RequestGuard<'a> {
 }
 
 /// Serves a request, and adds what is common to every reply.
-pub async fn log_request(State(metrics): State<Arc<RequestMetrics>>, mut request: Request, next: Next) -> Response {
+pub async fn log_request(metrics: &Arc<RequestMetrics>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
-    let id = request.extensions().get::<RequestId>().map(|id| id.header_value().clone());
-    let id = id.as_ref().and_then(|id| id.to_str().ok()).unwrap_or_default();
+    let request_id = request_id::of(request.headers());
+    let id = request_id.to_str().unwrap_or_default();
     let method = request.method().clone();
     let traceparent =
         request.headers().get("traceparent").filter(|value| value.len() <= limits::REQUEST_ID_LENGTH).cloned();
@@ -46,7 +46,7 @@ pub async fn log_request(State(metrics): State<Arc<RequestMetrics>>, mut request
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
     if route == Some(routes::METRICS) {
-        request.extensions_mut().insert(Arc::clone(&metrics));
+        request.extensions_mut().insert(Arc::clone(metrics));
     }
     let endpoint = metrics.endpoint(route, &method);
     let _in_flight = Counted::by(&endpoint.in_flight);
@@ -69,6 +69,8 @@ pub async fn log_request(State(metrics): State<Arc<RequestMetrics>>, mut request
     };
     security_headers::protect(response.headers_mut(), &method, kind);
     guard.answer(response.status(), code, cause.as_deref());
+    drop(guard);
+    response.headers_mut().insert(REQUEST_ID, request_id);
     response
 }
 

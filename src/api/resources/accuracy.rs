@@ -1,5 +1,7 @@
 //! `/accuracy`: the time and the error of each solver on a path; nothing is stored.
 
+use std::sync::Arc;
+
 use axum::extract::State;
 use axum::response::Response;
 
@@ -43,7 +45,7 @@ use stickslip_wire::{AccuracyReply, AccuracyRequest};
     responses((status = 200, description = "The reference, and a row a solver", body = AccuracyReply))
 )]
 pub async fn compare_solvers(
-    State(app): State<App>,
+    State(app): State<Arc<App>>,
     request: CheckedBody<AccuracyRequest>,
 ) -> Result<Response, Problem> {
     let (stop, _guard) = app.pool.deadline();

@@ -2,6 +2,7 @@
 //! handler.
 
 use std::any::Any;
+use std::sync::Arc;
 
 use axum::Extension;
 use axum::extract::{Path, State};
@@ -29,7 +30,7 @@ pub async fn check_health() -> Result<Response, Problem> {
     get, path = "/readyz", tag = "service",
     responses((status = 200, description = "It is ready", body = serde_json::Value, example = json!({"status": "ready"})))
 )]
-pub async fn check_readiness(State(app): State<App>) -> Result<Response, Problem> {
+pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Problem> {
     match app.sessions.ready().await {
         Ok(()) => Ok(reply::json(reply::written(&json!({"status": "ready"}))?)),
         Err(error) => Err(Problem::new(Code::Overloaded, "the store is not ready").because(error.to_string())),

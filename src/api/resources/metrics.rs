@@ -33,7 +33,7 @@ const MEDIA_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
         body = String))
 )]
 pub async fn metrics(
-    State(app): State<App>,
+    State(app): State<Arc<App>>,
     Extension(traffic): Extension<Arc<RequestMetrics>>,
 ) -> Result<Response, Problem> {
     let text = page(&app, &traffic).map_err(|error| Problem::internal(error.to_string()))?;

@@ -1,5 +1,7 @@
 //! `/simulate`: the states and stresses of a contact along a path; nothing is stored.
 
+use std::sync::Arc;
+
 use axum::extract::State;
 use axum::response::Response;
 
@@ -50,7 +52,10 @@ use stickslip_wire::{SimulateReply, SimulateRequest};
     )),
     responses((status = 200, description = "States, and what else was asked for", body = SimulateReply))
 )]
-pub async fn simulate_path(State(app): State<App>, request: CheckedBody<SimulateRequest>) -> Result<Response, Problem> {
+pub async fn simulate_path(
+    State(app): State<Arc<App>>,
+    request: CheckedBody<SimulateRequest>,
+) -> Result<Response, Problem> {
     let (stop, _guard) = app.pool.deadline();
     let (simulation, mut held) = (request.body, request.held);
     held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;

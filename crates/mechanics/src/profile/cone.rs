@@ -4,10 +4,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::super::error::Error;
-use super::super::range;
 use super::shape::Shape;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,25 +120,5 @@ impl Shape for Cone {
 
     fn smooth_centre(&self) -> bool {
         false
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{DoubleDouble, Ring, StressRadius};
-    use super::{Cone, Shape};
-
-    #[test]
-    fn only_the_ring_at_the_tip_is_infinite_there() {
-        let cone = Cone::new(0.4).unwrap();
-        let point = |level: f64| {
-            let square = cone.square(DoubleDouble::from(level));
-            super::super::Point { level: level.into(), radius: cone.radius(level), square }
-        };
-        let tip = StressRadius::new(0.0);
-        let inner = cone.span(&Ring::between(point(0.0), point(0.1)));
-        let outer = cone.span(&Ring::between(point(0.1), point(0.2)));
-        assert_eq!(cone.kernel(&tip, &inner).to_bits(), f64::INFINITY.to_bits());
-        assert!((cone.kernel(&tip, &outer) / (0.4 * std::f64::consts::FRAC_PI_2 * 2f64.ln()) - 1.0).abs() < 1e-15);
     }
 }

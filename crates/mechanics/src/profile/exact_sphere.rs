@@ -4,13 +4,11 @@
 //! D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
 //! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R.
 
-use super::super::error::Error;
-use super::super::range;
 use super::gauss::{Singular, along_strip};
 use super::roots::increasing;
 use super::shape::{End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -243,9 +241,7 @@ impl Shape for ExactSphere {
             return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
-        let start = 1e-9 * span.outer_radius;
-        let (radius, square) = (start, DoubleDouble::square_of(start));
-        smooth_coordinate::kernel_slope(self, &StressRadius { radius, square }, span)
+        smooth_coordinate::kernel_slope(self, &StressRadius::new(1e-9 * span.outer_radius), span)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
@@ -259,30 +255,5 @@ impl Shape for ExactSphere {
     fn known_to(&self) -> Option<End> {
         // Within 1e-12 of R, X no longer determines the level.
         Some(End { radius: self.radius * (1.0 - 1e-12), falls: false })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::shape::Shape;
-    use super::{DoubleDouble, ExactSphere};
-
-    #[test]
-    fn far_from_the_limit_it_is_the_paraboloid() {
-        let sphere = ExactSphere::new(2.0).unwrap();
-        // R y (1 - y/(3R)) to second order.
-        let square = sphere.square(DoubleDouble::from(1e-20));
-        let rest = (square - DoubleDouble::from(1e-20) * 2.0).value() / (2e-20 * -1e-20 / 6.0) - 1.0;
-        assert!(rest.abs() < 1e-6, "{rest:e}");
-    }
-
-    #[test]
-    fn any_level_has_a_radius_below_the_limit() {
-        let sphere = ExactSphere::new(1e-3).unwrap();
-        for level in [1e-30, 1e-9, 1e-3, 1.0, 1e9] {
-            let radius = sphere.radius(level);
-            assert!(radius > 0.0 && radius <= 1e-3, "{level} {radius}");
-            assert!(sphere.square(DoubleDouble::from(level)).value() <= 1e-6 * (1.0 + 1e-15));
-        }
     }
 }

@@ -1,10 +1,8 @@
 //! Flat punch of radius b: X(y) = b for every level, so a ring has no width and its kernel is that of the vertical edge,
 //! depth/sqrt(b^2 - r^2) (Boussinesq 1885). The edge itself is treated in `profile/mod.rs`; the face is treated here.
 
-use super::super::error::Error;
-use super::super::range;
 use super::shape::Shape;
-use super::{Moments, Span, StressRadius};
+use super::{Error, Moments, Span, StressRadius, range};
 
 /// A cylinder pressed in with its flat end.
 #[derive(Clone, Copy, Debug, PartialEq)]

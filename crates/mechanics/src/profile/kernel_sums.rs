@@ -3,11 +3,10 @@
 //! For the sphere K(r, x_outer) - K(r, x_inner) = (2/R) (x_outer^2 - x_inner^2)/(s_outer + s_inner), s = sqrt(x^2 - r^2): neighbours
 //! share a root, the differences of the squares are known, and what is left runs over plain arrays, several radii at a time.
 
-use super::super::double_double::DoubleDouble;
 #[cfg(test)]
 use super::call_count;
 use super::shape::Shape;
-use super::{Profile, Ring, StressRadius};
+use super::{DoubleDouble, Profile, Ring, StressRadius};
 
 /// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
 const LANES: usize = 8;

@@ -5,11 +5,9 @@
 //! radius. Normal contact, slip history and stresses read a profile through rings between two levels, so no other module
 //! depends on the family.
 //!
-//! # Adding a family
-//! 1. Write `my_family.rs`: a struct, its checked constructor, and its `shape::Shape`.
-//! 2. Add `mod my_family;` below and its entry to [`for_each_family!`](crate::for_each_family), parameters in the order of
-//!    the constructor; a new parameter also needs its range in [`range`](super::range).
-//! 3. The JSON documents, their checks and the OpenAPI document follow from that entry.
+//! A family is a struct with a checked constructor and its `shape::Shape`, and an entry of
+//! [`for_each_family!`](crate::for_each_family), from which the JSON documents and their checks follow. `ARCHITECTURE.md`
+//! has the recipe for another one.
 
 mod angle;
 #[cfg(test)]
@@ -18,7 +16,6 @@ mod cone;
 mod exact_sphere;
 mod flat_punch;
 pub(super) mod gauss;
-mod interpolation;
 mod kernel_sums;
 mod power_law;
 mod ring;
@@ -26,7 +23,6 @@ mod roots;
 mod rounded_cone;
 mod rounded_punch;
 mod shape;
-mod singularities;
 mod smooth_coordinate;
 mod smooth_interval;
 mod span;
@@ -42,6 +38,7 @@ pub use tabulated::{InterpolationError, Tabulated};
 
 use super::double_double::DoubleDouble;
 use super::error::Error;
+use super::range;
 use shape::{End, Shape};
 use span::Span;
 
@@ -323,6 +320,59 @@ impl Profile {
     #[must_use]
     pub fn curvature_radius(&self) -> Option<f64> {
         Shape::curvature_radius(self)
+    }
+
+    /// Whether the kernel up to any radius falls with r, so that pressure does too. It lets the search for the peaks of the
+    /// shear stress skip intervals without any; `false` is always safe.
+    ///
+    /// K(r, c) = int g'(x)/x dv, v = sqrt(x^2 - r^2), over 0 to sqrt(c^2 - r^2): it falls wherever g'/x does not rise.
+    #[must_use]
+    pub fn kernel_falls(&self) -> bool {
+        Shape::kernel_falls(self)
+    }
+
+    /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip of a
+    /// cone, a rim where the slope jumps. The vertical edge of a punch is not among them.
+    ///
+    /// ```
+    /// use stickslip_mechanics::profile::{Profile, TruncatedCone};
+    ///
+    /// let cone = Profile::TruncatedCone(TruncatedCone::new(0.1, 5e-5)?);
+    /// assert_eq!(cone.singular_radii(), [5e-5]);
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
+    #[must_use]
+    pub fn singular_radii(&self) -> Vec<f64> {
+        Shape::singular_radii(self)
+    }
+
+    /// The radii, m, above zero and below `radius` at which g is not analytic, increasing: ends of a flat, knots of a table.
+    /// Stresses are log-infinite there, or their derivatives are.
+    #[must_use]
+    pub fn knots_below(&self, radius: f64) -> Vec<f64> {
+        let below = |knot: f64| Some(Shape::kink_below(self, knot)).filter(|&next| next > 0.0 && next < knot);
+        let mut knots: Vec<f64> = std::iter::successors(below(radius), |&knot| below(knot)).collect();
+        knots.reverse();
+        knots
+    }
+
+    /// Whether stresses are analytic in r^2 at the centre if the surface slips there.
+    #[must_use]
+    pub fn smooth_centre(&self) -> bool {
+        Shape::smooth_centre(self)
+    }
+
+    /// The interpolation error of tables in a contact of this radius, m; zero for other profiles.
+    #[must_use]
+    pub fn interpolation_error(&self, radius: f64) -> InterpolationError {
+        Shape::interpolation_error(self, radius)
+    }
+
+    /// An estimate of the noise of g, m, that a table's heights bring to a contact of this radius, m, and how many times their
+    /// own noise that is; the noisiest part of a sum. `None` without a table.
+    #[must_use]
+    pub fn noise(&self, radius: f64) -> Option<(f64, f64)> {
+        Shape::noise(self, radius)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::DoubleDouble;
 
 /// A level, with the radius that belongs to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// y = g(x), m, with twice the digits.
     pub level: DoubleDouble,

@@ -4,14 +4,12 @@
 //! There gamma = dg/dt = T (t/x) Q, Q = 2b/(x + t) + phi, and int x dg = (T/2)(x^2 phi + (4/3) b x^2/(x + t) + b t/3)
 //! (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at b, so all stresses are finite.
 
-use super::super::error::Error;
-use super::super::range;
 use super::angle::tangent_less_angle;
 use super::roots::descend;
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::sphere::Sphere;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A cone whose tip is a paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]

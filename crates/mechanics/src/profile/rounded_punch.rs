@@ -3,11 +3,9 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999). All stays
 //! positive through t - b phi = b (u - atan u), u = t/b.
 
-use super::super::error::Error;
-use super::super::range;
 use super::angle::tangent_less_angle;
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A flat punch with a rounded edge.
 #[derive(Clone, Copy, Debug, PartialEq)]

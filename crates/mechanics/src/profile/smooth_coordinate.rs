@@ -16,6 +16,11 @@ pub(super) trait SmoothCoordinate {
     /// b, m.
     fn kink_radius(&self) -> f64;
 
+    /// The distance in t, along the imaginary axis, at which g is singular, m.
+    fn singularity(&self) -> f64 {
+        self.kink_radius()
+    }
+
     /// g, m.
     fn level_at(&self, t: f64) -> f64;
 
@@ -137,7 +142,7 @@ pub(super) fn moments(family: &impl SmoothCoordinate, span: &Span) -> Moments {
 
 /// The span as one interval above the kink.
 fn interval(family: &impl SmoothCoordinate, span: &Span) -> SmoothInterval {
-    SmoothInterval::new(span, family.kink_radius(), family.kink_radius(), f64::INFINITY, 2.0)
+    SmoothInterval::new(span, family.kink_radius(), family.singularity(), f64::INFINITY, 2.0)
 }
 
 /// The displacement integral of a span above the core, `above` the level added to h.

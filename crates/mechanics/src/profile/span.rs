@@ -3,8 +3,7 @@
 //! Differences of squares decide everything: x^2 - r^2 under the roots of the kernels, x^2 - b^2 beside a kink at b. So a span
 //! carries the squares with twice the digits and their difference on its own, since that comes from the depth of the ring.
 
-use super::super::double_double::DoubleDouble;
-use super::{Moments, Ring, StressRadius};
+use super::{DoubleDouble, Moments, Ring, StressRadius};
 
 /// The radii of a ring, and the levels it crosses at a vertical edge.
 #[derive(Clone, Copy, Debug)]
@@ -103,27 +102,5 @@ impl Moments {
             first: inner.first + depth * inner.width + outer.first,
             second: inner.second + depth * (2.0 * inner.first + depth * inner.width) + outer.second,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{DoubleDouble, StressRadius};
-    use super::Span;
-
-    #[test]
-    fn the_arc_of_a_sliver_keeps_its_digits() {
-        let gap = 1e-20;
-        let sliver = Span::under(DoubleDouble::from(0.25), 0.5, gap);
-        // dx / sqrt(r^2 - x^2) with dx = gap / (2 x) and r = 1.
-        let exact = gap / (2.0 * 0.5) / 0.75f64.sqrt();
-        assert!((sliver.arc(&StressRadius::new(1.0)) / exact - 1.0).abs() < 1e-15);
-    }
-
-    #[test]
-    fn the_arc_up_to_r_is_a_quarter_turn() {
-        let whole = Span::under(DoubleDouble::from(4.0), 2.0, 4.0);
-        assert!((whole.arc(&StressRadius::new(1.5)) - std::f64::consts::FRAC_PI_2).abs() < 1e-16);
-        assert!((whole.arc(&StressRadius::new(4.0)) - 0.5f64.asin()).abs() < 1e-16);
     }
 }

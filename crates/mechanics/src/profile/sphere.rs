@@ -3,11 +3,9 @@
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
-use super::super::error::Error;
-use super::super::range;
 use super::kernel_sums::Roots;
 use super::shape::Shape;
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A paraboloid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,31 +111,5 @@ impl Shape for Sphere {
 
     fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
         Some(Roots::new(self.curvature_radius, rings).sums(radii))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{Profile, Ring};
-    use super::{DoubleDouble, Sphere};
-
-    #[test]
-    fn moments_of_a_thin_ring_keep_their_digits() {
-        let sphere = Profile::Sphere(Sphere::new(2.0).unwrap());
-        let edge = DoubleDouble::from(0.5);
-        for depth in [0.5, 1e-3, 1e-8, 1e-14] {
-            let ring = Ring::between(sphere.point(edge - DoubleDouble::from(depth)), sphere.point(edge));
-            let m = sphere.moments(&ring);
-            // Series about the edge: X(y) = sqrt(2 y), X' = 1/X.
-            if depth < 1e-7 {
-                assert!((m.width / depth - 1.0).abs() < 1e-7);
-                assert!((m.first / (depth * depth / 2.0) - 1.0).abs() < 1e-7);
-                assert!((m.second / (depth.powi(3) / 3.0) - 1.0).abs() < 1e-7);
-            } else {
-                let (x1, x2) = (ring.inner.radius, ring.outer.radius);
-                let first = 0.5 * (x2 - x1) - (x2.powi(3) - x1.powi(3)) / 6.0;
-                assert!((m.first - first).abs() < 1e-15);
-            }
-        }
     }
 }

@@ -4,12 +4,9 @@
 //! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
 //! the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or falls.
 
-use super::super::double_double::DoubleDouble;
-use super::super::error::Error;
-use super::super::range;
 use super::roots::increasing;
 use super::shape::{End, Shape};
-use super::{InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated};
+use super::{DoubleDouble, Error, InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated, range};
 
 /// How far beyond a kink, relative to its radius, a radius still lacks digits that a level has.
 const NEAR: f64 = 1e-2;
@@ -47,16 +44,8 @@ impl Sum {
                 other => flat.push(other),
             }
         }
-        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
         range::PARTS.check(flat.len() as f64)?;
-        let mut kinks = Vec::new();
-        for part in &flat {
-            let mut kink = part.kink_below(f64::INFINITY);
-            while kink > 0.0 {
-                kinks.push(kink);
-                kink = part.kink_below(kink);
-            }
-        }
+        let mut kinks: Vec<f64> = flat.iter().flat_map(|part| part.knots_below(f64::INFINITY)).collect();
         kinks.sort_by(f64::total_cmp);
         kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
         let limit = flat.iter().filter_map(Shape::known_to).reduce(|a, b| if b.radius < a.radius { b } else { a });
@@ -146,7 +135,6 @@ impl Sum {
         if target <= 0.0 {
             return self.bracket.map_or_else(|| least(target), |(flat_radius, _)| flat_radius);
         }
-        #[expect(clippy::cast_precision_loss, reason = "a count of parts is far below 2^52")]
         let (low, high) = self.bracket.unwrap_or_else(|| (least(target / self.parts.len() as f64), least(target)));
         let width = high - low;
         if width <= 1e-15 * high {

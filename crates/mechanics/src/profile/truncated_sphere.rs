@@ -3,10 +3,8 @@
 //! gamma = dg/dt = (b^2 + 2 t^2)/(R x), int x dg = t (3 b^2 + 2 t^2)/(3R), and X follows from a quadratic in t^2 (Ejike 1981;
 //! Popov & Hess 2015). f' jumps at b: pressure and shear are log-infinite there.
 
-use super::super::error::Error;
-use super::super::range;
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
-use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A paraboloid with a flat end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,20 +80,3 @@ flat_core!(TruncatedSphere {
         Some(self.curvature_radius)
     }
 });
-
-#[cfg(test)]
-mod tests {
-    use super::super::shape::Shape;
-    use super::{DoubleDouble, TruncatedSphere};
-
-    #[test]
-    fn the_square_solves_its_equation_to_thirty_digits() {
-        let sphere = TruncatedSphere::new(3.0, 0.25).unwrap();
-        for level in [1e-9, 1e-3, 0.7] {
-            let square = sphere.square(DoubleDouble::from(level));
-            let excess = square - DoubleDouble::from(0.0625);
-            let rest = square * excess - DoubleDouble::square_of(level) * 9.0;
-            assert!(rest.value().abs() < 1e-29 * (square * excess).value() + 1e-33, "{level}: {rest:?}");
-        }
-    }
-}

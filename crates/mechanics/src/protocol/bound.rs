@@ -18,9 +18,7 @@
 //! kernel (x^2 - r^2)^(-1/2) does not diminish variation. A study with restarts in `tests/physics/protocols.rs` finds
 //! nothing better.
 
-use super::super::contact::Contact;
-use super::super::profile::Profile;
-use super::{cutoff_of, outermost_singular};
+use super::{Contact, EvaluationRange, Profile};
 
 /// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;
@@ -44,11 +42,10 @@ const HALVINGS: usize = 40;
 #[must_use]
 pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
     let (profile, edge) = (&*contact.profile, contact.contact_radius());
-    let vertical = profile.rim_radius().is_some_and(|rim| edge >= rim);
+    let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
     if vertical || edge <= 0.0 || contact.friction <= 0.0 {
         return 0.0;
     }
-    let cutoff = cutoff_of(outermost_singular(profile, edge), edge);
     let grid = Grid::new(profile, cutoff, edge);
     // One piece from the edge to the cut-off holds below this.
     let mut high = (grid.levels[0] - grid.levels[STEPS]) / (edge * edge - cutoff * cutoff).sqrt();
@@ -58,11 +55,7 @@ pub fn lower_bound(contact: &Contact, reversals: usize) -> f64 {
     let mut low = 0.0;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if grid.reached(middle, reversals + 1) {
-            high = middle;
-        } else {
-            low = middle;
-        }
+        if grid.reached(middle, reversals + 1) { high = middle } else { low = middle }
     }
     low * 0.5 * contact.elasticity.g_star() * contact.scale()
 }

@@ -1,15 +1,11 @@
 //! The design of a path that leaves little stress, with a given start, end and number of reversals.
 
-use super::super::contact::Contact;
-use super::super::double_double::DoubleDouble;
-use super::super::error::Error;
-use super::super::range::Quantity;
 use super::super::shear_stress::Residual;
 use super::super::state::{Move, Regime, Tangential};
 use super::from_any_state::FromAnyState;
 use super::{
-    DEFAULT_CUTOFF, alternating, cutoff_of, end_constraint, equal_peak_measure::EqualPeakMeasure, equal_peaks,
-    falling_amplitude, outermost_singular,
+    Contact, DEFAULT_CUTOFF, DoubleDouble, EqualPeakMeasure, Error, Quantity, cutoff_of, end_constraint, equal_peaks,
+    evenly_spread, falling_amplitude, outermost_singular,
 };
 
 /// A displacement below this share of that of gross slip is zero but for rounding.
@@ -252,20 +248,12 @@ impl DesignTask<'_> {
             path[0] = first;
             return Ok(path);
         }
-        let (profile, indentation) = (&*self.contact.profile, self.contact.indentation());
-        let inner = profile.radius(indentation * (1.0 - first.abs() / full));
+        let profile = &*self.contact.profile;
+        let inner = profile.radius(self.contact.indentation() * (1.0 - first.abs() / full));
         let from = inner.max(self.range.from);
         let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());
-        let size = |index: usize| {
-            let part = index as f64 / self.reversals.max(1) as f64;
-            match &spread {
-                _ if index == 0 => first.abs(),
-                _ if index == self.reversals => 0.0,
-                Some(spread) => full * (1.0 - profile.level(spread.radius(part)) / indentation).max(0.0),
-                None => first.abs() * (1.0 - part),
-            }
-        };
-        Ok((0..=self.reversals).map(|index| sign * alternating(index, size(index))).collect())
+        let path = evenly_spread(self.contact, spread.as_ref(), self.reversals, first.abs());
+        Ok(path.map(|target| sign * target).collect())
     }
 
     /// The best of all candidates: equal alternating extrema, and the two laws, for where those do not exist.

@@ -5,9 +5,10 @@
 //! the core, solved by Broyden's method from the free optimum. If it is the core, E alone is sought. Among few kinks
 //! each is tried, else the outermost: of many extrema it matters little which one stays below.
 
+use super::super::normal::{load, whole};
 use super::super::profile::{Point, Ring};
 use super::minimax::{KinkSequence, Problem};
-use super::{DoubleDouble, PathEnd};
+use super::{DoubleDouble, PathEnd, alternating};
 
 /// Up to this many kinks each is tried.
 pub(super) const FEW: usize = 8;
@@ -147,7 +148,6 @@ impl Equations<'_> {
 /// The residual at the end: of the displacement over the indentation, or of the force over that of gross slip.
 fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
     let profile = problem.profile;
-    let alternating = |index: usize, size: f64| if index.is_multiple_of(2) { size } else { -size };
     match end {
         PathEnd::Free => 0.0,
         PathEnd::DisplacementZero => {
@@ -156,15 +156,13 @@ fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64
             (first - way.sum::<f64>()) / problem.edge.level.value()
         }
         PathEnd::ForceZero => {
-            let load = |ring: &Ring| ring.inner.radius * ring.depth + profile.moments(ring).first;
             let zero = profile.point(DoubleDouble::ZERO);
-            let whole = load(&Ring::between(zero, problem.edge));
             let (mut outer, mut sum) = (problem.edge, 0.0);
             for (index, inner) in kinks.iter().chain([&zero]).enumerate() {
-                sum += alternating(index, load(&Ring::between(*inner, outer)));
+                sum += alternating(index, load(profile, &Ring::between(*inner, outer)));
                 outer = *inner;
             }
-            sum / whole
+            sum / load(profile, &whole(profile, &problem.edge))
         }
     }
 }

@@ -8,12 +8,12 @@
 //! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
 //! a last stroke, during which nothing slips but the edge itself, unloads it.
 
-use super::super::contact::Contact;
+use super::super::normal::load;
 use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
 use super::descent::{Trial, search};
 use super::minimax::Problem;
-use super::{DoubleDouble, PathEnd, cutoff_of, outermost_singular};
+use super::{Contact, DoubleDouble, PathEnd, alternating, cutoff_of, outermost_singular};
 
 /// A slip history of more pieces is refused, because each piece is evaluated for every E.
 const MAX_DEPTH: usize = 256;
@@ -110,16 +110,13 @@ impl<'a> FromAnyState<'a> {
 
     /// How far the strokes after the first lead.
     fn way(&self, kinks: &[Point]) -> f64 {
-        let stroke = |(index, kink): (usize, &Point)| {
-            let size = 2.0 * (self.edge - kink.level).value();
-            if index.is_multiple_of(2) { size } else { -size }
-        };
+        let stroke = |(index, kink): (usize, &Point)| alternating(index, 2.0 * (self.edge - kink.level).value());
         kinks.iter().enumerate().map(stroke).sum::<f64>() - self.rim
     }
 
     /// int w dx at the end, m^2, for a cut at a point.
     fn carried(&self, kinks: &[Point], cut: &Point) -> f64 {
-        let load = |ring: &Ring| ring.inner.radius * ring.depth + self.problem.profile.moments(ring).first;
+        let load = |ring: &Ring| load(self.problem.profile, ring);
         let (mut outer, mut sign, mut sum) = (self.problem.edge, 1.0, 0.0);
         for inner in kinks.iter().chain([cut]) {
             sum += sign * load(&Ring::between(*inner, outer));
@@ -374,7 +371,6 @@ impl<'a> FromAnyState<'a> {
         if !(guess > 0.0 && guess.is_finite()) {
             return None;
         }
-        let (mut low, mut high);
         let mut best = None;
         let mut step = |limit: f64| -> Option<bool> {
             Some(match self.strokes(limit, keep_going).ok()? {
@@ -386,17 +382,8 @@ impl<'a> FromAnyState<'a> {
                 StrokeOutcome::Tight => false,
             })
         };
-        if step(guess)? {
-            (low, high) = (guess / STRIDE, guess);
-            for _ in 0..MAX_EVALUATIONS {
-                if !step(low)? {
-                    break;
-                }
-                (high, low) = (low, low / STRIDE);
-                if low < LEAST * guess {
-                    break;
-                }
-            }
+        let (mut high, pace, least) = if step(guess)? {
+            (guess, STRIDE, LEAST * guess)
         } else {
             // Where the end is prescribed, too large an E can be as wrong as too small a one: both sides are tried in
             // small steps.
@@ -408,13 +395,16 @@ impl<'a> FromAnyState<'a> {
                     None => Some(None),
                 }
             });
-            high = found??;
-            low = high / PACE;
-            for _ in 0..MAX_EVALUATIONS {
-                if !step(low)? {
-                    break;
-                }
-                (high, low) = (low, low / PACE);
+            (found??, PACE, 0.0)
+        };
+        let mut low = high / pace;
+        for _ in 0..MAX_EVALUATIONS {
+            if !step(low)? {
+                break;
+            }
+            (high, low) = (low, low / pace);
+            if low < least {
+                break;
             }
         }
         for _ in 0..MAX_EVALUATIONS {

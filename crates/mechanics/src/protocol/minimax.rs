@@ -5,8 +5,8 @@
 //! other from the edge inwards: each where the stress first meets E with the other sign. E is then lowered until the
 //! centre meets it too.
 
-use super::super::profile::{Point, Profile, Ring, StressRadius};
-use super::DoubleDouble;
+use super::super::profile::{Point, Ring, StressRadius};
+use super::{DoubleDouble, Profile};
 
 /// The largest number of evaluations of E, after it has been bracketed.
 const MAX_EVALUATIONS: usize = 80;
@@ -91,8 +91,7 @@ impl Problem<'_> {
         };
         let mut step = (0.4 * before).max(4.0 * f64::EPSILON * top);
         let (mut high, mut at_high) = (top, limit);
-        let mut low = high;
-        let mut at_low = at_high;
+        let (mut low, mut at_low) = (high, at_high);
         for _ in 0..STEPS {
             if high <= least {
                 return None;
@@ -145,11 +144,7 @@ impl Problem<'_> {
                 let [left, right] = inner(low, high);
                 let (at_left, at_right) = (value(left), value(right));
                 largest = largest.max(at_left).max(at_right);
-                if at_left > at_right {
-                    high = right;
-                } else {
-                    low = left;
-                }
+                if at_left > at_right { high = right } else { low = left }
             }
         }
         largest

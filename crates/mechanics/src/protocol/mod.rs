@@ -23,11 +23,8 @@ pub use robustness::{ExecutionErrors, trials};
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
-use super::contact::Contact;
-use super::double_double::DoubleDouble;
-use super::error::Error;
-use super::profile::Profile;
 use super::range::{Quantity, short};
+use super::{Contact, DoubleDouble, Error, Profile};
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;
@@ -92,7 +89,7 @@ pub struct EqualPeaks {
 /// # Ok::<(), Error>(())
 /// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
-    let (edge, indentation) = (contact.contact_radius(), contact.indentation());
+    let edge = contact.contact_radius();
     let singular = outermost_singular(&contact.profile, edge);
     let least = singular.unwrap_or(0.0);
     let cutoff = match cutoff_radius {
@@ -106,19 +103,30 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     // At the very radius where s diverges there is no law.
     let spread =
         (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.profile, cutoff, edge)).flatten();
-    let full = contact.gross_slip_displacement();
-    let size = |index: usize| {
+    // The first stroke is gross slip, which wipes out the history.
+    let displacements = evenly_spread(contact, spread.as_ref(), reversals, contact.gross_slip_displacement());
+    Ok(EqualPeaks { displacements: displacements.collect(), cutoff_radius: cutoff })
+}
+
+/// The displacements, m, from an amplitude to zero whose reversals are spread evenly in `measure`, or, without one,
+/// linearly.
+fn evenly_spread(
+    contact: &Contact,
+    measure: Option<&EqualPeakMeasure<'_>>,
+    reversals: usize,
+    amplitude: f64,
+) -> impl Iterator<Item = f64> {
+    let (full, indentation) = (contact.gross_slip_displacement(), contact.indentation());
+    (0..=reversals).map(move |index| {
         let part = index as f64 / reversals.max(1) as f64;
-        match &spread {
-            // The first stroke is gross slip, which wipes out the history.
-            _ if index == 0 => full,
+        let size = match measure {
+            _ if index == 0 => amplitude,
             _ if index == reversals => 0.0,
-            Some(spread) => full * (1.0 - contact.profile.level(spread.radius(part)) / indentation).max(0.0),
-            None => full * (1.0 - part),
-        }
-    };
-    let displacements = (0..=reversals).map(|index| alternating(index, size(index))).collect();
-    Ok(EqualPeaks { displacements, cutoff_radius: cutoff })
+            Some(measure) => full * (1.0 - contact.profile.level(measure.radius(part)) / indentation).max(0.0),
+            None => amplitude * (1.0 - part),
+        };
+        alternating(index, size)
+    })
 }
 
 /// A path with equal alternating extrema.
@@ -164,11 +172,10 @@ fn minimax_to(
     keep_going: &dyn Fn() -> bool,
 ) -> Vec<Minimax> {
     let edge = *contact.history.edge();
-    let vertical = contact.profile.rim_radius().is_some_and(|rim| edge.radius >= rim);
+    let EvaluationRange { from: cutoff_radius, vertical, .. } = EvaluationRange::of(contact);
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return Vec::new();
     }
-    let cutoff_radius = cutoff_of(outermost_singular(&contact.profile, edge.radius), edge.radius);
     let problem = Problem { profile: &contact.profile, edge, cutoff: cutoff_radius, reversals };
     let Some(equal) = problem.solve(keep_going) else { return Vec::new() };
     let levels: Vec<Vec<f64>> = if end == PathEnd::Free {

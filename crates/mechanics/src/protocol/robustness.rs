@@ -1,9 +1,7 @@
 //! The stress that remains if a path is not followed exactly: repeated trials with random errors.
 
-use super::super::contact::Contact;
-use super::super::error::Error;
 use super::super::state::{Move, Tangential};
-use super::design::EvaluationRange;
+use super::{Contact, Error, EvaluationRange};
 
 /// The random errors of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -28,7 +28,7 @@ pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
 const ROUNDED_SHARE: f64 = 1e-6;
 
 /// A straight part of w - W over y: `offset + slope * y`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Line {
     pub(super) offset: DoubleDouble,
     pub(super) slope: DoubleDouble,
@@ -71,7 +71,7 @@ pub(super) struct Piece {
 }
 
 /// The state of the tangential problem in scaled units: lengths in m, integrals of X over y in m^2.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct SlipHistory {
     /// From the centre outward; empty without contact.
     pieces: Vec<Piece>,
@@ -85,26 +85,14 @@ pub(super) struct SlipHistory {
     slip_from: Option<Point>,
 }
 
-/// The result of a move beyond the new state.
-#[must_use]
-pub(super) struct MoveResult {
-    /// Friction work over 2 G* m^2, m^3.
-    pub(super) work: f64,
-}
-
 impl SlipHistory {
     /// A virgin contact at indentation d, m.
     pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> SlipHistory {
-        let mut history = SlipHistory {
-            pieces: Vec::new(),
-            edge: edge_at(profile, indentation),
-            total: Sums::default(),
-            position: DoubleDouble::ZERO,
-            reference: DoubleDouble::ZERO,
-            slip_from: None,
-        };
+        let mut history = SlipHistory { edge: edge_at(profile, indentation), ..SlipHistory::default() };
         if history.in_contact() {
-            history.push_core(profile);
+            // The whole contact as one unloaded piece.
+            let inner = profile.point(DoubleDouble::ZERO);
+            history.pieces.push(Piece { inner, line: Line::default(), below: Sums::default() });
         }
         history
     }
@@ -171,14 +159,16 @@ impl SlipHistory {
         self.pieces.capacity() * size_of::<Piece>()
     }
 
-    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`.
-    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
+    /// Moves along the straight line to indentation `d1` and scaled displacement `w1`. Returns the friction work over
+    /// 2 G* m^2, m^3.
+    #[must_use]
+    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
         self.slip_from = None;
         if !self.in_contact() {
             let d0 = self.edge.level;
             if d1.value() <= 0.0 {
                 self.place(profile, d1, w1);
-                return MoveResult { work: 0.0 };
+                return 0.0;
             }
             let touching = self.position + ((w1 - self.position) * (-d0)).over(d1 - d0);
             self.place(profile, DoubleDouble::ZERO, touching);
@@ -186,10 +176,14 @@ impl SlipHistory {
         if d1.value() <= 0.0 {
             let work = friction_work::unloading_work(self, profile, d1, w1);
             self.place(profile, d1, w1);
-            return MoveResult { work };
+            return work;
         }
         let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
-        if dd >= dw.abs() { self.grow(profile, d1, w1) } else { self.slip(profile, (d1, w1), (dd, dw)) }
+        if dd >= dw.abs() {
+            self.grow(profile, d1, w1);
+            return 0.0;
+        }
+        self.slip(profile, (d1, w1), (dd, dw))
     }
 
     /// Out of contact, or just touching: a position and nothing else.
@@ -201,19 +195,13 @@ impl SlipHistory {
         self.reference = position;
     }
 
-    /// The whole contact as one unloaded piece.
-    fn push_core(&mut self, profile: &Profile) {
-        let line = Line { offset: DoubleDouble::ZERO, slope: DoubleDouble::ZERO };
-        self.pieces.push(Piece { inner: profile.point(DoubleDouble::ZERO), line, below: self.total });
-    }
-
     /// The load rises at least as fast as the indenter moves: nothing slips, and what is touched on the way keeps the
     /// displacement gained since its touch.
-    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> MoveResult {
+    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) {
         let d0 = self.edge.level;
         let rise = d1 - d0;
         if rise.value() <= 0.0 {
-            return MoveResult { work: 0.0 };
+            return;
         }
         let slope = -(w1 - self.position).over(rise);
         let inner = self.edge;
@@ -230,7 +218,6 @@ impl SlipHistory {
             let ring = Ring::between(inner, self.edge);
             self.push_through(&profile.moments(&ring), &ring, (slope, self.shift()), self.total);
         }
-        MoveResult { work: 0.0 }
     }
 
     /// An outer ring slips on the way to (d1, w1), which is (dd, dw) from here.
@@ -239,7 +226,7 @@ impl SlipHistory {
         profile: &Profile,
         (d1, w1): (DoubleDouble, DoubleDouble),
         (dd, dw): (DoubleDouble, DoubleDouble),
-    ) -> MoveResult {
+    ) -> f64 {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
@@ -253,7 +240,7 @@ impl SlipHistory {
             if trial.abs().value() <= round_off(d1, self.shift(), dd) {
                 // The move takes the last rise of the load back along the same line.
                 self.close(profile);
-                return MoveResult { work };
+                return work;
             }
             sign = trial.value().signum();
             excess = trial.value().abs();
@@ -316,7 +303,7 @@ impl SlipHistory {
             self.slip_from = None;
             self.total = below;
         }
-        MoveResult { work }
+        work
     }
 
     /// Adds a piece of the given slope over `ring`, which ends at the edge, where w = 0 and w - W is what `shift`
@@ -375,7 +362,7 @@ fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDoubl
 /// The edge of a contact at `indentation`; with a gap there is none, and its radius is zero.
 fn edge_at(profile: &Profile, indentation: DoubleDouble) -> Point {
     if indentation.value() < 0.0 {
-        Point { level: indentation, radius: 0.0, square: DoubleDouble::ZERO }
+        Point { level: indentation, ..Point::default() }
     } else {
         profile.point(indentation)
     }

@@ -4,10 +4,8 @@
 //! The pieces come last, so that their number follows from the length, and no stored length can request more memory
 //! than there are bytes.
 
-use super::super::double_double::DoubleDouble;
 use super::super::packed::{Reader, Writer};
-use super::super::profile::Point;
-use super::{Line, Piece, SlipHistory, Sums};
+use super::{DoubleDouble, Line, Piece, SlipHistory, Sums};
 
 /// Numbers of a level with its radius.
 const POINT: usize = 5;
@@ -28,9 +26,8 @@ impl SlipHistory {
         self.total.pack(writer);
         writer.double(self.position);
         writer.double(self.reference);
-        let nowhere = Point { level: DoubleDouble::ZERO, radius: 0.0, square: DoubleDouble::ZERO };
         writer.number(if self.slip_from.is_some() { 1.0 } else { 0.0 });
-        writer.point(&self.slip_from.unwrap_or(nowhere));
+        writer.point(&self.slip_from.unwrap_or_default());
         for piece in &self.pieces {
             writer.point(&piece.inner);
             writer.double(piece.line.offset);

@@ -10,12 +10,9 @@ mod stress;
 
 pub use shear_evaluation::ShearEvaluation;
 
-use super::state::{Move, Normal, Regime, Setup, State, Tangential};
-
-use super::error::{Error, UnsupportedMove};
-use super::normal::ContactSummary;
-use super::range;
-use super::{Contact, Profile};
+use super::{
+    Contact, ContactSummary, Error, Move, Normal, Profile, Regime, Setup, State, Tangential, UnsupportedMove, range,
+};
 
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
@@ -158,16 +155,14 @@ impl Springs {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn apply(&mut self, step: &Move) -> Result<(), Error> {
-        if let (Some(normal), Some(tangential)) = (step.normal, step.tangential) {
-            match (normal, tangential) {
-                (Normal::NormalForce(_), _) => {
-                    return Err(Error::Unsupported(UnsupportedMove::NormalForceWithTangentialTarget));
-                }
-                (_, Tangential::Force(_)) => {
-                    return Err(Error::Unsupported(UnsupportedMove::TangentialForceWithNormalTarget));
-                }
-                (Normal::Indentation(_), Tangential::Displacement(_)) => {}
+        match (step.normal, step.tangential) {
+            (Some(Normal::NormalForce(_)), Some(_)) => {
+                return Err(Error::Unsupported(UnsupportedMove::NormalForceWithTangentialTarget));
             }
+            (Some(Normal::Indentation(_)), Some(Tangential::Force(_))) => {
+                return Err(Error::Unsupported(UnsupportedMove::TangentialForceWithNormalTarget));
+            }
+            _ => {}
         }
         let mut normal = self.normal.clone();
         if step.normal.is_some() {

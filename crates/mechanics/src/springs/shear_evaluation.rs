@@ -7,12 +7,9 @@
 
 use std::f64::consts::PI;
 
-use super::super::double_double::DoubleDouble;
-use super::super::error::Error;
+use super::super::DoubleDouble;
 use super::super::profile::Ring;
-use super::super::range;
-use super::super::state::Setup;
-use super::Springs;
+use super::{Error, Setup, Springs, range};
 
 /// The formula for the shear stress between the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,6 +2,9 @@
 
 mod accuracy;
 mod curved_moves;
+mod digits;
+mod double_double;
+mod elasticity;
 mod equal_peaks;
 mod exactness;
 mod extrema;

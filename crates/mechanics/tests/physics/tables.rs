@@ -1,8 +1,8 @@
-//! The error of a table against the body that it was taken from. `--nocapture` prints the numbers of `docs/tables.md`.
+//! Tables against the bodies that they were taken from. `--nocapture` prints the numbers of `docs/tables.md`.
 
 use crate::support::displace;
-use stickslip_mechanics::profile::{ExactSphere, Tabulated};
-use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup};
+use stickslip_mechanics::profile::{ExactSphere, Sphere, Tabulated};
+use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup};
 
 /// A contact of radius 0.5 under the unit ball, or the table of it, after half a loading and half of that back.
 fn moved(profile: Profile) -> Contact {
@@ -47,4 +47,63 @@ fn tables_of_a_ball_converge_and_say_how_far_they_are() {
     for pair in rows.windows(3) {
         assert!(pair[2].iter().zip(pair[0]).all(|(now, before)| *now < 0.1 * before), "{pair:?}");
     }
+}
+
+#[test]
+fn a_tabulated_parabola_is_the_sphere() {
+    let mut radii: Vec<f64> = (0..60u32).map(|i| 1e-5 * f64::from(i) * (1.0 + 0.3 * f64::from(i).sin())).collect();
+    radii.sort_by(f64::total_cmp);
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
+    let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+    let sphere = Profile::Sphere(Sphere::new(0.01).unwrap());
+    for share in [1e-3, 0.1, 0.5, 0.99] {
+        let x = share * radii[59];
+        assert!((table.level(x) / sphere.level(x) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_hollow_is_refused_where_g_falls() {
+    let radii: Vec<f64> = (0..100u32).map(|i| 0.01 * f64::from(i)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r - 0.9 * r.powi(4)).collect();
+    let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+    let limit = table.limit_radius().unwrap();
+    // g = 2 x^2 - 0.9 (8/3) x^4: g' = 0 at x^2 = 4/9.6.
+    assert!((limit - (4.0f64 / 9.6).sqrt()).abs() < 2e-3, "{limit}");
+    assert_eq!(table.check_radius(limit), Err(Error::NotConvexEnough { radius: limit }));
+    let hole: Vec<f64> = radii.iter().map(|r| -r * r).collect();
+    assert!(matches!(Tabulated::new(&radii, &hole), Err(Error::NotConvexEnough { radius }) if radius <= 0.0));
+}
+
+#[test]
+fn the_interpolation_converges() {
+    // f = cosh r - 1; g to 17 digits by quadrature of f'(x sin q) at x = 1: sum over n of x^(2n) (2n)!!/(2n - 1)!!/(2n)!.
+    let exact: f64 = (1..12u32)
+        .map(|n| {
+            (1..=n).map(|k| f64::from(2 * k) / f64::from(2 * k - 1)).product::<f64>()
+                / (1..=2 * n).map(f64::from).product::<f64>()
+        })
+        .sum();
+    let error = |n: u32| {
+        let radii: Vec<f64> = (0..=n).map(|i| 1.5 * f64::from(i) / f64::from(n)).collect();
+        let heights: Vec<f64> = radii.iter().map(|r| r.cosh() - 1.0).collect();
+        (Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()).level(1.0) / exact - 1.0).abs()
+    };
+    let errors: Vec<f64> = [15, 30, 60, 120, 240].into_iter().map(error).collect();
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.19 * pair[0]), "{errors:?}");
+}
+
+#[test]
+fn amplified_noise() {
+    let radii: Vec<f64> = (0..=500u32).map(|i| 2e-6 * f64::from(i)).collect();
+    let mut seed = 1u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(seed >> 33).unwrap()) / f64::from(1u32 << 31) - 0.5
+    };
+    let sigma = 1e-12 / 12f64.sqrt();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 + 1e-12 * random()).collect();
+    let table = Tabulated::new(&radii, &heights).unwrap();
+    assert!((table.height_noise() / sigma - 1.0).abs() < 0.1, "{}", table.height_noise() / sigma);
+    assert!((20.0..50.0).contains(&table.noise_amplification(1e-3)), "{}", table.noise_amplification(1e-3));
 }

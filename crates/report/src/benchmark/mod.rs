@@ -20,7 +20,7 @@ use serde::Serialize;
 
 use external_solver::{ExternalSolver, SCRIPTS};
 use reference::Reference;
-use scenes::{E_STAR, FRICTION, G_STAR, Scene};
+use scenes::{DEPTH, E_STAR, FRICTION, G_STAR, Scene};
 use timing::{SceneBenchmark, SolverRun};
 
 pub use output::write;
@@ -120,13 +120,11 @@ pub fn measure(options: &Options) -> io::Result<Report> {
         missing: Vec::new(),
     };
     for (index, name) in options.scenes.iter().enumerate() {
-        let unknown = || {
-            io::Error::new(
-                io::ErrorKind::InvalidInput,
-                format!("there is no scene `{name}`; the scenes are {}", NAMES.join(", ")),
-            )
-        };
-        let scene = Scene::by_name(name).ok_or_else(unknown)?.map_err(io::Error::other)?;
+        if !NAMES.contains(&name.as_str()) {
+            let unknown = format!("there is no scene `{name}`; the scenes are {}", NAMES.join(", "));
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, unknown));
+        }
+        let scene = Scene::build(name).map_err(io::Error::other)?;
         let time_left = options.budget.map(|budget| budget.saturating_sub(begin.elapsed()));
         let share = time_left.map(|left| left / (options.scenes.len() - index) as u32);
         measure_scene(name, &scene, options, share, &mut report)?;
@@ -143,7 +141,7 @@ fn measure_scene(
     report: &mut Report,
 ) -> io::Result<()> {
     let (begin, started) = (Instant::now(), timing::processor_time());
-    let mut reference = Reference::new(&scene.shape, E_STAR, G_STAR, FRICTION, Scene::depth());
+    let mut reference = Reference::new(&scene.shape, E_STAR, G_STAR, FRICTION, DEPTH);
     let mut load = reference.normal_force();
     let forces: Vec<f64> = scene
         .path

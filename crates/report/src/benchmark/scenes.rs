@@ -14,8 +14,8 @@ const RADIUS: f64 = 0.01;
 const SLOPE: f64 = 0.05;
 /// Coefficient of z = c r^4, m^-3.
 const QUARTIC: f64 = 4e7;
-/// Indentation, m: that of the sphere at a/R = 0.1.
-const DEPTH: f64 = 1e-4;
+/// The first indentation, m: that of the sphere at a/R = 0.1.
+pub(super) const DEPTH: f64 = 1e-4;
 /// Points of the table.
 const TABLE_POINTS: usize = 1000;
 
@@ -52,12 +52,8 @@ pub(super) fn random(seed: u64) -> impl FnMut() -> f64 {
 }
 
 impl Scene {
-    /// The scene with that name, if there is one.
-    pub(super) fn by_name(name: &str) -> Option<Result<Scene, Error>> {
-        NAMES.contains(&name).then(|| Scene::build(name))
-    }
-
-    fn build(name: &str) -> Result<Scene, Error> {
+    /// The scene with that name out of [`NAMES`].
+    pub(super) fn build(name: &str) -> Result<Scene, Error> {
         let unit = FRICTION * E_STAR / G_STAR * DEPTH;
         let falling = |count: usize| -> Vec<(f64, f64)> {
             stickslip_mechanics::protocol::falling_amplitude(count, unit).map(|u| (DEPTH, u)).collect()
@@ -71,24 +67,17 @@ impl Scene {
             "oblique" => (0..30).map(|_| ((0.5 + next()) * DEPTH, (2.0 * next() - 1.0) * unit)).collect(),
             _ => falling(20),
         };
-        let (profile, shape) = match name {
-            "cone" => (Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
-            "power_4" => (Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
-            "exact_sphere" => (Profile::ExactSphere(ExactSphere::new(RADIUS)?), Shape::sphere(RADIUS)),
+        let (profile_name, profile, shape) = match name {
+            "cone" => ("cone", Profile::Cone(Cone::new(SLOPE)?), Shape::cone(SLOPE)),
+            "power_4" => ("power_4", Profile::PowerLaw(PowerLaw::new(4.0, QUARTIC)?), Shape::fourth_power(QUARTIC)),
+            "exact_sphere" => ("exact_sphere", Profile::ExactSphere(ExactSphere::new(RADIUS)?), Shape::sphere(RADIUS)),
             "table_1000" => {
                 let r: Vec<f64> =
                     (0..TABLE_POINTS).map(|index| 1.2e-3 * index as f64 / (TABLE_POINTS - 1) as f64).collect();
                 let z: Vec<f64> = r.iter().map(|r| r * r / (RADIUS + ((RADIUS - r) * (RADIUS + r)).sqrt())).collect();
-                (Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::sphere(RADIUS))
+                ("table", Profile::Tabulated(Tabulated::new(&r, &z)?), Shape::sphere(RADIUS))
             }
-            _ => (Profile::Sphere(Sphere::new(RADIUS)?), Shape::parabola(RADIUS)),
-        };
-        let profile_name = match name {
-            "cone" => "cone",
-            "power_4" => "power_4",
-            "exact_sphere" => "exact_sphere",
-            "table_1000" => "table",
-            _ => "parabola",
+            _ => ("parabola", Profile::Sphere(Sphere::new(RADIUS)?), Shape::parabola(RADIUS)),
         };
         let setup = Setup {
             profile,
@@ -106,11 +95,6 @@ impl Scene {
             "e_star": E_STAR, "g_star": G_STAR, "friction": FRICTION,
             "indentation": DEPTH, "moves": self.path, "radii": radii,
         })
-    }
-
-    /// The first indentation, m.
-    pub(super) fn depth() -> f64 {
-        DEPTH
     }
 
     /// The path as moves.

@@ -85,7 +85,7 @@ fn springs_run(scene: &Scene, count: usize, kernel: ShearEvaluation, radii: &[f6
     })
 }
 
-/// Lower quartile, median and upper quartile; of three values all three.
+/// Lower quartile, median and upper quartile; of three values all three, of one value that value.
 fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     let last = values.len() - 1;
@@ -155,6 +155,24 @@ impl SceneBenchmark<'_> {
         let largest_error = |found: &[f64], reference: &[f64], unit: f64| {
             found.iter().zip(reference).map(|(found, reference)| ((found - reference) / unit).abs()).fold(0.0, f64::max)
         };
+        let errors = [
+            largest_error(&found.forces, &self.reference.forces, self.units.0),
+            largest_error(&found.shears[..RADII], &self.reference.shears[..RADII], self.units.1),
+            largest_error(&found.shears[RADII..], &self.reference.shears[RADII..], self.units.1),
+        ];
+        self.push_row(solver, springs, errors, times, ratios);
+        Ok(())
+    }
+
+    /// Adds a row from the errors of force, stress and stress at the kinks, the times of the runs, s, and their ratios.
+    fn push_row(
+        &mut self,
+        solver: &str,
+        springs: Option<usize>,
+        [force_error, stress_error, kink_error]: [f64; 3],
+        times: Vec<f64>,
+        ratios: Vec<f64>,
+    ) {
         let (least, runs) = (times.iter().copied().fold(f64::INFINITY, f64::min), times.len());
         let [lower, median, upper] = quartiles(times);
         let [ratio_lower, ratio, ratio_upper] = quartiles(ratios);
@@ -162,9 +180,9 @@ impl SceneBenchmark<'_> {
             scene: self.name.to_owned(),
             solver: solver.to_owned(),
             springs,
-            force_error: largest_error(&found.forces, &self.reference.forces, self.units.0),
-            stress_error: largest_error(&found.shears[..RADII], &self.reference.shears[..RADII], self.units.1),
-            kink_error: largest_error(&found.shears[RADII..], &self.reference.shears[RADII..], self.units.1),
+            force_error,
+            stress_error,
+            kink_error,
             median,
             lower,
             upper,
@@ -174,7 +192,6 @@ impl SceneBenchmark<'_> {
             ratio_lower,
             ratio_upper,
         });
-        Ok(())
     }
 
     /// Median time of the exact solver just now, s.
@@ -190,22 +207,7 @@ impl SceneBenchmark<'_> {
     pub(super) fn finish(mut self, report: &mut Report) {
         let seconds = self.reference.seconds;
         let ratio = self.rows.first().map_or(1.0, |exact| seconds / exact.median);
-        self.rows.push(Row {
-            scene: self.name.to_owned(),
-            solver: "reference".to_owned(),
-            springs: None,
-            force_error: 0.0,
-            stress_error: 0.0,
-            kink_error: 0.0,
-            median: seconds,
-            lower: seconds,
-            upper: seconds,
-            least: seconds,
-            runs: 1,
-            ratio,
-            ratio_lower: ratio,
-            ratio_upper: ratio,
-        });
+        self.push_row("reference", None, [0.0; 3], vec![seconds], vec![ratio]);
         report.rows.append(&mut self.rows);
         report.missing.append(&mut self.missing);
     }

@@ -12,7 +12,9 @@ use std::path::Path;
 
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{Contact, Elasticity, Error, Move, Preload, Profile, Setup, Sphere, State, Tangential};
+use stickslip_mechanics::{
+    Contact, Elasticity, Error, Move, Preload, Profile, Residual, Setup, Sphere, State, Tangential,
+};
 
 const REVERSALS: usize = 20;
 /// Radii of a curve, beside its kinks.
@@ -37,7 +39,7 @@ pub fn write(dir: &Path) -> io::Result<()> {
 
 fn charts() -> Result<Vec<Chart>, Error> {
     let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
-    let paper = [positions(&path), forces(&path), shear_partway()?, remaining_shear()?, remaining_peaks()?];
+    let paper = [positions(&path), forces(&path), shear_partway()?, remaining_shear(&path), remaining_peaks()?];
     Ok(paper.into_iter().chain(protocols::charts()?).collect())
 }
 
@@ -69,14 +71,9 @@ impl NormalisedPath {
         Ok(())
     }
 
-    fn displacements(&self) -> Vec<f64> {
-        let unit = self.contact.summary().gross_slip_displacement;
-        self.states.iter().map(|state| state.displacement / unit).collect()
-    }
-
-    fn forces(&self) -> Vec<f64> {
-        let unit = self.contact.summary().gross_slip_force;
-        self.states.iter().map(|state| state.force / unit).collect()
+    /// A value of each state over a unit, at the numbers of the reversal points.
+    fn numbered(&self, value: impl Fn(&State) -> f64, unit: f64) -> Vec<(f64, f64)> {
+        self.states.iter().enumerate().map(|(index, state)| ((index + 1) as f64, value(state) / unit)).collect()
     }
 
     fn stress_unit(&self) -> f64 {
@@ -85,13 +82,9 @@ impl NormalisedPath {
         figures.gross_slip_force / figures.normal_force * self.contact.pressure(0.0)
     }
 
-    /// tau/(mu p_max) over r/a, through every extremum.
+    /// tau/(mu p_max) over r/a.
     fn shear(&self) -> Vec<(f64, f64)> {
-        let radius = self.contact.summary().contact_radius;
-        let mut radii: Vec<f64> = (0..=POINTS).map(|index| radius * index as f64 / POINTS as f64).collect();
-        radii.extend(self.contact.residual().peaks.iter().map(|peak| peak.radius));
-        radii.sort_by(f64::total_cmp);
-        radii.iter().map(|&r| (r / radius, self.contact.shear(r) / self.stress_unit())).collect()
+        shear_curve(&self.contact, &self.contact.residual(), self.stress_unit())
     }
 
     /// The friction bound mu p/(mu p_max) over r/a.
@@ -104,12 +97,17 @@ impl NormalisedPath {
     }
 }
 
-fn numbered(values: &[f64]) -> Vec<(f64, f64)> {
-    values.iter().enumerate().map(|(index, &value)| ((index + 1) as f64, value)).collect()
+/// tau over a unit, Pa, over r/a, through every extremum.
+fn shear_curve(contact: &Contact, residual: &Residual, unit: f64) -> Vec<(f64, f64)> {
+    let edge = contact.contact_radius();
+    let mut radii: Vec<f64> = (0..=POINTS).map(|index| edge * index as f64 / POINTS as f64).collect();
+    radii.extend(residual.peaks.iter().map(|peak| peak.radius));
+    radii.sort_by(f64::total_cmp);
+    radii.iter().map(|&r| (r / edge, contact.shear(r) / unit)).collect()
 }
 
 fn positions(path: &NormalisedPath) -> Chart {
-    let turns = numbered(&path.displacements());
+    let turns = path.numbered(|state| state.displacement, path.contact.summary().gross_slip_displacement);
     // Only the reversal points matter; half a cosine is drawn between them, as in the paper.
     let position = turns.windows(2).flat_map(|pair| {
         let ((x0, u0), (_, u1)) = (pair[0], pair[1]);
@@ -133,45 +131,42 @@ fn positions(path: &NormalisedPath) -> Chart {
 }
 
 fn forces(path: &NormalisedPath) -> Chart {
-    let sizes: Vec<f64> = path.forces().iter().map(|force| force.abs()).collect();
+    let sizes = path.numbered(|state| state.force.abs(), path.contact.summary().gross_slip_force);
     Chart::new(
         "Figure 2: tangential force at the reversal points",
         "reversal point k",
         "|F| / (mu F_N)",
-        vec![Series::dots("|F| / (mu F_N)", numbered(&sizes))],
+        vec![Series::dots("|F| / (mu F_N)", sizes)],
     )
-}
-
-/// The friction bound behind the curves that it bounds.
-fn with_bound(path: &NormalisedPath, curves: [Series; 2]) -> Vec<Series> {
-    let bound = path.bound();
-    let mirrored = bound.iter().map(|&(r, p)| (r, -p)).collect();
-    let [first, second] = curves;
-    vec![first, second, Series::line("mu p", bound), Series::line("-mu p", mirrored)]
 }
 
 fn shear_partway() -> Result<Chart, Error> {
     let mut path = NormalisedPath::follow(REVERSALS, 6)?;
     let at_reversal = path.shear();
     path.move_to(0.0)?;
-    let back = path.shear();
-    let curves = [Series::line("A: reversal 6", at_reversal), Series::line("B: back at u = 0", back)];
+    let bound = path.bound();
+    let mirrored = bound.iter().map(|&(r, p)| (r, -p)).collect();
     Ok(Chart::new(
         "Figure 3: shear stress after 6 and 6.5 of 20 reversals",
         "r / a",
         "tau / (mu p_max)",
-        with_bound(&path, curves),
+        // The friction bound lies behind the curves that it bounds.
+        vec![
+            Series::line("A: reversal 6", at_reversal),
+            Series::line("B: back at u = 0", path.shear()),
+            Series::line("mu p", bound),
+            Series::line("-mu p", mirrored),
+        ],
     ))
 }
 
-fn remaining_shear() -> Result<Chart, Error> {
-    let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
-    Ok(Chart::new(
+fn remaining_shear(path: &NormalisedPath) -> Chart {
+    Chart::new(
         "Figure 4: shear stress that remains after 20 reversals",
         "r / a",
         "tau / (mu p_max)",
         vec![Series::line("tau / (mu p_max)", path.shear())],
-    ))
+    )
 }
 
 fn remaining_peaks() -> Result<Chart, Error> {

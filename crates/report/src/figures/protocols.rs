@@ -1,5 +1,6 @@
 //! Figures 6 to 9: the shear stress that remains after the three kinds of protocol, on the sphere and on other shapes.
 
+use super::shear_curve;
 use crate::plot::chart::{Chart, Series};
 use stickslip_mechanics::profile::PowerLaw;
 use stickslip_mechanics::protocol::{AmplitudeLaw, Design, ExecutionErrors, PathEnd, PathStart, design, trials};
@@ -11,8 +12,6 @@ const KINDS: [(AmplitudeLaw, &str); 3] =
 const REVERSAL_COUNTS: [usize; 9] = [1, 2, 3, 4, 6, 8, 11, 15, 20];
 /// Number of reversals, where one is shown.
 const REVERSALS: usize = 20;
-/// Radii that a curve is drawn through, beside its extrema.
-const POINTS: usize = 400;
 /// Trials of each point of figure 9, and the seed of their errors.
 const SAMPLES: usize = 100;
 const SEED: u64 = 2016;
@@ -62,14 +61,9 @@ fn reduction() -> Result<Chart, Error> {
 
 fn over_radius() -> Result<Chart, Error> {
     let contact = contact_of(power_law(4.0)?, 0.3)?;
-    let edge = contact.contact_radius();
     let series = KINDS.into_iter().map(|(kind, name)| {
         let left = designed(&contact, kind, REVERSALS)?;
-        let mut radii: Vec<f64> = (0..=POINTS).map(|index| edge * index as f64 / POINTS as f64).collect();
-        radii.extend(left.residual.peaks.iter().map(|peak| peak.radius));
-        radii.sort_by(f64::total_cmp);
-        let curve = radii.iter().map(|&r| (r / edge, left.contact.shear(r) / unit(&contact)));
-        Ok(Series::line(name, curve.collect()))
+        Ok(Series::line(name, shear_curve(&left.contact, &left.residual, unit(&contact))))
     });
     Ok(Chart::new(
         "Figure 7: stress after 20 reversals, profile z ~ r^4",

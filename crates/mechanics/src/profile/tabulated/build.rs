@@ -3,11 +3,10 @@
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
 //! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
 
-use super::super::super::double_double::DoubleDouble;
-use super::super::gauss;
 use super::far_field::{FarField, Sampled};
 use super::panel::{self, Panel};
 use super::spline::Knot;
+use super::{DoubleDouble, gauss};
 
 /// Panels that share one far field.
 const BLOCK: usize = 4;
@@ -29,16 +28,9 @@ struct Stretch {
     high: f64,
 }
 
-/// The panels of a table, with its ends.
-pub(super) struct Built {
-    pub(super) panels: Vec<Panel>,
-    /// The first radius at which g falls, if it does.
-    pub(super) falls_at: Option<f64>,
-}
-
 /// The panels from the first knot at which the surface leaves the plane, up to the last or, unless it is the `whole` curve that
-/// is wanted, to where g falls.
-pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
+/// is wanted, to where g falls; and the first radius at which it falls, if it does.
+pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
     let segments: Vec<Segment> = knots
         .windows(2)
         .map(|pair| {
@@ -56,7 +48,7 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
     });
     let stretches = stretches(knots, &segments);
     let cosines = panel::cosines();
-    let mut built = Built { panels: Vec::with_capacity(stretches.len()), falls_at: None };
+    let (mut panels, mut falls_at) = (Vec::with_capacity(stretches.len()), None);
     for block in stretches.chunks(BLOCK) {
         let field = Field::new(block, &segments, &far);
         for stretch in block {
@@ -66,21 +58,21 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> Built {
                 |low, high| Panel::new((stretch.base, stretch.singularity), (low, high), &values(low, high), &cosines);
             let panel = make(stretch.low, stretch.high);
             let Some(t) = first_fall(&panel) else {
-                built.panels.push(panel);
+                panels.push(panel);
                 continue;
             };
-            built.falls_at = built.falls_at.or(Some(stretch.radius(t)));
+            falls_at = falls_at.or(Some(stretch.radius(t)));
             if whole {
-                built.panels.push(panel);
+                panels.push(panel);
                 continue;
             }
             if t > stretch.low {
-                built.panels.push(make(stretch.low, t));
+                panels.push(make(stretch.low, t));
             }
-            return built;
+            return (panels, falls_at);
         }
     }
-    built
+    (panels, falls_at)
 }
 
 impl Stretch {
@@ -181,9 +173,7 @@ impl Field {
 
 /// The first t at which q is below zero by more than rounding could make it.
 fn first_fall(panel: &Panel) -> Option<f64> {
-    let mut places = panel::places(panel.low, panel.high).to_vec();
-    places.extend([panel.low, panel.high]);
-    places.sort_by(f64::total_cmp);
+    let places = panel.slope_check_places();
     let values: Vec<f64> = places.iter().map(|&t| panel.slope_over_radius(t)).collect();
     let size = values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
     let index = values.iter().position(|&value| value < -1e-12 * size)?;
@@ -191,11 +181,7 @@ fn first_fall(panel: &Panel) -> Option<f64> {
     let (mut low, mut high) = (places[before], places[index]);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if panel.slope_over_radius(middle) < 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
+        if panel.slope_over_radius(middle) < 0.0 { high = middle } else { low = middle }
     }
     Some(low)
 }

@@ -50,29 +50,17 @@ const POINTS: [f64; PROXIES] = [
     -0.972_369_920_397_676_6,
     -0.996_917_333_733_128,
 ];
-/// Their barycentric weights, (-1)^k sin(pi (k + 1/2)/20).
-const WEIGHTS: [f64; PROXIES] = [
-    0.078_459_095_727_844_94,
-    -0.233_445_363_855_905_42,
-    0.382_683_432_365_089_8,
-    -0.522_498_564_715_948_9,
-    0.649_448_048_330_183_7,
-    -0.760_405_965_600_030_9,
-    0.852_640_164_354_092_2,
-    -0.923_879_532_511_286_7,
-    0.972_369_920_397_676_6,
-    -0.996_917_333_733_128,
-    0.996_917_333_733_128,
-    -0.972_369_920_397_676_6,
-    0.923_879_532_511_286_7,
-    -0.852_640_164_354_092_2,
-    0.760_405_965_600_030_9,
-    -0.649_448_048_330_183_7,
-    0.522_498_564_715_948_9,
-    -0.382_683_432_365_089_8,
-    0.233_445_363_855_905_42,
-    -0.078_459_095_727_844_94,
-];
+/// Their barycentric weights, (-1)^k sin(pi (k + 1/2)/20): half a turn on, a sine is a cosine.
+const WEIGHTS: [f64; PROXIES] = {
+    let mut weights = [0.0; PROXIES];
+    let mut index = 0;
+    while index < PROXIES {
+        let size = POINTS[(index + PROXIES / 2) % PROXIES].abs();
+        weights[index] = if index % 2 == 0 { size } else { -size };
+        index += 1;
+    }
+    weights
+};
 
 /// A Chebyshev point of an interval.
 fn place(low: f64, high: f64, index: usize) -> f64 {
@@ -193,12 +181,8 @@ pub(super) struct Sampled {
 
 impl Sampled {
     /// Samples `f`.
-    pub(super) fn new(low: f64, high: f64, mut f: impl FnMut(f64) -> f64) -> Sampled {
-        let mut values = [0.0; PROXIES];
-        for (index, value) in values.iter_mut().enumerate() {
-            *value = f(place(low, high, index));
-        }
-        Sampled { low, high, values }
+    pub(super) fn new(low: f64, high: f64, f: impl Fn(f64) -> f64) -> Sampled {
+        Sampled { low, high, values: std::array::from_fn(|index| f(place(low, high, index))) }
     }
 
     /// Its value anywhere in the interval.

@@ -64,27 +64,18 @@ fn difference(one: &[Knot], other: &[Knot]) -> Vec<Knot> {
     let mut radii: Vec<f64> = one.iter().chain(other).map(|knot| knot.radius).collect();
     radii.sort_by(f64::total_cmp);
     radii.dedup_by(|a, b| a.to_bits() == b.to_bits());
-    let (mut one, mut other) = (Walk::new(one), Walk::new(other));
-    radii.into_iter().map(|radius| Knot { radius, slope: 0.5 * (one.slope(radius) - other.slope(radius)) }).collect()
+    let (mut one, mut other) = (one, other);
+    let mut half = |radius| 0.5 * (slope_at(&mut one, radius) - slope_at(&mut other, radius));
+    radii.into_iter().map(|radius| Knot { radius, slope: half(radius) }).collect()
 }
 
-/// f' of a curve at rising radii.
-struct Walk<'a> {
-    knots: &'a [Knot],
-}
-
-impl<'a> Walk<'a> {
-    fn new(knots: &'a [Knot]) -> Walk<'a> {
-        Walk { knots }
+/// f' of a curve at a radius; the knots below it are dropped, as the next radius lies beyond it.
+fn slope_at(knots: &mut &[Knot], radius: f64) -> f64 {
+    while knots.len() > 2 && knots[1].radius < radius {
+        *knots = &knots[1..];
     }
-
-    fn slope(&mut self, radius: f64) -> f64 {
-        while self.knots.len() > 2 && self.knots[1].radius < radius {
-            self.knots = &self.knots[1..];
-        }
-        let (low, high) = (self.knots[0], self.knots[1]);
-        low.slope + (high.slope - low.slope) * ((radius - low.radius) / (high.radius - low.radius))
-    }
+    let (low, high) = (knots[0], knots[1]);
+    low.slope + (high.slope - low.slope) * ((radius - low.radius) / (high.radius - low.radius))
 }
 
 /// x int_0^x f' dr/sqrt(x^2 - r^2), f' straight between the knots.

@@ -4,7 +4,7 @@
 //!
 //! f'(0) = 0: a sharp tip would come from the noise of the first two points, with a log-infinite pressure; to model
 //! one, add a cone. With n equal steps the interpolation error of g falls as n^(-5/2), measured for f = cosh r - 1 up
-//! to r = 1.5: 3e-5 of g at n = 30, 1e-6 at 120 (see the tests). Only radii below the last of the table, and below the
+//! to r = 1.5: 3e-5 of g at n = 30, 1e-6 at 120 (`tests/physics/tables.rs`). Only radii below the last of the table, and below the
 //! first at which g falls, exist: but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
@@ -15,13 +15,10 @@ mod spline;
 #[cfg(test)]
 mod tests;
 
-use super::super::double_double::DoubleDouble;
-use super::super::error::{Error, TableFault};
-use super::super::range;
-use super::gauss;
+use super::super::error::TableFault;
 use super::shape::{End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{Moments, Point, Ring, Span, StressRadius};
+use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 use far_field::FarField;
 pub use interpolation_error::InterpolationError;
 use panel::Panel;
@@ -68,7 +65,6 @@ impl Tabulated {
     }
 
     fn through(radii: &[f64], heights: &[f64], whole: bool) -> Result<Tabulated, Error> {
-        #[expect(clippy::cast_precision_loss, reason = "a length is far below 2^52")]
         range::TABLE_POINTS.check(radii.len() as f64)?;
         if radii.len() != heights.len() {
             return Err(Error::Table { fault: TableFault::LengthsDiffer, index: radii.len().min(heights.len()) });
@@ -94,7 +90,7 @@ impl Tabulated {
 
     /// The profile whose slope is linear between knots, as far as g rises or `whole`.
     fn from_knots(knots: &[Knot], whole: bool) -> Result<Tabulated, Error> {
-        let build::Built { mut panels, falls_at } = build::panels(knots, whole);
+        let (mut panels, falls_at) = build::panels(knots, whole);
         let (level, load) = build::accumulate(&mut panels);
         let Some(last) = panels.last() else {
             return Err(match falls_at {
@@ -106,7 +102,7 @@ impl Tabulated {
         let leaves = panels.len().next_power_of_two();
         let mut tree = vec![(Moments::default(), 0.0); 2 * leaves];
         for (index, panel) in panels.iter().enumerate() {
-            tree[leaves + index] = (panel.moments(&panel.span()), panel.depth());
+            tree[leaves + index] = (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
         }
         for index in (1..leaves).rev() {
             tree[index] = join(tree[2 * index], tree[2 * index + 1]);
@@ -139,12 +135,7 @@ impl Tabulated {
 
     /// Radii, m, increasing, between which g' cannot hide a fall.
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
-        self.panels.iter().flat_map(|panel| {
-            let mut places = panel::places(panel.low, panel.high).to_vec();
-            places.extend([panel.low, panel.high]);
-            places.sort_by(f64::total_cmp);
-            places.into_iter().map(|t| (panel.base * panel.base + t * t).sqrt())
-        })
+        self.panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
 
     /// An estimate of the noise of the heights, m, from what a local cubic leaves over. A coarse table of a smooth surface has some too.
@@ -347,7 +338,7 @@ impl Shape for Tabulated {
         let (mut sum, mut above) = (0.0, 0.0);
         for (index, span) in high.into_iter().chain(whole.rev()).chain(low) {
             let panel = &self.panels[index];
-            sum += panel.displacement_integral(at, &span, above);
+            sum += smooth_coordinate::displacement_integral(panel, at, &span, above);
             above += smooth_coordinate::rise(panel, &span);
         }
         sum
@@ -366,11 +357,12 @@ impl Shape for Tabulated {
         let (low, whole, high) = self.parts(span);
         let mut sum = self.run(whole.start, whole.end);
         if let Some((index, span)) = low {
-            sum.0 = Moments::stack(self.panels[index].moments(&span), sum.0, sum.1);
+            sum.0 = Moments::stack(smooth_coordinate::moments(&self.panels[index], &span), sum.0, sum.1);
         }
         if let Some((index, span)) = high {
             let panel = &self.panels[index];
-            sum.0 = Moments::stack(sum.0, panel.moments(&span), smooth_coordinate::rise(panel, &span));
+            sum.0 =
+                Moments::stack(sum.0, smooth_coordinate::moments(panel, &span), smooth_coordinate::rise(panel, &span));
         }
         sum.0
     }

@@ -3,10 +3,8 @@
 //! Stored are q = g'/x and its primitive P = int t q dt (Clenshaw 1955; Mason & Handscomb 2003): g' is analytic in t, though not
 //! in x, and q keeps gamma = dg/dt = t q exact as t goes to zero.
 
-use super::super::super::double_double::DoubleDouble;
 use super::super::smooth_coordinate::SmoothCoordinate;
-use super::super::smooth_interval::SmoothInterval;
-use super::super::{Moments, Span, StressRadius};
+use super::{DoubleDouble, Span, gauss};
 
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
@@ -17,7 +15,7 @@ pub(super) struct Panel {
     /// k, m.
     pub(super) base: f64,
     /// Distance in t, along the imaginary axis, at which g is singular, m.
-    pub(super) singularity: f64,
+    singularity: f64,
     /// t where it begins and where it ends, m.
     pub(super) low: f64,
     pub(super) high: f64,
@@ -34,28 +32,21 @@ pub(super) struct Panel {
 
 /// Where the values that fix a series on low..high must be taken.
 pub(super) fn places(low: f64, high: f64) -> [f64; POINTS] {
-    let mut places = [0.0; POINTS];
-    for (index, place) in places.iter_mut().enumerate() {
-        *place = 0.5 * (low + high) + 0.5 * (high - low) * cosine(2 * index + 1);
-    }
-    places
+    std::array::from_fn(|index| 0.5 * (low + high) + 0.5 * (high - low) * cosine(2 * index + 1))
 }
 
 /// cos(pi index/48).
 fn cosine(index: usize) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "an index below 48^2")]
-    let index = (index % (4 * POINTS)) as f64;
-    (std::f64::consts::PI * index / 48.0).cos()
+    (std::f64::consts::PI * (index % (4 * POINTS)) as f64 / 48.0).cos()
 }
 
 /// The series with these values; what rounding alone keeps from zero is cut off.
 fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
-    let mut series = Vec::with_capacity(POINTS);
-    for order in 0..POINTS {
-        let sum: f64 =
-            values.iter().enumerate().map(|(i, value)| value * cosines[order * (2 * i + 1) % (4 * POINTS)]).sum();
-        series.push(sum / if order == 0 { 24.0 } else { 12.0 });
-    }
+    let term = |order: usize| {
+        let terms = values.iter().enumerate().map(|(i, value)| value * cosines[order * (2 * i + 1) % (4 * POINTS)]);
+        terms.sum::<f64>() / if order == 0 { 24.0 } else { 12.0 }
+    };
+    let mut series: Vec<f64> = (0..POINTS).map(term).collect();
     let size = series.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     while series.last().is_some_and(|a| a.abs() <= 1e-16 * size) {
         series.pop();
@@ -65,11 +56,7 @@ fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
 
 /// The cosines that all series need.
 pub(super) fn cosines() -> [f64; 4 * POINTS] {
-    let mut cosines = [0.0; 4 * POINTS];
-    for (index, value) in cosines.iter_mut().enumerate() {
-        *value = cosine(index);
-    }
-    cosines
+    std::array::from_fn(cosine)
 }
 
 impl Panel {
@@ -148,26 +135,18 @@ impl Panel {
         (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
     }
 
-    fn interval(&self, span: &Span) -> SmoothInterval {
-        SmoothInterval::new(span, self.base, self.singularity, f64::INFINITY, 2.0)
-    }
-
-    /// The moments of a span within.
-    pub(super) fn moments(&self, span: &Span) -> Moments {
-        let interval = self.interval(span);
-        interval.moments(|node| self.rise_at(node.t, interval.high, node.dt))
-    }
-
-    /// The displacement integral of a span within, `above` the level added to h.
-    pub(super) fn displacement_integral(&self, at: &StressRadius, span: &Span, above: f64) -> f64 {
-        let interval = self.interval(span);
-        interval.displacement_integral(span, at, above, |node| self.rise_at(node.t, interval.high, node.dt))
+    /// Values of t, increasing, between which q cannot hide a fall.
+    pub(super) fn slope_check_places(&self) -> Vec<f64> {
+        let mut checked = places(self.low, self.high).to_vec();
+        checked.extend([self.low, self.high]);
+        checked.sort_by(f64::total_cmp);
+        checked
     }
 
     /// int x dg from the beginning to t.
     pub(super) fn load_to(&self, t: f64) -> f64 {
         let mut load = 0.0;
-        super::super::gauss::Panel::fine(t - self.low).visit(|below, weight| {
+        gauss::Panel::fine(t - self.low).visit(|below, weight| {
             let t = t - below;
             load += weight * self.slope_at(t) * self.radius_at(t);
         });
@@ -184,9 +163,9 @@ impl Panel {
         for _ in 0..100 {
             let (value, slope) = f(t);
             if value > 0.0 {
-                high = t;
+                high = t
             } else {
-                low = t;
+                low = t
             }
             let newton = t - value / slope;
             let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
@@ -203,6 +182,10 @@ impl Panel {
 impl SmoothCoordinate for Panel {
     fn kink_radius(&self) -> f64 {
         self.base
+    }
+
+    fn singularity(&self) -> f64 {
+        self.singularity
     }
 
     fn level_at(&self, t: f64) -> f64 {
