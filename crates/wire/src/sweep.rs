@@ -11,6 +11,7 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range::{Quantity, Range};
 
 use super::check::{Faults, JsonPath};
+use super::definition::ContactDefinition;
 use super::json_value::{JsonValue, Pointer};
 use super::limits::{Items, Limit, Numbers, limits};
 use super::parse::{Document, Rejection, parse_value};
@@ -39,12 +40,7 @@ const SWEEP_NUMBERS: usize = 8_000_000;
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "base": {
-        "contact": {
-            "profile": {"type": "sphere", "radius": 0.01},
-            "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-            "friction": 0.3,
-            "preload": {"normal_force": 10.0}
-        },
+        "contact": ContactDefinition::example(),
         "path": {"falling_amplitude": {"reversals": 20}}, "steps": "last", "residual": true
     },
     "axes": [{"pointer": "/path/falling_amplitude/reversals", "linear": {"from": 1, "to": 100, "count": 100}}],
