@@ -18,8 +18,6 @@ pub mod check;
 pub mod client;
 pub mod definition;
 pub mod event;
-#[cfg(test)]
-mod extremes;
 pub mod hysteresis_loop;
 pub mod job;
 pub mod json_value;

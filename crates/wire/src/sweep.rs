@@ -1,6 +1,6 @@
 //! The body of `POST /sweep`, and its table.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
@@ -172,17 +172,15 @@ impl Document for SweepRequest {
             let (outputs, most) = (outputs.len(), SWEEP_NUMBERS);
             faults.add(at, format_args!("{points} points times {outputs} outputs: allowed are {most} numbers"));
         }
-        let mut names = HashSet::new();
         for (index, axis) in axes.iter().enumerate() {
-            if !names.insert(&axis.pointer) {
+            if axes.iter().take(index).any(|other| other.pointer == axis.pointer) {
                 faults.add(at.index(index).member("pointer"), "another axis has the same pointer");
             }
         }
         if faults.is_empty() {
             find_kinds(&self.base.0, &mut axes, &mut faults);
         }
-        let draft = CheckedSweep { request: self, axes, outputs, points };
-        faults.done(Some(draft))
+        faults.done(Some(CheckedSweep { request: self, axes, outputs, points }))
     }
 }
 
