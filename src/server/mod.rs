@@ -106,7 +106,7 @@ fn accept(
     }
     let limits = *limiter.limits();
     let limits = if permit.is_spare() { ConnectionLimits { head: SPARE_TIME, ..limits } } else { limits };
-    let number = permit.number();
+    let number = permit.number;
     let task = tokio::spawn(serve_connection(stream, permit, limits, Arc::clone(service), closing.subscribe()));
     limiter.started(number, task.abort_handle());
 }

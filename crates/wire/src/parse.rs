@@ -128,11 +128,8 @@ fn pointer(path: &Path) -> String {
 
 /// Replaces Rust's names of types in messages of serde by JSON's.
 fn in_json_terms(message: &str) -> String {
-    let mut text = message.replacen("invalid type: map", "invalid type: object", 1).replacen(
-        "invalid type: sequence",
-        "invalid type: array",
-        1,
-    );
+    let text = message.replacen("invalid type: map", "invalid type: object", 1);
+    let mut text = text.replacen("invalid type: sequence", "invalid type: array", 1);
     if let Some((head, tail)) = text.rsplit_once(", expected ") {
         let plain = match tail {
             "f64" => "a number",

@@ -62,8 +62,8 @@ pub struct ConnectionCounts {
 /// other request is refused.
 pub struct ConnectionPermit {
     limiter: ConnectionLimiter,
-    // None for a spare one.
-    number: Option<u64>,
+    /// Its number; none for a spare one, which is never closed to make room.
+    pub number: Option<u64>,
     /// What it is doing.
     pub activity: Arc<ConnectionActivity>,
 }
@@ -185,11 +185,6 @@ impl ConnectionPermit {
     /// Whether it is a spare one.
     pub fn is_spare(&self) -> bool {
         self.number.is_none()
-    }
-
-    /// Its number; none for a spare one, which is never closed to make room.
-    pub fn number(&self) -> Option<u64> {
-        self.number
     }
 }
 
