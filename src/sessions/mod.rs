@@ -95,7 +95,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::Store`] if it cannot.
     pub async fn ready(&self) -> Result<(), SessionError> {
-        self.common.store.ready().await.map_err(SessionError::Store)
+        Ok(self.common.store.ready().await?)
     }
 
     /// Bytes of the cached states, and how many sessions they are.

@@ -33,6 +33,7 @@ use uuid::Uuid;
 use stickslip_wire::SessionSummary;
 
 use super::rows;
+use super::schema::SchemaError;
 use super::{
     Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
 };
@@ -42,7 +43,6 @@ use columns::{from_bigint, reader, to_bigint};
 use connect::ConnectTarget;
 use fault::{Backoff, Fault};
 use request::Change;
-use schema::SchemaError;
 use writer::Writer;
 
 /// How long a start waits for the database.
@@ -90,7 +90,7 @@ impl PostgresStore {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let address = target.address();
         let checked = async { schema::check(&target.open().await?).await };
-        checked.await.map_err(|error: SchemaError| {
+        checked.await.map_err(|error: SchemaError<_>| {
             StoreError::Failed(format!("{address}: {}", Fault::from(error).into_store_error()))
         })?;
         let pool = Arc::new(ClientPool::new(target, false)?);
@@ -131,8 +131,8 @@ async fn prepare(target: &ConnectTarget) -> Result<bool> {
     }
 }
 
-impl From<SchemaError> for Fault {
-    fn from(error: SchemaError) -> Fault {
+impl From<SchemaError<tokio_postgres::Error>> for Fault {
+    fn from(error: SchemaError<tokio_postgres::Error>) -> Fault {
         match error {
             SchemaError::Database(error) => error.into(),
             SchemaError::Version(error) => Fault::Refused(StoreError::Failed(error.to_string())),
