@@ -13,6 +13,9 @@ use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
+use jobs::StoredJob;
+
+use super::jobs::ChunkQueue;
 use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
@@ -25,8 +28,7 @@ const RECEIPT_OVERHEAD: usize = 256;
 pub struct MemoryStore {
     // A std mutex: it is held for a lookup, a push or a page of copies, never across an await.
     inner: Mutex<Inner>,
-    // Locked after the others, where both are.
-    jobs: jobs::Jobs,
+    queue: ChunkQueue,
     changes: Changes,
 }
 
@@ -36,6 +38,7 @@ struct Inner {
     receipts: Receipts,
     // Only what expired: a deleted session leaves nothing behind.
     expired: HashMap<Uuid, Tenant>,
+    jobs: HashMap<Uuid, StoredJob>,
 }
 
 struct Stored {
@@ -219,7 +222,7 @@ impl Store for MemoryStore {
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
-        self.jobs.purge();
+        self.purge_jobs();
         let mut inner = self.lock();
         inner.receipts.purge();
         let Some(since) = idle_since else { return Ok(0) };

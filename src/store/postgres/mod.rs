@@ -55,7 +55,7 @@ pub struct PostgresStore {
     pool: Arc<ClientPool>,
     writer: Writer,
     changes: Arc<Changes>,
-    listener: AbortHandle,
+    listener: Option<AbortHandle>,
 }
 
 impl PostgresStore {
@@ -75,11 +75,10 @@ impl PostgresStore {
         if !announces {
             tracing::warn!("the database has no pg_notify: listeners read changes by other processes once a second");
         }
-        let pool = Arc::new(ClientPool::new(target, announces)?);
-        let changes = Arc::new(Changes::default());
-        let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
-        let listener = tokio::spawn(listen::listen(Arc::clone(&pool), Arc::clone(&changes))).abort_handle();
-        Ok(PostgresStore { pool, writer, changes, listener })
+        let mut store = PostgresStore::start(target, announces)?;
+        let listening = listen::listen(Arc::clone(&store.pool), Arc::clone(&store.changes));
+        store.listener = Some(tokio::spawn(listening).abort_handle());
+        Ok(store)
     }
 
     /// Connects to a database for reading, while other processes may use it. Its tables must exist.
@@ -93,11 +92,14 @@ impl PostgresStore {
         checked.await.map_err(|error: SchemaError<_>| {
             StoreError::Failed(format!("{address}: {}", Fault::from(error).into_store_error()))
         })?;
-        let pool = Arc::new(ClientPool::new(target, false)?);
-        let changes = Arc::new(Changes::default());
+        PostgresStore::start(target, false)
+    }
+
+    /// A store that does not listen yet.
+    fn start(target: ConnectTarget, announces: bool) -> Result<PostgresStore> {
+        let (pool, changes) = (Arc::new(ClientPool::new(target, announces)?), Arc::default());
         let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
-        let listener = tokio::spawn(std::future::pending::<()>()).abort_handle();
-        Ok(PostgresStore { pool, writer, changes, listener })
+        Ok(PostgresStore { pool, writer, changes, listener: None })
     }
 
     /// Which database it is, without the password.
@@ -109,7 +111,7 @@ impl PostgresStore {
 
 impl Drop for PostgresStore {
     fn drop(&mut self) {
-        self.listener.abort();
+        self.listener.iter().for_each(AbortHandle::abort);
     }
 }
 

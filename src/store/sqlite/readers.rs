@@ -47,10 +47,8 @@ impl Readers {
         let idle = Arc::clone(&self.idle);
         let task = spawn_blocking(move || {
             let connection = idle.take()?;
-            let found = connection
-                .unchecked_transaction()
-                .map_err(Fault::from)
-                .and_then(|transaction| question(&transaction));
+            let found =
+                connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
             idle.put(connection);
             drop(permit);
             found
