@@ -4,7 +4,6 @@
 //! cannot, and it is hashed for every request.
 
 mod entry;
-mod role;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,7 +14,6 @@ use subtle::ConstantTimeEq as _;
 use crate::store::Tenant;
 
 pub use entry::{InvalidEntry, NewKey, new_key};
-pub use role::{Role, Roles};
 
 /// Bytes of a key that a client may present. A shorter one could be guessed.
 const KEY_LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
@@ -25,15 +23,49 @@ const PREFIX: usize = 8;
 /// SHA-256 of a key.
 type Hash = [u8; 32];
 
+/// What a key allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Create, move, fork and delete contacts, and all that [`Role::Read`] allows.
+    Write,
+    /// Read contacts, and run simulations that are not stored.
+    Read,
+    /// Read the metrics of the service, and nothing else.
+    Metrics,
+}
+
+impl Role {
+    /// All roles.
+    pub const ALL: [Role; 3] = [Role::Write, Role::Read, Role::Metrics];
+
+    /// Its name in a file of keys.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Write => "write",
+            Role::Read => "read",
+            Role::Metrics => "metrics",
+        }
+    }
+}
+
 /// The holder of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
     /// The name of the key, for the log.
     pub name: Arc<str>,
     /// What it allows.
-    pub roles: Roles,
+    pub roles: Vec<Role>,
     /// Whose contacts it shows.
     pub tenant: Tenant,
+}
+
+impl Holder {
+    /// Whether the key allows what a role is for.
+    #[must_use]
+    pub fn allows(&self, role: Role) -> bool {
+        self.roles.contains(&role) || (role == Role::Read && self.roles.contains(&Role::Write))
+    }
 }
 
 /// All known keys.

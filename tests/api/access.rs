@@ -398,9 +398,9 @@ fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
     assert_eq!(keys.count(), 2);
     let holder = keys.holder(bench.key.as_bytes()).unwrap();
     assert_eq!((&*holder.name, &holder.tenant), ("bench", &Tenant::new("lab")));
-    assert!(holder.roles.allow(Role::Write) && holder.roles.allow(Role::Read) && !holder.roles.allow(Role::Metrics));
+    assert!(holder.allows(Role::Write) && holder.allows(Role::Read) && !holder.allows(Role::Metrics));
     let holder = keys.holder(graph.key.as_bytes()).unwrap();
-    assert!(!holder.roles.allow(Role::Write) && holder.roles.allow(Role::Read) && holder.roles.allow(Role::Metrics));
+    assert!(!holder.allows(Role::Write) && holder.allows(Role::Read) && holder.allows(Role::Metrics));
     assert_eq!(holder.tenant, Tenant::default());
     let mut other = bench.key.clone();
     other.pop();
