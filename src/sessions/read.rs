@@ -5,8 +5,7 @@ use std::sync::Arc;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::Nanoseconds;
-use crate::admission::Reservation;
+use crate::admission::{Nanoseconds, Reservation};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{self, stresses};
