@@ -52,7 +52,7 @@ impl Protocol {
             return Err(problem(Problem::at(Code::InvalidInput, "/start/contact_id", "needs a running service")));
         };
         let reply: ProtocolReply =
-            simulation::protocol_for(&made.0, &made.1, first, &task, &Stop::default()).map_err(problem)?;
+            simulation::protocol_for(&made.1, first, &task, &Stop::default()).map_err(problem)?;
         print(json(&reply))
     }
 

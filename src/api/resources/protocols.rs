@@ -52,7 +52,7 @@ pub async fn find_protocol(
             held.resize(&app.pool, bytes).await?;
             let cost = cost::of_protocol(&setup.profile, &task, 0);
             let work = move || {
-                let found = simulation::protocol_for(&definition, &setup, first, &task, &stop)?;
+                let found = simulation::protocol_for(&setup, first, &task, &stop)?;
                 reply::written(&found)
             };
             Ok(held.on(reply::json(app.pool.run(cost, work).await??)))
