@@ -1,12 +1,10 @@
 //! Entries of a file of keys, and new keys.
 
-use std::fmt::Write as _;
-
 use sha2::{Digest as _, Sha256};
 
 use crate::store::Tenant;
 
-use super::{Hash, Holder, Role, Roles};
+use super::{Hash, Holder, Role};
 
 /// What every key begins with, so that a leaked key can be recognised.
 const PREFIX: &str = "stickslip_";
@@ -61,10 +59,11 @@ pub(super) fn parse(entry: &str) -> Result<(Hash, Holder), String> {
     if !is_name(tenant) {
         return Err(invalid_name("the name of a tenant"));
     }
-    let roles: Option<Vec<Role>> = roles.split('+').map(Role::of_name).collect();
+    let role = |name| Role::ALL.into_iter().find(|role| role.name() == name);
+    let roles: Option<Vec<Role>> = roles.split('+').map(role).collect();
     let roles = roles.ok_or("expected roles out of write, read, metrics, with a + between them")?;
     let hash = bytes(hash).ok_or("expected the SHA-256 of the key as 64 hexadecimal digits")?;
-    let holder = Holder { name: name.into(), roles: Roles::new(&roles), tenant: Tenant::new(tenant) };
+    let holder = Holder { name: name.into(), roles, tenant: Tenant::new(tenant) };
     Ok((hash, holder))
 }
 
@@ -77,11 +76,7 @@ fn is_name(text: &str) -> bool {
 }
 
 fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn bytes(hexadecimal: &str) -> Option<Hash> {

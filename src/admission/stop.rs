@@ -95,28 +95,3 @@ impl Drop for StopOnDrop {
         self.0.0.raised.store(true, Ordering::Relaxed);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::time::Duration;
-
-    use super::{Interrupted, Stop};
-
-    #[test]
-    fn work_ends_with_the_guard() {
-        let (stop, guard) = Stop::guarded();
-        assert_eq!(stop.check(), Ok(()));
-        drop(guard);
-        assert_eq!(stop.check(), Err(Interrupted::Abandoned));
-    }
-
-    #[test]
-    fn the_time_limit_runs_from_the_first_check() {
-        let allowed = Duration::from_millis(20);
-        let (stop, _guard) = Stop::within(allowed);
-        std::thread::sleep(2 * allowed);
-        assert_eq!(stop.check(), Ok(()));
-        std::thread::sleep(2 * allowed);
-        assert_eq!(stop.check(), Err(Interrupted::TimeLimit(allowed)));
-    }
-}

@@ -160,7 +160,7 @@ pub fn accepts_events(headers: &HeaderMap) -> bool {
 }
 
 /// The members of a comma-separated header, which may itself occur several times.
-fn list_members<'h>(headers: &'h HeaderMap, name: &'static str) -> impl Iterator<Item = &'h str> {
+pub fn list_members<'h>(headers: &'h HeaderMap, name: &'static str) -> impl Iterator<Item = &'h str> {
     headers.get_all(name).iter().filter_map(|line| line.to_str().ok()).flat_map(|line| line.split(','))
 }
 

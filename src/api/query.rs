@@ -106,10 +106,9 @@ impl QueryReader {
 
     /// The parameter `format`, one of `formats`.
     pub fn format(&mut self, formats: &[Format]) -> Option<Format> {
-        let named = |text: &str| formats.iter().copied().find(|format| format.name() == text);
         let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
         let expected = format!("one of `{}`", names.join("`, `"));
-        self.take("format", &expected, named)
+        self.take("format", &expected, |text| Format::named(text, formats))
     }
 
     /// The value, if nothing is wrong and every parameter has been taken.

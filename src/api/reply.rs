@@ -10,6 +10,7 @@ use crate::admission::Reservation;
 use crate::otlp;
 use crate::store::Reply;
 
+use super::params::list_members;
 use super::problem::Problem;
 
 /// Number of headers of a finished reply, so that the map need not grow step by step.
@@ -42,11 +43,8 @@ pub fn tagged(mut response: Response, tag: &str) -> Response {
 
 /// Whether the client already has this version, according to `If-None-Match`.
 pub fn is_current(headers: &HeaderMap, tag: &str) -> bool {
-    let given = headers.get_all(header::IF_NONE_MATCH).iter().filter_map(|line| line.to_str().ok());
-    given
-        .flat_map(|line| line.split(','))
-        .map(str::trim)
-        .any(|known| known == "*" || known.strip_prefix("W/").unwrap_or(known) == tag)
+    let mut known = list_members(headers, "if-none-match").map(str::trim);
+    known.any(|known| known == "*" || known.strip_prefix("W/").unwrap_or(known) == tag)
 }
 
 /// 304: the client already has this version.

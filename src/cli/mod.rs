@@ -10,20 +10,21 @@ mod protocol;
 mod report;
 mod serve;
 mod settings;
-mod simulate;
 mod sweep;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stickslip::api;
+use stickslip::admission::Stop;
+use stickslip::{api, simulation};
 use stickslip_report::figures;
+use stickslip_wire::{self as wire, SimulateRequest};
 
 use backup::Backup;
 use check::Check;
 use healthcheck::Healthcheck;
-use io::print;
+use io::{json, print, problem, read};
 use key::Key;
 use protocol::Protocol;
 use report::Report;
@@ -104,7 +105,7 @@ impl Command {
         match self {
             Command::Serve(options) => serve::serve(options),
             Command::Config(_) => print(settings),
-            Command::Simulate { file } => simulate::simulate(&file),
+            Command::Simulate { file } => simulate(&file),
             Command::Protocol(protocol) => protocol.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
@@ -118,4 +119,10 @@ impl Command {
             }
         }
     }
+}
+
+/// Reads the body of `POST /simulate` and prints the reply.
+fn simulate(file: &Path) -> Result<(), String> {
+    let simulation = wire::read::<SimulateRequest>(&read(file)?).map_err(problem)?;
+    print(json(&simulation::simulate(&simulation, &Stop::default()).map_err(problem)?))
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::{Map, Value, json};
 use stickslip::admission::Stop;
 use stickslip::api::problem::{Code, Problem};
@@ -28,11 +28,11 @@ pub struct Protocol {
     #[arg(long)]
     target: Option<f64>,
     /// Kind of protocol.
-    #[arg(long)]
-    kind: Option<KindName>,
+    #[arg(long, value_parser = ["linear", "equal-peaks", "minimax"])]
+    kind: Option<String>,
     /// Where the path ends.
-    #[arg(long)]
-    end: Option<End>,
+    #[arg(long, value_parser = ["displacement-zero", "force-zero", "free"])]
+    end: Option<String>,
     /// First displacement, m [default: that of gross slip].
     #[arg(long)]
     start: Option<f64>,
@@ -44,20 +44,6 @@ pub struct Protocol {
     friction_error: Option<f64>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum KindName {
-    Linear,
-    EqualPeaks,
-    Minimax,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum End {
-    DisplacementZero,
-    ForceZero,
-    Free,
-}
-
 impl Protocol {
     /// Finds the protocol and prints the reply.
     pub fn run(self) -> Result<(), String> {
@@ -66,16 +52,28 @@ impl Protocol {
             return Err(problem(Problem::at(Code::InvalidInput, "/start/contact_id", "needs a running service")));
         };
         let reply: ProtocolReply =
-            simulation::protocol_for(&made.0, &made.1, first, &task, &Stop::default()).map_err(problem)?;
+            simulation::protocol_for(&made.1, first, &task, &Stop::default()).map_err(problem)?;
         print(json(&reply))
     }
 
     /// The body: the file, with the members that flags replace.
     fn body(&self) -> Result<Vec<u8>, String> {
+        let name = |value: &String| json!(value.replace('-', "_"));
+        let flags = [
+            ("reversals", self.reversals.map(|value| json!(value))),
+            ("target", self.target.map(|value| json!(value))),
+            ("kind", self.kind.as_ref().map(name)),
+            ("end", self.end.as_ref().map(name)),
+            ("start", self.start.map(|value| json!({"displacement": value}))),
+        ];
+        let errors = [("amplitude_error", self.amplitude_error), ("friction_error", self.friction_error)];
+        let has_flags = self.contact.is_some()
+            || flags.iter().any(|(_, value)| value.is_some())
+            || errors.iter().any(|(_, value)| value.is_some());
         let file = self.file.as_deref().map(read).transpose()?;
         let mut body = match file {
             // Unchanged, so that a fault is reported at its place.
-            Some(file) if !self.has_flags() => return Ok(file),
+            Some(file) if !has_flags => return Ok(file),
             Some(file) => parsed(&file)?,
             None => Value::Object(Map::new()),
         };
@@ -86,32 +84,15 @@ impl Protocol {
         if self.reversals.is_some() || self.target.is_some() {
             members.retain(|name, _| name != "reversals" && name != "target");
         }
-        let name = |value: clap::builder::PossibleValue| json!(value.get_name().replace('-', "_"));
         let mut robustness = members.get("robustness").cloned().unwrap_or_else(|| json!({}));
-        for (name, value) in [("amplitude_error", self.amplitude_error), ("friction_error", self.friction_error)] {
+        for (name, value) in errors {
             if let Some(value) = value {
                 robustness[name] = json!(value);
                 members.insert("robustness".to_owned(), robustness.clone());
             }
         }
-        let flags = [
-            ("reversals", self.reversals.map(|value| json!(value))),
-            ("target", self.target.map(|value| json!(value))),
-            ("kind", self.kind.and_then(|kind| kind.to_possible_value()).map(name)),
-            ("end", self.end.and_then(|end| end.to_possible_value()).map(name)),
-            ("start", self.start.map(|value| json!({"displacement": value}))),
-        ];
         members.extend(flags.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
         serde_json::to_vec(&body).map_err(|error| error.to_string())
-    }
-
-    fn has_flags(&self) -> bool {
-        let numbers = [self.target, self.start, self.amplitude_error, self.friction_error];
-        self.contact.is_some()
-            || self.reversals.is_some()
-            || self.kind.is_some()
-            || self.end.is_some()
-            || numbers.iter().any(Option::is_some)
     }
 }
 

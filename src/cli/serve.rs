@@ -33,11 +33,9 @@ const SHUTDOWN_TIMEOUT: Duration = Duration::from_millis(500);
 /// How long the process may take at its end to release the chunks of jobs under way.
 const JOB_RELEASE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// The shortest time after which an idle contact may expire.
-const SHORTEST_IDLE_TIME: Duration = Duration::from_secs(1);
-
-/// The shortest lease on a chunk of a job: it must be renewed in time.
-const SHORTEST_LEASE: Duration = Duration::from_secs(1);
+/// The shortest time after which an idle contact may expire, and the shortest lease on a chunk of a job: it must be renewed in
+/// time.
+const SHORTEST_TIME: Duration = Duration::from_secs(1);
 
 /// The settings. Each can be a flag, a variable or an entry of the configuration file (`settings`).
 #[derive(Args)]
@@ -65,11 +63,12 @@ pub struct Serve {
     #[arg(long, env = "STICKSLIP_CACHE_BYTES", default_value_t = ByteSize::b(sessions::CAPACITY as u64))]
     cache_bytes: ByteSize,
     /// Delete contacts that have not moved for this time, such as 30d or 12h [default: never].
-    #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = idle_time)]
+    #[arg(long, env = "STICKSLIP_EXPIRE_AFTER", value_parser = time)]
     expire_after: Option<Duration>,
     /// How long a process may be silent before others on the same database take over its chunks of jobs.
-    #[arg(long, env = "STICKSLIP_JOB_LEASE", default_value_t = humantime::Duration::from(jobs::LEASE), value_parser = lease)]
-    job_lease: humantime::Duration,
+    #[arg(long, env = "STICKSLIP_JOB_LEASE", default_value = humantime::format_duration(jobs::LEASE).to_string(),
+        value_parser = time)]
+    job_lease: Duration,
     #[command(flatten)]
     limits: Limits,
     /// What to log, as a filter: `info`, `warn`, `stickslip=debug`.
@@ -167,14 +166,9 @@ fn access(options: &Serve) -> Result<Access, String> {
     Ok(Access { keys: keys.map(Arc::new), origins: origins.collect() })
 }
 
-fn idle_time(text: &str) -> Result<Duration, String> {
+fn time(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
-    if time < SHORTEST_IDLE_TIME { Err(format!("at least {SHORTEST_IDLE_TIME:?}")) } else { Ok(time) }
-}
-
-fn lease(text: &str) -> Result<humantime::Duration, String> {
-    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
-    if time < SHORTEST_LEASE { Err(format!("at least {SHORTEST_LEASE:?}")) } else { Ok(time.into()) }
+    if time < SHORTEST_TIME { Err(format!("at least {SHORTEST_TIME:?}")) } else { Ok(time) }
 }
 
 fn filter(text: &str) -> Result<String, String> {
@@ -201,7 +195,7 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);
-    let working = tokio::spawn(jobs.clone().work(options.job_lease.into()));
+    let working = tokio::spawn(jobs.clone().work(options.job_lease));
     tokio::spawn(sessions.clone().run_expiry_loop(options.expire_after));
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
     print(format_args!("stickslip listens on http://{address}, try /docs"))?;

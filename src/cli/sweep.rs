@@ -3,7 +3,8 @@
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use stickslip::admission::Stop;
 use stickslip::api::formats::{Format, tables};
 use stickslip::simulation::{Sweep as Plan, SweepResult, Workers};
@@ -20,21 +21,11 @@ pub struct Sweep {
     /// The file, or - for standard input.
     file: PathBuf,
     /// Format of the table.
-    #[arg(long, value_enum, default_value_t = OutputFormat::Csv)]
-    format: OutputFormat,
+    #[arg(long, value_parser = PossibleValuesParser::new(Format::TABLES.map(Format::name)), default_value = "csv")]
+    format: String,
     /// Number of threads [default: the number of cores].
     #[arg(long)]
     threads: Option<usize>,
-}
-
-/// The formats by name.
-#[derive(Clone, Copy, ValueEnum)]
-enum OutputFormat {
-    Columns,
-    Rows,
-    Csv,
-    Ndjson,
-    Arrow,
 }
 
 impl Sweep {
@@ -55,13 +46,7 @@ impl Sweep {
         if result.failed > 0 {
             eprintln!("{} of {points} points failed; the first: {}", result.failed, json(&result.failures[0]));
         }
-        let format = match self.format {
-            OutputFormat::Columns => Format::Columns,
-            OutputFormat::Rows => Format::Rows,
-            OutputFormat::Csv => Format::Csv,
-            OutputFormat::Ndjson => Format::Ndjson,
-            OutputFormat::Arrow => Format::Arrow,
-        };
+        let format = Format::named(&self.format, &Format::TABLES).unwrap_or(Format::Csv);
         let mut blocks = tables::sweep(plan.checked(), result).blocks(format);
         write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))
     }

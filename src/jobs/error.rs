@@ -4,7 +4,7 @@ use uuid::Uuid;
 
 use crate::admission::PoolError;
 use crate::simulation::SweepError;
-use crate::store::{RetryError, StoreError};
+use crate::store::StoreError;
 
 /// Why a sweep or a job has no result.
 #[derive(Debug, thiserror::Error)]
@@ -31,9 +31,6 @@ pub enum JobError {
         /// The allowed work, s.
         allowed: u64,
     },
-    /// The idempotency key belongs to another request.
-    #[error("the idempotency key has been used for another request")]
-    KeyReused,
     /// The limit of clients that follow jobs is reached.
     #[error("{} clients follow jobs, which is the limit", super::STREAMS)]
     TooManyStreams,
@@ -45,17 +42,8 @@ pub enum JobError {
     Pool(#[from] PoolError),
     /// The storage refused or failed.
     #[error(transparent)]
-    Store(StoreError),
+    Store(#[from] StoreError),
     /// Stored data cannot be read: a fault of this program.
     #[error("{0}")]
     Broken(String),
-}
-
-impl From<RetryError> for JobError {
-    fn from(error: RetryError) -> JobError {
-        match error {
-            RetryError::KeyReused => JobError::KeyReused,
-            RetryError::Store(error) => JobError::Store(error),
-        }
-    }
 }

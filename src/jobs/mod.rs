@@ -16,8 +16,7 @@ use prometheus::{IntCounter, IntGauge, Opts};
 use tokio::sync::Notify;
 use uuid::Uuid;
 
-use crate::admission::{INLINE, Nanoseconds};
-use crate::admission::{Pool, Stop};
+use crate::admission::{INLINE, Nanoseconds, Pool, Stop};
 use crate::metrics::{counter, gauge};
 use crate::simulation::{Sweep, SweepResult, Workers};
 use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};

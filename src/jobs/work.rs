@@ -6,8 +6,7 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::INLINE;
-use crate::admission::{PoolError, Stop};
+use crate::admission::{INLINE, PoolError, Stop};
 use crate::metrics::Counted;
 use crate::simulation::{Sweep, SweepError, SweepResult};
 use crate::store::{ChunkResult, Claim, Job, StoreError};

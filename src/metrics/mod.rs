@@ -64,32 +64,3 @@ impl Drop for Counted<'_> {
         self.0.dec();
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{Counted, gauge, histogram};
-    use prometheus::core::Collector as _;
-    use prometheus::{Opts, TextEncoder};
-
-    #[test]
-    fn an_observation_on_a_bound_counts_as_below_it() {
-        let histogram = histogram(Opts::new("wait_seconds", "Waits.").const_label("by", "\"me\""), &[1.0, 2.5]);
-        [0.5, 1.0, 1.5, 2.5, 3.0].into_iter().for_each(|value| histogram.observe(value));
-        let expected = "# HELP wait_seconds Waits.\n# TYPE wait_seconds histogram\n\
-            wait_seconds_bucket{by=\"\\\"me\\\"\",le=\"1\"} 2\nwait_seconds_bucket{by=\"\\\"me\\\"\",le=\"2.5\"} 4\n\
-            wait_seconds_bucket{by=\"\\\"me\\\"\",le=\"+Inf\"} 5\nwait_seconds_sum{by=\"\\\"me\\\"\"} 8.5\n\
-            wait_seconds_count{by=\"\\\"me\\\"\"} 5\n";
-        assert_eq!(TextEncoder::new().encode_to_string(&histogram.collect()).unwrap(), expected);
-    }
-
-    #[test]
-    fn a_gauge_falls_even_after_a_panic() {
-        let gauge = gauge(Opts::new("connections", "Connections."));
-        let caught = std::panic::catch_unwind(|| {
-            let _counted = Counted::by(&gauge);
-            assert_eq!(gauge.get(), 2, "not yet");
-        });
-        assert!(caught.is_err());
-        assert_eq!(gauge.get(), 0);
-    }
-}

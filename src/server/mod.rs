@@ -19,7 +19,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use connections::{Admission, ConnectionCounts, ConnectionPermit, Socket};
+use connections::{ConnectionCounts, ConnectionPermit, Socket};
 use limits::{BUFFER, GRACE, HEAD, SPARE_TIME};
 
 pub use connections::{ConnectionLimiter, ConnectionLimits, Service};
@@ -99,18 +99,14 @@ fn accept(
     service: &Arc<Service>,
     closing: &watch::Sender<()>,
 ) {
-    let permit = match limiter.admit(address.ip()) {
-        Admission::Admitted(permit) | Admission::Spare(permit) => permit,
-        // Closed at once.
-        Admission::Refused => return,
-    };
+    let Some(permit) = limiter.admit(address.ip()) else { return };
     // Replies are short and written at once: waiting to fill a packet would only delay them.
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!(%error, "TCP_NODELAY was refused");
     }
     let limits = *limiter.limits();
     let limits = if permit.is_spare() { ConnectionLimits { head: SPARE_TIME, ..limits } } else { limits };
-    let number = permit.number();
+    let number = permit.number;
     let task = tokio::spawn(serve_connection(stream, permit, limits, Arc::clone(service), closing.subscribe()));
     limiter.started(number, task.abort_handle());
 }

@@ -182,25 +182,20 @@ fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done
     let warnings = new_warnings(&live.contact, before, largest, excess);
     let id = live.session.id;
     drop(solving);
-    let states = records.iter().map(|record| record.state);
-    let body = match (&advance.plan, advance.steps) {
+    let shown = |steps: Steps| match steps {
+        Steps::All => records.iter().map(|record| record.state).collect(),
+        Steps::Last => vec![live.contact.state().into()],
+    };
+    let body = match &advance.plan {
         _ if let (Some(relax), Some(protocol)) = (advance.relax, relaxed) => {
-            let steps = relax.steps.map(|steps| match steps {
-                Steps::All => states.collect(),
-                Steps::Last => vec![live.contact.state().into()],
-            });
-            written(&RelaxReply { id, sequence, dry_run: false, steps, protocol })?
+            written(&RelaxReply { id, sequence, dry_run: false, steps: relax.steps.map(shown), protocol })?
         }
-        (Plan::Single(_), _) => {
+        Plan::Single(_) => {
             let state = live.contact.state().into();
             written(&MoveReply { id, sequence, state, stress, accuracy, warnings })?
         }
-        (_, Steps::All) => {
-            let steps = states.collect();
-            written(&PathReply { id, sequence, steps, stress, protocol, accuracy, warnings })?
-        }
-        (_, Steps::Last) => {
-            let steps = vec![live.contact.state().into()];
+        _ => {
+            let steps = shown(advance.steps);
             written(&PathReply { id, sequence, steps, stress, protocol, accuracy, warnings })?
         }
     };

@@ -8,12 +8,11 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hashlink::LruCache;
-use prometheus::{IntCounter, Opts};
+use prometheus::IntCounter;
 use tokio::sync::{Mutex as SessionLock, OwnedMutexGuard};
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::metrics::counter;
 use crate::store::Tenant;
 
 use super::loaded::LoadedSession;
@@ -68,10 +67,8 @@ struct LockUser {
 }
 
 impl Cache {
-    /// A cache of at most this many bytes.
-    pub(super) fn new(capacity: usize) -> Cache {
-        let hits = Opts::new("stickslip_cache_hits_total", "Times that a contact that was asked for was in memory.");
-        let hits = counter(hits);
+    /// A cache of at most this many bytes, and the counter of its hits.
+    pub(super) fn new(capacity: usize, hits: IntCounter) -> Cache {
         let states = States { by_key: LruCache::new_unbounded(), bytes: 0 };
         Cache { locks: Mutex::default(), states: Mutex::new(states), capacity, hits }
     }
@@ -91,11 +88,6 @@ impl Cache {
     /// How many bytes there may be.
     pub(super) fn capacity(&self) -> usize {
         self.capacity
-    }
-
-    /// How often a state was cached.
-    pub(super) fn hits(&self) -> &IntCounter {
-        &self.hits
     }
 
     /// Bytes of the cached states, and how many they are.

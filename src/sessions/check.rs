@@ -7,9 +7,9 @@ use std::fmt;
 
 use uuid::Uuid;
 
-use crate::store::{Record, Session, Snapshot, Store, StoreError};
+use crate::store::{Record, Snapshot, Store, StoreError};
 use stickslip_mechanics::Contact;
-use stickslip_wire::{Faults, JsonPath, State};
+use stickslip_wire::State;
 
 use super::loaded::LoadedSession;
 use super::snapshot::{SnapshotState, compare};
@@ -141,8 +141,8 @@ impl Check<'_> {
         if let Some(ahead) = snapshot.as_ref().map(|snapshot| snapshot.sequence).filter(|taken| *taken > sequence) {
             self.found(Some(id), format!("its snapshot is of move {ahead}, and the last one stored is {sequence}"));
         }
-        match start(session) {
-            Ok(contact) => self.replay(id, sequence, contact, snapshot).await,
+        match LoadedSession::of_stored(session) {
+            Ok(live) => self.replay(id, sequence, live.contact, snapshot).await,
             Err(why) => {
                 self.found(Some(id), format!("its definition is invalid: {why}"));
                 Ok(())
@@ -214,14 +214,6 @@ impl Check<'_> {
             }
         }
     }
-}
-
-/// The contact before its first move.
-fn start(session: Session) -> Result<Contact, String> {
-    let mut faults = Faults::default();
-    let setup = session.definition.check(JsonPath::Root, &mut faults);
-    let setup = faults.done(setup).map_err(|error| error.to_string())?;
-    LoadedSession::start(session, setup).map(|live| live.contact).map_err(|error| error.to_string())
 }
 
 /// How many numbers a state has.

@@ -4,7 +4,7 @@ use uuid::Uuid;
 
 use crate::admission::PoolError;
 use crate::simulation;
-use crate::store::{RetryError, StoreError};
+use crate::store::StoreError;
 
 /// Why an operation on a session failed. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
@@ -46,25 +46,13 @@ pub enum SessionError {
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
     Failure(#[from] simulation::Failure),
-    /// The idempotency key belongs to another request.
-    #[error("the idempotency key has been used for another request")]
-    KeyReused,
     /// No solver is free, or one failed.
     #[error(transparent)]
     Pool(#[from] PoolError),
-    /// The storage failed.
+    /// The storage refused or failed.
     #[error(transparent)]
-    Store(StoreError),
+    Store(#[from] StoreError),
     /// Stored data cannot be replayed, or a reply cannot be written: a fault of this program.
     #[error("{0}")]
     Broken(String),
-}
-
-impl From<RetryError> for SessionError {
-    fn from(error: RetryError) -> SessionError {
-        match error {
-            RetryError::KeyReused => SessionError::KeyReused,
-            RetryError::Store(error) => SessionError::Store(error),
-        }
-    }
 }

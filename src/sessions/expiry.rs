@@ -20,7 +20,7 @@ impl Sessions {
     pub async fn purge_expired(&self, expire_after: Option<Duration>) -> Result<u64, SessionError> {
         let now = Timestamp::now();
         let idle_since = expire_after.map(|idle| now.checked_sub(idle).unwrap_or(Timestamp::MIN));
-        self.common.store.purge_expired(idle_since).await.map_err(SessionError::Store)
+        Ok(self.common.store.purge_expired(idle_since).await?)
     }
 
     /// Deletes expired sessions and receipts periodically, and never ends.

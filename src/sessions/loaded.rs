@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::simulation::{self, Observed, warnings};
+use crate::simulation::{self, present_warnings};
 use crate::store::{Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
-use stickslip_wire::{ContactDefinition, ContactSummary, NewSession, Warning};
+use stickslip_wire::{ContactDefinition, ContactSummary, Faults, JsonPath, NewSession, Warning};
 
 use super::snapshot::ReplayCost;
 use super::{SessionError, written};
@@ -39,15 +39,18 @@ impl LoadedSession {
     /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state
     /// is that before the first move.
     pub(super) fn start(session: Session, setup: Setup) -> Result<LoadedSession, simulation::Failure> {
-        let elasticity = setup.elasticity;
         let contact = simulation::contact(setup, "")?;
-        let figures: ContactSummary = contact.initial_summary().into();
-        let ContactSummary { contact_radius, e_star, indentation, .. } = figures;
-        let noise = contact.profile().noise(contact_radius);
-        let observed = Observed { contact_radius, e_star, indentation, noise, excess_error: None };
-        let warnings = warnings(contact.profile(), &elasticity, &observed);
-        let derived = Arc::new(Derived { figures, warnings });
+        let derived = Derived { figures: contact.initial_summary().into(), warnings: present_warnings(&contact) };
+        let derived = Arc::new(derived);
         Ok(LoadedSession { session, derived, contact, replay_cost: ReplayCost::default(), shared: false })
+    }
+
+    /// The same of a session as it is stored, or why its definition is invalid.
+    pub(super) fn of_stored(session: Session) -> Result<LoadedSession, String> {
+        let mut faults = Faults::default();
+        let setup = session.definition.check(JsonPath::Root, &mut faults);
+        let setup = faults.done(setup).map_err(|error| error.to_string())?;
+        LoadedSession::start(session, setup).map_err(|error| error.to_string())
     }
 
     /// Bytes of memory, rather too many than too few: what forks share is counted for each.

@@ -8,18 +8,22 @@ use crate::store::Commits;
 use super::Sessions;
 
 /// Metrics that are counted as events happen.
-pub(super) struct SessionMetrics {
-    /// Moves that are stored.
-    pub(super) moves: IntCounter,
-    /// How long it took to load a session that was not cached, s.
-    pub(super) open: Histogram,
+pub struct SessionMetrics {
+    /// Moves that have been made and stored.
+    pub moves: IntCounter,
+    /// How often a session that was asked for was cached.
+    pub hits: IntCounter,
+    /// How long it took to load those that were not, s.
+    pub open: Histogram,
 }
 
 impl Default for SessionMetrics {
     fn default() -> SessionMetrics {
+        let hits = "Times that a contact that was asked for was in memory.";
         let help = "Time to load a contact from the store: its snapshot, and the moves beyond it.";
         SessionMetrics {
             moves: counter(Opts::new("stickslip_moves_total", "Moves made and stored.")),
+            hits: counter(Opts::new("stickslip_cache_hits_total", hits)),
             open: histogram(Opts::new("stickslip_contact_open_seconds", help), SECONDS),
         }
     }
@@ -27,12 +31,8 @@ impl Default for SessionMetrics {
 
 /// The metrics of the sessions.
 pub struct Readings<'a> {
-    /// Moves that have been made and stored.
-    pub moves: &'a IntCounter,
-    /// How often a session that was asked for was cached.
-    pub hits: &'a IntCounter,
-    /// How long it took to load those that were not, s.
-    pub open: &'a Histogram,
+    /// What is counted as it happens.
+    pub counted: &'a SessionMetrics,
     /// Cached sessions that no request uses.
     pub cached: usize,
     /// Bytes of their states.
@@ -51,9 +51,7 @@ impl Sessions {
     pub fn readings(&self) -> Readings<'_> {
         let (bytes, cached) = self.common.cache.held();
         Readings {
-            moves: &self.common.metrics.moves,
-            hits: self.common.cache.hits(),
-            open: &self.common.metrics.open,
+            counted: &self.common.metrics,
             cached,
             bytes,
             capacity: self.common.cache.capacity(),

@@ -45,7 +45,7 @@ pub use check::{Checked, Finding, check};
 pub use error::SessionError;
 pub use events::STREAMS;
 use loaded::LoadedSession;
-pub use metrics::Readings;
+pub use metrics::{Readings, SessionMetrics};
 
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
@@ -65,7 +65,7 @@ struct Common {
     // A permit for each snapshot that is being stored.
     snapshots: Arc<Semaphore>,
     listeners: Listeners,
-    metrics: metrics::SessionMetrics,
+    metrics: SessionMetrics,
 }
 
 impl Sessions {
@@ -73,13 +73,14 @@ impl Sessions {
     /// replayed when needed.
     #[must_use]
     pub fn new(store: Arc<dyn Store>, pool: Pool, capacity: usize) -> Sessions {
+        let metrics = SessionMetrics::default();
         let common = Common {
             store,
             pool,
-            cache: Arc::new(Cache::new(capacity)),
+            cache: Arc::new(Cache::new(capacity, metrics.hits.clone())),
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             listeners: Listeners::new(STREAMS),
-            metrics: metrics::SessionMetrics::default(),
+            metrics,
         };
         Sessions { tenant: Tenant::default(), common: Arc::new(common) }
     }
@@ -95,7 +96,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::Store`] if it cannot.
     pub async fn ready(&self) -> Result<(), SessionError> {
-        self.common.store.ready().await.map_err(SessionError::Store)
+        Ok(self.common.store.ready().await?)
     }
 
     /// Bytes of the cached states, and how many sessions they are.

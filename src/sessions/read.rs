@@ -5,8 +5,7 @@ use std::sync::Arc;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::Nanoseconds;
-use crate::admission::Reservation;
+use crate::admission::{Nanoseconds, Reservation};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{self, stresses};
@@ -97,8 +96,7 @@ impl Sessions {
     /// A failure of the store.
     pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
         // One more than requested shows whether there is a next page.
-        let mut found =
-            self.common.store.list(Some(self.tenant.clone()), after, limit + 1).await.map_err(SessionError::Store)?;
+        let mut found = self.common.store.list(Some(self.tenant.clone()), after, limit + 1).await?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);

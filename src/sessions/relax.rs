@@ -13,8 +13,7 @@ use super::{SessionError, Sessions, written};
 
 /// The protocol that begins from the present state of a session.
 pub(super) fn find_protocol(live: &LoadedSession, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
-    let definition = &*live.session.definition;
-    simulation::protocol(&Subject { contact: &live.contact, definition, first: None, setup: None }, task, stop)
+    simulation::protocol(&Subject { contact: &live.contact, first: None, setup: None }, task, stop)
 }
 
 /// The failure of a move that the client did not send itself.

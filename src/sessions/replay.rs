@@ -6,18 +6,18 @@ use uuid::Uuid;
 
 use crate::simulation::cost::Work;
 use crate::store::{Record, Session, StoreError};
-use stickslip_wire::{Faults, JsonPath, limits};
+use stickslip_wire::limits;
 
 use super::cache::Guard;
 use super::loaded::LoadedSession;
 use super::{SessionError, Sessions};
 
 /// Moves that are fetched from the store at a time.
-const PAGE: usize = 10_000;
+pub(super) const PAGE: usize = 10_000;
 /// Pieces of slip history that a move leaves, as an estimate for a state that is not loaded yet.
 const PIECES: usize = 4;
 /// Bytes of one piece.
-const PIECE_BYTES: usize = 96;
+pub(super) const PIECE_BYTES: usize = 96;
 
 impl Sessions {
     /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
@@ -86,10 +86,7 @@ impl Sessions {
         let (sequence, updated_at) = (session.sequence, session.updated_at);
         let pieces = usize::try_from(sequence).unwrap_or(usize::MAX).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
         guard.held = self.common.pool.reserve(pieces * PIECE_BYTES).await?;
-        let mut faults = Faults::default();
-        let setup = session.definition.check(JsonPath::Root, &mut faults);
-        let setup = faults.done(setup).map_err(|error| broken(guard, &error))?;
-        let mut live = Box::new(LoadedSession::start(session, setup).map_err(|error| broken(guard, &error))?);
+        let mut live = Box::new(LoadedSession::of_stored(session).map_err(|error| broken(guard, &error))?);
         (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, sequence).await?;
         guard.live = Some(live);
         self.catch_up(guard).await?;

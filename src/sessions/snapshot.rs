@@ -81,9 +81,11 @@ impl Sessions {
         };
         // Reading a byte is below a nanosecond.
         let cost = snapshot.state.len() as u64;
-        let read = self.common.pool.run(cost, move || match from_checked(&initial, &snapshot.state) {
-            Some(contact) => (contact, snapshot.sequence),
-            None => (initial, 0),
+        let read = self.common.pool.run(cost, move || {
+            match checked(&snapshot.state).and_then(|state| initial.unpack(state)) {
+                Some(contact) => (contact, snapshot.sequence),
+                None => (initial, 0),
+            }
         });
         Ok(read.await?)
     }
@@ -95,9 +97,10 @@ fn with_checksum(contact: &Contact) -> Vec<u8> {
     bytes
 }
 
-fn from_checked(initial: &Contact, bytes: &[u8]) -> Option<Contact> {
+/// The packed state, if its checksum is right.
+fn checked(bytes: &[u8]) -> Option<&[u8]> {
     let (state, checksum) = bytes.split_last_chunk::<CHECKSUM>()?;
-    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then(|| initial.unpack(state))?
+    (crc32fast::hash(state) == u32::from_le_bytes(*checksum)).then_some(state)
 }
 
 /// The result of comparing a snapshot with a replay.
@@ -114,10 +117,9 @@ pub(super) enum SnapshotState {
 
 /// Compares a snapshot with the state that it should be.
 pub(super) fn compare(state: &Contact, snapshot: &[u8]) -> SnapshotState {
-    let sound = snapshot.split_last_chunk::<CHECKSUM>();
-    match sound.filter(|(state, checksum)| crc32fast::hash(state) == u32::from_le_bytes(**checksum)) {
+    match checked(snapshot) {
         None => SnapshotState::Damaged,
-        Some((state, _)) if !Contact::is_current_packing(state) => SnapshotState::Foreign,
+        Some(packed) if !Contact::is_current_packing(packed) => SnapshotState::Foreign,
         Some(_) if snapshot == with_checksum(state) => SnapshotState::Sound,
         Some(_) => SnapshotState::Wrong,
     }

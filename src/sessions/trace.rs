@@ -9,14 +9,11 @@ use crate::store::Record;
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
+use super::replay::{PAGE, PIECE_BYTES};
 use super::{SessionError, Sessions};
 
-/// Moves that are fetched from the store at a time.
-const PAGE: usize = 10_000;
 /// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
 const POINT: usize = 512;
-/// Bytes of a piece of slip history; a move is assumed to leave one.
-const PIECE: usize = 96;
 /// JSON pointer to the number of points.
 const POINTS: &str = "/points_per_move";
 
@@ -40,8 +37,9 @@ impl Sessions {
             return Ok(page);
         };
         let (stop, _guard) = self.common.pool.deadline();
+        // A move is assumed to leave one piece of slip history.
         let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
-        let _held = self.common.pool.reserve(2 * PIECE * pieces).await?;
+        let _held = self.common.pool.reserve(2 * PIECE_BYTES * pieces).await?;
         let snapshot = self.common.store.snapshot(id).await;
         let initial = {
             let mut guard = self.lock(id).await?;

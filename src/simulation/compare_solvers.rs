@@ -13,8 +13,7 @@ use stickslip_wire::{
     SolverKind, limits,
 };
 
-use super::path::equal_peaks;
-use super::run::{contact, follow, spring_foundation, stresses};
+use super::run::{contact, equal_peaks, follow, spring_foundation, stresses};
 use super::{Failure, Solver};
 use crate::admission::Stop;
 

@@ -253,25 +253,3 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
         + bytes_of_shape(&comparison.definition.profile)
         + comparison.springs().max().unwrap_or(0) * SPRING_BYTES
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Work;
-    use crate::admission::INLINE;
-    use stickslip_mechanics::profile::Cone;
-    use stickslip_mechanics::{Profile, Sphere};
-
-    #[test]
-    fn a_move_runs_inline_and_a_long_path_does_not() {
-        let (sphere, cone) = (Sphere::new(0.01).map(Profile::Sphere), Cone::new(0.1).map(Profile::Cone));
-        for profile in [sphere.unwrap(), cone.unwrap()] {
-            let cost = |work: Work| work.cost(&profile);
-            assert!(cost(Work { moves: 1, depth: 1_000, ..Work::default() }) < INLINE);
-            assert!(cost(Work { moves: 1_000, ..Work::default() }) > INLINE);
-            assert!(cost(Work { moves: 1, curved: 1, ..Work::default() }) > INLINE);
-            assert!(cost(Work { depth: 1_000, radii: 200, ..Work::default() }) > INLINE);
-            let most = usize::MAX / 4_000;
-            assert!(cost(Work { moves: most, radii: most, residual: true, ..Work::default() }) > INLINE);
-        }
-    }
-}

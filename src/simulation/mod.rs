@@ -6,10 +6,8 @@
 
 mod compare_solvers;
 pub mod cost;
-mod path;
 mod protocol;
 mod reply_template;
-mod robustness;
 mod run;
 mod solver;
 mod sweep;
@@ -18,12 +16,11 @@ mod tests;
 mod warnings;
 
 pub use compare_solvers::compare_solvers;
-pub use path::equal_peaks;
 pub use protocol::{Subject, protocol, protocol_for};
-pub use run::{Timer, accuracy, contact, follow, residual, simulate, stresses};
+pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use sweep::{Sweep, SweepError, SweepResult, Workers};
-pub use warnings::{Observed, excess_error, new_warnings, warnings};
+pub use warnings::{excess_error, new_warnings, present_warnings};
 
 use std::time::Duration;
 

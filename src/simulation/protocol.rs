@@ -1,29 +1,25 @@
 //! Protocols: the path of a law, the stress that it leaves, and what the other laws would leave.
 
 use stickslip_mechanics::protocol::{
-    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
+    AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, FirstMove, PathEnd, PathStart, design, lower_bound, trials,
 };
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
 use stickslip_wire::limits;
 use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
-    ProtocolReply, ProtocolTask, StartReply,
+    ProtocolReply, ProtocolTask, Robustness, RobustnessReply, StartReply,
 };
 use stickslip_wire::reply::finite;
-use stickslip_wire::{ContactDefinition, Warning};
 
-use super::robustness::robustness;
 use super::run::{Timer, accuracy, contact};
-use super::{Failure, Observed, warnings};
+use super::{Failure, present_warnings};
 use crate::admission::Stop;
 
 /// A contact for which a protocol is designed, and the start of the reversals.
 pub struct Subject<'a> {
     /// The contact.
     pub contact: &'a Contact,
-    /// The definition, for the warnings.
-    pub definition: &'a ContactDefinition,
     /// The displacement to begin with, m, of a contact that has never moved; else it begins from the present state.
     pub first: Option<f64>,
     /// The definition, from which contacts with another coefficient of friction are made.
@@ -105,7 +101,6 @@ impl Subject<'_> {
 /// # Errors
 /// As [`protocol`], and if the preload cannot be reached.
 pub fn protocol_for(
-    definition: &ContactDefinition,
     setup: &Setup,
     first: Option<f64>,
     task: &ProtocolTask,
@@ -113,7 +108,7 @@ pub fn protocol_for(
 ) -> Result<ProtocolReply, Failure> {
     let contact = contact(setup.clone(), "/contact")?;
     let first = Some(first.unwrap_or_else(|| contact.gross_slip_displacement()));
-    protocol(&Subject { contact: &contact, definition, first, setup: Some(setup) }, task, stop)
+    protocol(&Subject { contact: &contact, first, setup: Some(setup) }, task, stop)
 }
 
 /// How many smaller numbers of reversals are checked after bisection.
@@ -195,22 +190,8 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         comparison,
         accuracy: accuracy(&chosen.contact, timer, "protocols are designed with the exact solver"),
         path: DisplacementPath { displacement: chosen.displacements },
-        warnings: warnings_of(subject),
+        warnings: present_warnings(contact),
     })
-}
-
-fn warnings_of(subject: &Subject<'_>) -> Vec<Warning> {
-    let contact = subject.contact;
-    let (contact_radius, elasticity) = (contact.contact_radius(), contact.elasticity());
-    let noise = contact.profile().noise(contact_radius);
-    let observed = Observed {
-        contact_radius,
-        e_star: elasticity.e_star(),
-        indentation: contact.indentation(),
-        noise,
-        excess_error: None,
-    };
-    warnings(contact.profile(), &elasticity, &observed)
 }
 
 fn objective(judged: &EvaluationRange) -> String {
@@ -248,4 +229,37 @@ fn gap(design: &Design, bound: Option<f64>) -> Gap {
     };
     let proven = bound.map(|bound| 1.0 - bound / design.largest).filter(|gap| gap.is_finite());
     Gap { spread: design.gap, lower_bound: bound, proven, method: method.to_owned() }
+}
+
+/// Statistics of the stress that remains if a path, m, is not followed exactly; `unit` is that of stress, Pa.
+///
+/// # Errors
+/// [`Failure`] if the time limit is reached.
+fn robustness(
+    subject: &Subject<'_>,
+    asked: &Robustness,
+    path: &[f64],
+    unit: f64,
+    stop: &Stop,
+) -> Result<RobustnessReply, Failure> {
+    let Robustness { amplitude_error: amplitude, friction_error: friction, samples, seed } = *asked;
+    let make = |factor: f64| match subject.setup {
+        Some(setup) if friction > 0.0 => Contact::new(Setup { friction: setup.friction * factor, ..setup.clone() }),
+        _ => Ok(subject.contact.clone()),
+    };
+    let found = trials(&make, path, &ExecutionErrors { amplitude, friction, seed }, samples, &|| stop.check().is_ok());
+    let found = found.map_err(|error| match stop.check() {
+        Err(interrupted) => Failure::interrupted(interrupted, "/robustness/samples"),
+        Ok(()) => Failure::Refused { pointer: "/robustness".to_owned(), error },
+    })?;
+    let count = found.len() as f64;
+    let mean = found.iter().sum::<f64>() / count;
+    let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let rank = (0.95 * count).ceil() as usize;
+    Ok(RobustnessReply {
+        samples,
+        mean: finite(mean / unit),
+        standard_error: finite((variance / count).sqrt() / unit),
+        percentile_95: found.get(rank.max(1) - 1).and_then(|value| finite(value / unit)),
+    })
 }

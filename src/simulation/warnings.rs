@@ -18,18 +18,23 @@ const HUGE_CURVATURE: f64 = 1.0;
 const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
 /// Results of a run that may require a warning.
-#[derive(Clone, Copy, Debug)]
-pub struct Observed {
+pub(super) struct Observed {
     /// The largest contact radius, m.
-    pub contact_radius: f64,
+    pub(super) contact_radius: f64,
     /// The reduced modulus E*, Pa.
-    pub e_star: f64,
+    pub(super) e_star: f64,
     /// The largest indentation, m.
-    pub indentation: f64,
+    pub(super) indentation: f64,
     /// The noise of g, m, from a table's heights, and how many times theirs that is.
-    pub noise: Option<(f64, f64)>,
+    pub(super) noise: Option<(f64, f64)>,
     /// The estimated error of the force, if it is beyond the tolerance.
-    pub excess_error: Option<f64>,
+    pub(super) excess_error: Option<f64>,
+}
+
+/// The warnings for a contact in its present state.
+#[must_use]
+pub fn present_warnings(contact: &Contact) -> Vec<Warning> {
+    warnings_at(contact, contact.contact_radius(), contact.indentation(), None)
 }
 
 /// The warnings that a request to a stored contact causes for the first time: none that held already at the contact
@@ -40,17 +45,17 @@ pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: 
     if largest <= before && excess_error.is_none() {
         return Vec::new();
     }
-    let elasticity = contact.elasticity();
-    let at = |contact_radius: f64, excess_error: Option<f64>| {
-        let shape = contact.profile();
-        let (indentation, noise) = (shape.level(contact_radius), shape.noise(contact_radius));
-        let observed = Observed { contact_radius, e_star: elasticity.e_star(), indentation, noise, excess_error };
-        warnings(shape, &elasticity, &observed)
-    };
+    let at = |radius: f64, error: Option<f64>| warnings_at(contact, radius, contact.profile().level(radius), error);
     let known = at(before, None);
     let mut found = at(largest, excess_error);
     found.retain(|warning| known.iter().all(|old| old.code != warning.code));
     found
+}
+
+fn warnings_at(contact: &Contact, contact_radius: f64, indentation: f64, excess_error: Option<f64>) -> Vec<Warning> {
+    let (profile, elasticity) = (contact.profile(), contact.elasticity());
+    let (e_star, noise) = (elasticity.e_star(), profile.noise(contact_radius));
+    warnings(profile, &elasticity, &Observed { contact_radius, e_star, indentation, noise, excess_error })
 }
 
 /// The error of the force along `curved` moves, if it is more than their tolerance allows.
@@ -61,8 +66,7 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
 }
 
 /// The warnings for a pair of bodies and a run.
-#[must_use]
-pub fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed) -> Vec<Warning> {
+pub(super) fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Observed) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |code: &str, message: String| warnings.push(Warning { code: code.to_owned(), message });
     if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA_ROUND_OFF) {

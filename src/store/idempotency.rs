@@ -2,21 +2,12 @@
 //!
 //! Only replies to what succeeded are stored. A failed call has changed nothing, so that a retry may be computed anew.
 
-use super::{Receipt, Reply, RequestKey, Store, StoreError, Tenant};
+use super::{Receipt, Reply, RequestKey, Result, Store, StoreError, Tenant};
 
 /// A request that may have been answered before.
 pub struct IdempotentRequest<'a> {
     store: &'a dyn Store,
     key: Option<RequestKey>,
-}
-
-/// Why there is no reply for a retry.
-#[derive(Debug)]
-pub enum RetryError {
-    /// The key belongs to another request.
-    KeyReused,
-    /// The store refused or failed.
-    Store(StoreError),
 }
 
 impl<'a> IdempotentRequest<'a> {
@@ -29,13 +20,13 @@ impl<'a> IdempotentRequest<'a> {
     /// The reply that an earlier request with the same key got.
     ///
     /// # Errors
-    /// [`RetryError`]
-    pub async fn earlier_reply(&self) -> Result<Option<Reply>, RetryError> {
+    /// [`StoreError::KeyReused`], or a failure of the store.
+    pub async fn earlier_reply(&self) -> Result<Option<Reply>> {
         let Some(key) = &self.key else { return Ok(None) };
-        match self.store.receipt(&key.key).await.map_err(RetryError::Store)? {
+        match self.store.receipt(&key.key).await? {
             None => Ok(None),
             Some(receipt) if receipt.request.fingerprint == key.fingerprint => Ok(Some(receipt.reply)),
-            Some(_) => Err(RetryError::KeyReused),
+            Some(_) => Err(StoreError::KeyReused),
         }
     }
 
@@ -49,9 +40,9 @@ impl<'a> IdempotentRequest<'a> {
     /// its reply.
     ///
     /// # Errors
-    /// [`RetryError`], with `error` itself if there is no such reply.
-    pub async fn after_refusal(&self, error: StoreError) -> Result<Reply, RetryError> {
+    /// As [`IdempotentRequest::earlier_reply`], or `error` itself if there is no such reply.
+    pub async fn after_refusal(&self, error: StoreError) -> Result<Reply> {
         let earlier = if matches!(error, StoreError::KeyTaken) { self.earlier_reply().await? } else { None };
-        earlier.ok_or(RetryError::Store(error))
+        earlier.ok_or(error)
     }
 }

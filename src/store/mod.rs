@@ -27,7 +27,7 @@ use stickslip_wire::{ContactDefinition, Move, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;
-pub use idempotency::{IdempotentRequest, RetryError};
+pub use idempotency::IdempotentRequest;
 pub use jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
 pub use listeners::{Listener, Listeners, StreamEvent};
 pub use memory::MemoryStore;
@@ -159,6 +159,9 @@ pub enum StoreError {
     /// Another request has used the idempotency key meanwhile.
     #[error("the idempotency key has been used")]
     KeyTaken,
+    /// The idempotency key belongs to another request.
+    #[error("the idempotency key has been used for another request")]
+    KeyReused,
     /// The tenant has as many jobs as it may; the text says which limit is reached.
     #[error("{0}")]
     TooManyJobs(String),

@@ -27,6 +27,17 @@ pub enum VersionError {
     },
 }
 
+/// Why the tables of a store cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum SchemaError<E> {
+    /// They have another version.
+    #[error(transparent)]
+    Version(VersionError),
+    /// The database refused or was lost.
+    #[error(transparent)]
+    Database(#[from] E),
+}
+
 /// The migrations that are still to be applied to tables of a version, each with the version that it leads to.
 ///
 /// # Errors

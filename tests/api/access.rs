@@ -9,7 +9,8 @@ use common::process::Process;
 use common::{ball, problem, until};
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
-use stickslip::access::{Role, new_key};
+use stickslip::access::{Keys, Role, new_key};
+use stickslip::store::Tenant;
 use stickslip_wire::client::Options;
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
@@ -386,4 +387,50 @@ async fn only_its_tenant_learns_that_a_contact_has_expired() {
     assert_eq!(get("south").await, 404);
     let history = server.send(Some("south"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;
     assert_eq!(history.status().as_u16(), 404);
+}
+
+#[test]
+fn a_key_is_known_by_its_hash_alone_and_has_its_roles() {
+    let bench = new_key("bench", &[Role::Write], "lab").unwrap();
+    let graph = new_key("graph", &[Role::Metrics, Role::Read], "").unwrap();
+    let mut keys = Keys::default();
+    keys.add(&format!("# keys\n{} # the bench\n\n  {},\n", bench.entry, graph.entry)).unwrap();
+    assert_eq!(keys.count(), 2);
+    let holder = keys.holder(bench.key.as_bytes()).unwrap();
+    assert_eq!((&*holder.name, &holder.tenant), ("bench", &Tenant::new("lab")));
+    assert!(holder.allows(Role::Write) && holder.allows(Role::Read) && !holder.allows(Role::Metrics));
+    let holder = keys.holder(graph.key.as_bytes()).unwrap();
+    assert!(!holder.allows(Role::Write) && holder.allows(Role::Read) && holder.allows(Role::Metrics));
+    assert_eq!(holder.tenant, Tenant::default());
+    let mut other = bench.key.clone();
+    other.pop();
+    let hash = bench.entry.rsplit(':').next().unwrap();
+    for unknown in ["", "bench", hash, &other, &format!("{}0", bench.key), &"x".repeat(100_000)] {
+        assert_eq!(keys.holder(unknown.as_bytes()), None, "{unknown}");
+    }
+    assert_ne!(new_key("bench", &[Role::Write], "lab").unwrap().key, bench.key);
+}
+
+#[test]
+fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
+    let good = new_key("good", &[Role::Read], "").unwrap().entry;
+    let hash = good.rsplit(':').next().unwrap().to_owned();
+    for (entry, why) in [
+        (hash.clone(), "name:roles:tenant:sha256:hash"),
+        (format!("a:read:sha256:{hash}"), "name:roles:tenant:sha256:hash"),
+        (format!("a:reed::sha256:{hash}"), "write, read, metrics"),
+        (format!("a:::sha256:{hash}"), "write, read, metrics"),
+        (format!("a b:read::sha256:{hash}"), "name"),
+        (format!(":read::sha256:{hash}"), "name"),
+        (format!("a:read:t t:sha256:{hash}"), "tenant"),
+        (format!("a:read::sha256:{}", &hash[1..]), "64 hexadecimal digits"),
+        (format!("a:read::sha256:{}g", &hash[1..]), "64 hexadecimal digits"),
+        (format!("a:read::sha256:{hash}"), "two entries"),
+        (good.replace(&hash[..4], "0000"), "of this name"),
+    ] {
+        let mut keys = Keys::default();
+        let wrong = keys.add(&format!("{good}\n\n{entry}")).unwrap_err();
+        assert_eq!(wrong.line, 3);
+        assert!(wrong.why.contains(why) && !wrong.to_string().contains(&hash[8..]), "{entry}: {wrong}");
+    }
 }

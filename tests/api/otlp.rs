@@ -9,16 +9,18 @@ use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use axum::http::StatusCode;
+use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::routing::post;
 use axum::serve::Listener;
 use axum::{Json, Router};
 use common::process::Process;
 use common::{Binary, clean, create};
+use opentelemetry::trace::TraceContextExt as _;
 use rustls::ServerConfig;
 use rustls::crypto::ring;
 use rustls::pki_types::PrivateKeyDer;
 use serde_json::{Value, json};
+use stickslip::otlp::parent;
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
 use tokio::net::{TcpListener, TcpStream};
@@ -236,5 +238,31 @@ async fn spans_travel_by_https_to_a_collector_that_is_trusted_and_to_no_other() 
         server.stop().await;
         let found = spans(&posts).iter().filter(|span| span["name"] == "GET /healthz").count();
         assert_eq!(found, arrived, "{}", std::fs::read_to_string(log).unwrap());
+    }
+}
+
+#[test]
+fn a_parent_is_accepted_as_the_standard_defines_it() {
+    let of = |header: &str| {
+        let headers = HeaderMap::from_iter([("traceparent".parse().unwrap(), HeaderValue::from_str(header).unwrap())]);
+        let context = parent(&headers)?;
+        let span = context.span().span_context().clone();
+        Some((span.span_id().to_string(), span.is_sampled()))
+    };
+    let trace = "0af7651916cd43dd8448eb211c80319c";
+    assert_eq!(of(&format!("00-{trace}-b7ad6b7169203331-01")), Some(("b7ad6b7169203331".to_owned(), true)));
+    assert_eq!(of(&format!("00-{trace}-b7ad6b7169203331-00")), Some(("b7ad6b7169203331".to_owned(), false)));
+    assert_eq!(of(&format!("cc-{trace}-b7ad6b7169203331-01-more")), Some(("b7ad6b7169203331".to_owned(), true)));
+    for wrong in [
+        "",
+        "00",
+        &format!("00-{trace}-b7ad6b7169203331-01-more"),
+        &format!("ff-{trace}-b7ad6b7169203331-01"),
+        &format!("00-{trace}-0000000000000000-01"),
+        &format!("00-{}-b7ad6b7169203331-01", "0".repeat(32)),
+        &format!("00-{}-b7ad6b7169203331-01", trace.to_uppercase()),
+        &format!("00-{trace}-b7ad6b71692033-01"),
+    ] {
+        assert_eq!(of(wrong), None, "{wrong}");
     }
 }

@@ -2,6 +2,8 @@
 
 use std::process::Command;
 
+use stickslip_wire::Code;
+
 use crate::common::process::Process;
 use crate::python::{file, succeed};
 
@@ -93,4 +95,28 @@ fn the_crates_depend_on_no_more_than_the_readme_says() {
     for absent in ["axum", "rusqlite", "tokio-postgres", "deadpool-postgres"] {
         assert!(!wire.iter().any(|name| name == absent), "stickslip-wire depends on {absent}");
     }
+}
+
+/// The page is printed anew by `UPDATE=1 cargo test --test docs errors`.
+#[test]
+fn the_page_of_errors_is_printed_from_the_table() {
+    let path = file("docs").join("errors.md");
+    let page = page("errors.md");
+    let (before, rest) = page.split_once("|---|---|---|\n").unwrap();
+    let (_, after) = rest.split_once("\n\n").unwrap();
+    let row = |code: &Code| format!("| {} | `{}` | {} |\n", code.status(), code.as_str(), code.advice());
+    let rows: String = Code::ALL.iter().map(row).collect();
+    let printed = format!("{before}|---|---|---|\n{rows}\n{after}");
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(path, &printed).unwrap();
+    }
+    assert_eq!(page, printed, "run this test with UPDATE=1");
+}
+
+#[test]
+fn a_code_names_one_kind() {
+    for code in Code::ALL {
+        assert_eq!(Code::parse(code.as_str()), Some(*code));
+    }
+    assert_eq!(Code::parse("teapot"), None);
 }

@@ -1,7 +1,8 @@
-//! The service as a process: hostile clients, overload, and its dependencies.
+//! The service as a process: admission, hostile clients, overload, and its dependencies.
 
 #[path = "../common/mod.rs"]
 mod common;
 
+mod admission;
 mod hostile_http;
 mod overload;

@@ -14,7 +14,7 @@ use super::path::{Path, Plan};
 use super::reply::SolverKind;
 use super::simulate::{Solver, Springs, most_springs};
 use super::single_key::not_null;
-use super::stress::{Field, Points, Sampling, StressRequest};
+use super::stress::{Field, Sampling, StressRequest};
 
 /// Solvers that one comparison may name.
 const SOLVERS: Items = Items(1..=16);
@@ -29,12 +29,7 @@ const COMPARED_RADII: usize = 200;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
-    "contact": {
-        "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-        "friction": 0.3,
-        "preload": {"normal_force": 10.0}
-    },
+    "contact": ContactDefinition::example(),
     "path": {"falling_amplitude": {"reversals": 20}}
 }))]
 pub struct AccuracyRequest {
@@ -114,7 +109,7 @@ pub struct Comparison {
     pub setup: Setup,
     /// The path.
     pub plan: Plan,
-    /// Where the shear stress is compared.
+    /// Where the shear stress is compared; no other field is.
     pub sampling: Sampling,
     /// The solvers.
     pub solvers: Vec<Solver>,
@@ -157,23 +152,23 @@ impl Document for AccuracyRequest {
             ..StressRequest::default()
         });
         let at = JsonPath::Root.member("stress");
-        let sampling = stress.check(at, &mut faults).unwrap_or_else(Sampling::none);
-        // Without a sampling its own faults have been noted already.
-        if !sampling.fields.shear && sampling.fields != Sampling::none().fields {
+        let sampling = stress.check(at, &mut faults);
+        if sampling.as_ref().is_some_and(|sampling| !sampling.fields.shear) {
             faults.add(at.member("fields"), "the shear stress is what is compared: name `shear`");
         }
         let tolerance = Tolerance::of(self.tolerance, &mut faults);
         let at = JsonPath::Root.member("solvers");
         let solvers = self.solvers.unwrap_or_else(ladder);
-        let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(sampling.length());
+        let radii = sampling.as_ref().map_or(0, Sampling::length);
+        let passes = plan.as_ref().map_or(0, Plan::length).saturating_add(radii);
         if faults.length(at, solvers.len(), &SOLVERS.0) {
             let each = solvers.iter().enumerate();
             each.for_each(|(index, solver)| solver.check(at.index(index), passes, &mut faults));
         }
-        let (definition, fields) = (self.contact, Sampling::none().fields);
-        let sampling = Sampling { fields: super::Fields { shear: true, ..fields }, ..sampling };
-        let comparison =
-            setup.zip(plan).map(|(setup, plan)| Comparison { definition, setup, plan, sampling, solvers, tolerance });
+        let comparison = setup.zip(plan).zip(sampling).map(|((setup, plan), sampling)| {
+            let definition = self.contact;
+            Comparison { definition, setup, plan, sampling, solvers, tolerance }
+        });
         if let Some(comparison) = &comparison {
             let (all, most) = (comparison.springs().fold(0, usize::saturating_add), most_springs(passes));
             if faults.is_empty() && all > most {
@@ -181,13 +176,5 @@ impl Document for AccuracyRequest {
             }
         }
         faults.done(comparison)
-    }
-}
-
-impl Sampling {
-    /// No radii and no fields.
-    fn none() -> Sampling {
-        let fields = super::Fields { pressure: false, shear: false, slip: false, displacement: false };
-        Sampling { points: Points::Radii(Vec::new()), fields }
     }
 }

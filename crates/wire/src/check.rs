@@ -110,11 +110,8 @@ impl Faults {
         let fits = allowed.contains(&length);
         if !fits {
             let (least, most) = (allowed.start(), allowed.end());
-            if least == most {
-                self.add(at, format_args!("{length} elements: allowed are exactly {most}"));
-            } else {
-                self.add(at, format_args!("{length} elements: allowed are {least} to {most}"));
-            }
+            let range = if least == most { format!("exactly {most}") } else { format!("{least} to {most}") };
+            self.add(at, format_args!("{length} elements: allowed are {range}"));
         }
         fits
     }

@@ -1,6 +1,7 @@
 //! The definition of a contact: profile, material, friction and preload.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{self as mechanics, Setup, elasticity, range, range::Quantity};
@@ -13,12 +14,7 @@ use super::single_key::single_key;
 /// Two bodies pressed together, at rest and never moved tangentially.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-#[schema(example = json!({
-    "profile": {"type": "sphere", "radius": 0.01},
-    "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-    "friction": 0.3,
-    "preload": {"normal_force": 10.0}
-}))]
+#[schema(example = json!(ContactDefinition::example()))]
 pub struct ContactDefinition {
     /// The shape of the indenter.
     pub profile: Profile,
@@ -130,6 +126,17 @@ impl<'de> serde::de::Visitor<'de> for BodyVisitor {
 }
 
 impl ContactDefinition {
+    /// The contact of the examples in the OpenAPI document: a steel ball on a rigid plane.
+    #[must_use]
+    pub fn example() -> Value {
+        json!({
+            "profile": {"type": "sphere", "radius": 0.01},
+            "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+            "friction": 0.3,
+            "preload": {"normal_force": 10.0}
+        })
+    }
+
     /// The checked setup; its faults are noted at `at`.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Setup> {
         let profile = self.profile.check(at.member("profile"), faults);

@@ -133,33 +133,3 @@ pub fn index(segment: &str) -> Option<usize> {
     let plain = segment == "0" || !segment.starts_with(['0', '+']);
     plain.then(|| segment.parse().ok()).flatten()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{JsonValue, Pointer};
-    use serde_json::{Number, json};
-
-    #[test]
-    fn numbers_are_put_where_numbers_are_or_may_be() {
-        let base = json!({"a": [1, {"b/c": 2.5}], "text": "x"});
-        for (pointer, value) in [("/a/0", 7), ("/a/1/b~1c", 7), ("/new", 7), ("/a/1/new", 7)] {
-            let mut document = base.clone();
-            let pointer = Pointer::parse(pointer).unwrap();
-            assert!(pointer.put(&mut document, Number::from(value)), "{pointer}");
-            assert_eq!(document.pointer(&pointer.to_string()), Some(&json!(7)));
-        }
-        for pointer in ["", "/text", "/a", "/a/2", "/a/00", "/a/-", "/text/x", "/none/x"] {
-            let mut document = base.clone();
-            assert!(!Pointer::parse(pointer).unwrap().put(&mut document, Number::from(7)), "{pointer}");
-            assert_eq!(document, base);
-        }
-        assert!(Pointer::parse("a").is_none() && Pointer::parse("/~2").is_none());
-    }
-
-    #[test]
-    fn a_member_given_twice_is_refused_wherever_it_is() {
-        let of = |text: &str| serde_json::from_str::<JsonValue>(text);
-        assert_eq!(of(r#"{"a":[1,-2,0.1,"s",null,true,{}]}"#).unwrap().0, json!({"a":[1,-2,0.1,"s",null,true,{}]}));
-        assert!(of(r#"{"a":[{"b":1,"b":1}]}"#).unwrap_err().to_string().contains("duplicate field `b`"));
-    }
-}

@@ -18,9 +18,6 @@ pub mod check;
 pub mod client;
 pub mod definition;
 pub mod event;
-#[cfg(test)]
-mod extremes;
-pub mod hysteresis_loop;
 pub mod job;
 pub mod json_value;
 pub mod limits;
@@ -42,7 +39,6 @@ pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Refe
 pub use check::{Fault, Faults, JsonPath};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
-pub use hysteresis_loop::LoopPage;
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
@@ -51,8 +47,8 @@ pub use profile::{Profile, SphereProfile};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
-    CreateRequest, ForkRequest, HistoryItem, HistoryPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest,
-    SessionPage, SessionReply, SessionSummary, StressReply,
+    CreateRequest, ForkRequest, HistoryItem, HistoryPage, LoopPage, MoveReply, MoveRequest, NewSession, PathReply,
+    PathRequest, SessionPage, SessionReply, SessionSummary, StressReply,
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};

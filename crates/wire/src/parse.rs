@@ -128,11 +128,8 @@ fn pointer(path: &Path) -> String {
 
 /// Replaces Rust's names of types in messages of serde by JSON's.
 fn in_json_terms(message: &str) -> String {
-    let mut text = message.replacen("invalid type: map", "invalid type: object", 1).replacen(
-        "invalid type: sequence",
-        "invalid type: array",
-        1,
-    );
+    let text = message.replacen("invalid type: map", "invalid type: object", 1);
+    let mut text = text.replacen("invalid type: sequence", "invalid type: array", 1);
     if let Some((head, tail)) = text.rsplit_once(", expected ") {
         let plain = match tail {
             "f64" => "a number",
@@ -154,60 +151,4 @@ fn shortened(mut text: String) -> String {
         text.push('…');
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Rejection, parse};
-    use crate::SimulateRequest;
-
-    fn refused(body: &str) -> (String, String) {
-        match parse::<SimulateRequest>(body.as_bytes()) {
-            Err(Rejection::Invalid(faults)) => (faults[0].pointer.clone(), faults[0].detail.clone()),
-            other => panic!("{body} gave {other:?}"),
-        }
-    }
-
-    fn with(profile: &str, path: &str) -> String {
-        format!(
-            r#"{{"contact":{{"profile":{profile},"material":{{"effective":{{"e_star":1e11,"g_star":1e11}}}},
-            "friction":0.3,"preload":{{"normal_force":10}}}},"path":{path}}}"#
-        )
-    }
-
-    #[test]
-    fn every_kind_of_fault_is_found_at_its_place() {
-        let sphere = r#"{"type":"sphere","radius":0.01}"#;
-        for (body, pointer, word) in [
-            (with(r#"{"type":"sphere"}"#, r#"{"force":[1]}"#), "/contact/profile/radius", "missing"),
-            (with(r#"{"radius":1}"#, r#"{"force":[1]}"#), "/contact/profile/type", "missing"),
-            (with(r#"{"radius":"x","type":"sphere"}"#, r#"{"force":[1]}"#), "/contact/profile/radius", "a number"),
-            (with(r#"{"type":"cube","radius":1}"#, r#"{"force":[1]}"#), "/contact/profile/type", "sphere"),
-            (with(r#"{"type":"sphere","radius":1,"a/b":2}"#, "{}"), "/contact/profile/a~1b", "unknown field"),
-            (with(r#"{"type":"sphere","radius":1,"`x":2}"#, "{}"), "/contact/profile/`x", "unknown field"),
-            (with(r#"{"type":"sphere","radius":1,"radius":2}"#, "{}"), "/contact/profile/radius", "duplicate"),
-            (with(sphere, r#"{"displacement":[0,1e999]}"#), "/path/displacement/1", "out of range"),
-            (with(sphere, r#"{"moves":[{"force":1},{"force":null}]}"#), "/path/moves/1/force", "null"),
-            (with(sphere, r#"{"wave":[1]}"#), "/path", "`falling_amplitude`"),
-            (with(sphere, r#"{"force":[1],"displacement":[1]}"#), "/path", "conflicts"),
-            (with(sphere, "{}"), "/path", "one key"),
-            (with(sphere, "7"), "/path", "one key"),
-            (with(r#"["sphere",1]"#, r#"{"force":[1]}"#), "/contact/profile", "an object"),
-            (with(sphere, r#"{"moves":[[0,1]]}"#), "/path/moves/0", "an object"),
-            (with(sphere, r#"{"falling_amplitude":[3,1e-7]}"#), "/path/falling_amplitude", "an object"),
-            ("[1,2]".to_owned(), "", "an object"),
-        ] {
-            let (found, detail) = refused(&body);
-            assert_eq!(found, pointer, "{body}: {detail}");
-            assert!(detail.contains(word), "{body}: {detail}");
-        }
-    }
-
-    #[test]
-    fn a_broken_end_is_not_json_even_after_an_unknown_member() {
-        for body in ["", "{", r#"{"colour": 1"#, r#"{"contact": 1} x"#, "\u{feff}{}", "NaN"] {
-            assert!(matches!(parse::<SimulateRequest>(body.as_bytes()), Err(Rejection::NotJson(_))), "{body}");
-        }
-        assert!(matches!(parse::<SimulateRequest>(b"{\"\xff\": 1}"), Err(Rejection::NotJson(_))));
-    }
 }

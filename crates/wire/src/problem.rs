@@ -180,32 +180,3 @@ impl ProblemDocument {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Code;
-
-    /// The page is printed anew by `UPDATE=1 cargo test -p stickslip-wire`.
-    #[test]
-    fn the_page_of_errors_is_printed_from_the_table() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/errors.md");
-        let page = std::fs::read_to_string(path).unwrap();
-        let (before, rest) = page.split_once("|---|---|---|\n").unwrap();
-        let (_, after) = rest.split_once("\n\n").unwrap();
-        let row = |code: &Code| format!("| {} | `{}` | {} |\n", code.status(), code.as_str(), code.advice());
-        let rows: String = Code::ALL.iter().map(row).collect();
-        let printed = format!("{before}|---|---|---|\n{rows}\n{after}");
-        if std::env::var_os("UPDATE").is_some() {
-            std::fs::write(path, &printed).unwrap();
-        }
-        assert_eq!(page, printed, "run this test with UPDATE=1");
-    }
-
-    #[test]
-    fn a_code_names_one_kind() {
-        for code in Code::ALL {
-            assert_eq!(Code::parse(code.as_str()), Some(*code));
-        }
-        assert_eq!(Code::parse("teapot"), None);
-    }
-}

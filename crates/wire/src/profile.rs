@@ -3,6 +3,7 @@
 //! The families with numbers for parameters, their documents, checks and limits come from the table
 //! [`stickslip_mechanics::for_each_family!`]; the other two, tables of heights and sums, are written out here.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::sync::LazyLock;
 
@@ -179,8 +180,7 @@ fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) 
 #[derive(Default)]
 struct Members {
     kind: Option<Kind>,
-    /// At the first index of the name in [`NUMBERS`].
-    numbers: [Option<f64>; NUMBERS.len()],
+    numbers: HashMap<&'static str, f64>,
     r: Option<Vec<f64>>,
     z: Option<Vec<f64>>,
     parts: Option<Vec<Profile>>,
@@ -197,29 +197,29 @@ static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     names
 });
 
-/// The index of the number of this name in [`Members::numbers`].
-fn place_of(name: &str) -> Option<usize> {
-    NUMBERS.iter().position(|(_, known, _)| *known == name)
-}
-
 impl Members {
-    /// The family, if all the members given belong to it.
-    fn kind<E: serde::de::Error>(&self) -> Result<Kind, E> {
-        let kind = self.kind.ok_or_else(|| E::missing_field("type"))?;
-        let given = |name: &str| match name {
+    fn has(&self, name: &str) -> bool {
+        match name {
+            "type" => self.kind.is_some(),
             "r" => self.r.is_some(),
             "z" => self.z.is_some(),
             "parts" => self.parts.is_some(),
-            _ => place_of(name).is_some_and(|place| self.numbers[place].is_some()),
-        };
-        match NAMES.iter().find(|name| given(name) && !kind.members().contains(name)) {
+            number => self.numbers.contains_key(number),
+        }
+    }
+
+    /// The family, if all the members given belong to it.
+    fn kind<E: serde::de::Error>(&self) -> Result<Kind, E> {
+        let kind = self.kind.ok_or_else(|| E::missing_field("type"))?;
+        let foreign = |name: &&&str| **name != "type" && self.has(name) && !kind.members().contains(name);
+        match NAMES.iter().find(foreign) {
             Some(foreign) => Err(E::unknown_field(foreign, kind.members())),
             None => Ok(kind),
         }
     }
 
     fn number<E: serde::de::Error>(&self, name: &'static str) -> Result<f64, E> {
-        place_of(name).and_then(|place| self.numbers[place]).ok_or_else(|| E::missing_field(name))
+        self.numbers.get(name).copied().ok_or_else(|| E::missing_field(name))
     }
 }
 
@@ -228,22 +228,9 @@ struct Name(&'static str);
 
 impl<'de> Deserialize<'de> for Name {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NameVisitor;
-
-        impl Visitor<'_> for NameVisitor {
-            type Value = Name;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("field identifier")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Name, E> {
-                let known = NAMES.iter().find(|known| **known == name);
-                known.map(|known| Name(known)).ok_or_else(|| E::unknown_field(name, &NAMES))
-            }
-        }
-
-        deserializer.deserialize_identifier(NameVisitor)
+        let name = String::deserialize(deserializer)?;
+        let known = NAMES.iter().find(|known| **known == name);
+        known.map(|known| Name(known)).ok_or_else(|| D::Error::unknown_field(&name, &NAMES))
     }
 }
 
@@ -257,31 +244,18 @@ impl<'de> Visitor<'de> for MembersVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Members, A::Error> {
-        /// Reads the value of a member unless there is one already; `null` is not a value.
-        fn read<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
-            member: &mut Option<T>,
-            name: &'static str,
-            map: &mut A,
-        ) -> Result<(), A::Error> {
-            if member.is_some() {
-                return Err(A::Error::duplicate_field(name));
-            }
-            *member = Some(map.next_value()?);
-            Ok(())
-        }
-
         let mut members = Members::default();
         while let Some(Name(name)) = map.next_key()? {
+            if members.has(name) {
+                return Err(A::Error::duplicate_field(name));
+            }
+            // `null` is not a value.
             match name {
-                "type" => read(&mut members.kind, name, &mut map)?,
-                "r" => read(&mut members.r, name, &mut map)?,
-                "z" => read(&mut members.z, name, &mut map)?,
-                "parts" => read(&mut members.parts, name, &mut map)?,
-                _ => {
-                    if let Some(place) = place_of(name) {
-                        read(&mut members.numbers[place], name, &mut map)?;
-                    }
-                }
+                "type" => members.kind = Some(map.next_value()?),
+                "r" => members.r = Some(map.next_value()?),
+                "z" => members.z = Some(map.next_value()?),
+                "parts" => members.parts = Some(map.next_value()?),
+                number => drop(members.numbers.insert(number, map.next_value()?)),
             }
         }
         Ok(members)

@@ -21,12 +21,7 @@ use super::stress::{Sampling, Stress, StressRequest};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
-    "contact": {
-        "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-        "friction": 0.3,
-        "preload": {"normal_force": 10.0}
-    },
+    "contact": ContactDefinition::example(),
     "path": {"falling_amplitude": {"reversals": 20}},
     "stress": {"points": 200},
     "residual": true

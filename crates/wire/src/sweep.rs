@@ -1,6 +1,6 @@
 //! The body of `POST /sweep`, and its table.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
@@ -11,6 +11,7 @@ use utoipa::ToSchema;
 use stickslip_mechanics::range::{Quantity, Range};
 
 use super::check::{Faults, JsonPath};
+use super::definition::ContactDefinition;
 use super::json_value::{JsonValue, Pointer};
 use super::limits::{Items, Limit, Numbers, limits};
 use super::parse::{Document, Rejection, parse_value};
@@ -39,12 +40,7 @@ const SWEEP_NUMBERS: usize = 8_000_000;
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "base": {
-        "contact": {
-            "profile": {"type": "sphere", "radius": 0.01},
-            "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-            "friction": 0.3,
-            "preload": {"normal_force": 10.0}
-        },
+        "contact": ContactDefinition::example(),
         "path": {"falling_amplitude": {"reversals": 20}}, "steps": "last", "residual": true
     },
     "axes": [{"pointer": "/path/falling_amplitude/reversals", "linear": {"from": 1, "to": 100, "count": 100}}],
@@ -176,17 +172,15 @@ impl Document for SweepRequest {
             let (outputs, most) = (outputs.len(), SWEEP_NUMBERS);
             faults.add(at, format_args!("{points} points times {outputs} outputs: allowed are {most} numbers"));
         }
-        let mut names = HashSet::new();
         for (index, axis) in axes.iter().enumerate() {
-            if !names.insert(&axis.pointer) {
+            if axes.iter().take(index).any(|other| other.pointer == axis.pointer) {
                 faults.add(at.index(index).member("pointer"), "another axis has the same pointer");
             }
         }
         if faults.is_empty() {
             find_kinds(&self.base.0, &mut axes, &mut faults);
         }
-        let draft = CheckedSweep { request: self, axes, outputs, points };
-        faults.done(Some(draft))
+        faults.done(Some(CheckedSweep { request: self, axes, outputs, points }))
     }
 }
 

@@ -20,14 +20,10 @@ impl Format {
         if accepted.trim().is_empty() {
             return Ok(Format::Columns);
         }
-        let mut best = (0.0, None);
-        for &format in formats {
-            let quality = quality(&accepted, format.media_type());
-            if quality > best.0 {
-                best = (quality, Some(format));
-            }
-        }
-        best.1.ok_or_else(|| {
+        let weighed = formats.iter().map(|format| (quality(&accepted, format.media_type()), *format));
+        // Of equals the first.
+        let best = weighed.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        best.filter(|(quality, _)| *quality > 0.0).map(|(_, format)| format).ok_or_else(|| {
             let known: Vec<String> =
                 formats.iter().map(|format| format!("{} (`?format={}`)", format.media_type(), format.name())).collect();
             Problem::new(Code::NotAcceptable, format!("Accept must admit one of {}", known.join(", ")))

@@ -72,6 +72,12 @@ impl Format {
         self.names().0
     }
 
+    /// The one of `formats` with this name.
+    #[must_use]
+    pub fn named(name: &str, formats: &[Format]) -> Option<Format> {
+        formats.iter().copied().find(|format| format.name() == name)
+    }
+
     /// Its media type.
     #[must_use]
     pub const fn media_type(self) -> &'static str {

@@ -76,7 +76,7 @@ pub async fn admit(State(keys): State<Arc<Keys>>, mut request: Request, next: Ne
         let detail = "send a key of this service as `Authorization: Bearer KEY`";
         return Problem::new(Code::Unauthorized, detail).into_response();
     };
-    if !holder.roles.allow(role) {
+    if !holder.allows(role) {
         let detail = format!("this needs a key with the role `{}`", role.name());
         return Problem::new(Code::Forbidden, detail).into_response();
     }

@@ -11,13 +11,7 @@ use crate::api::query::PAGE;
 #[derive(OpenApi)]
 #[openapi(
     info(title = "stickslip"),
-    // The last are named by `Profile`, whose recursion keeps the derivation from finding them.
-    components(schemas(
-        ProblemDocument, EndEvent, JobEndEvent, profile::SphereProfile, profile::ExactSphereProfile, profile::ConeProfile,
-        profile::PowerLawProfile, profile::FlatPunchProfile, profile::TruncatedConeProfile,
-        profile::TruncatedSphereProfile, profile::RoundedPunchProfile, profile::RoundedConeProfile,
-        profile::TabulatedProfile, profile::SumProfile
-    )),
+    components(schemas(ProblemDocument, EndEvent, JobEndEvent)),
     tags(
         (name = "simulation", description = "A path from beginning to end, in one call"),
         (name = "protocols", description = "How to move so that little shear stress remains"),
@@ -32,6 +26,7 @@ struct Base;
 pub fn base() -> utoipa::openapi::OpenApi {
     let mut base = Base::openapi();
     base.info.description = Some(introduction());
+    base.components.get_or_insert_default().schemas.extend(profile::schemas());
     base
 }
 

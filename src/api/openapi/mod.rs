@@ -2,7 +2,6 @@
 //! express.
 
 mod base;
-mod keys;
 mod parameters;
 mod refusals;
 mod responses;
@@ -23,7 +22,7 @@ pub fn complete(described: &utoipa::openapi::OpenApi) -> String {
     schemas::write(&mut document);
     parameters::write(&mut document);
     refusals::write(&mut document);
-    keys::write(&mut document);
+    refusals::write_keys(&mut document);
     responses::write(&mut document);
     format!("{document:#}\n")
 }

@@ -44,9 +44,12 @@ fn links(document: &Value, place: &str) -> Value {
     Value::Object(operations.filter_map(link).collect())
 }
 
+fn text(description: &str) -> Value {
+    json!({"description": description, "schema": {"type": "string"}})
+}
+
 /// The headers that come with a status, whatever the operation.
 fn write_headers(responses: &mut Value) {
-    let text = |description: &str| json!({"description": description, "schema": {"type": "string"}});
     for (status, response) in responses.as_object_mut().into_iter().flatten() {
         let header = match status.as_str() {
             "401" => ("WWW-Authenticate", text("`Bearer`")),
@@ -61,7 +64,6 @@ fn write_headers(responses: &mut Value) {
 
 /// The answer 304 to a client that has the current version.
 fn write_conditional(operation: &mut Value, varies: bool) {
-    let text = |description: &str| json!({"description": description, "schema": {"type": "string"}});
     let tag = operation["responses"]["200"]["headers"]["ETag"].clone();
     operation["responses"]["304"] = json!({
         "description": "The client already has this version (If-None-Match)",
@@ -100,9 +102,8 @@ fn write_formats(operation: &mut Value, formats: &[Format]) {
         }});
     }
     if ["get_history", "get_loop"].iter().any(|name| operation["operationId"] == *name) {
-        operation["responses"]["200"]["headers"]["Link"] = json!({
-            "description": "The URL of the next page (`rel=\"next\"`), if there is one", "schema": {"type": "string"},
-        });
+        operation["responses"]["200"]["headers"]["Link"] =
+            text("The URL of the next page (`rel=\"next\"`), if there is one");
     }
     operation["responses"]["406"] = refusal("Accept admits none of the formats");
 }

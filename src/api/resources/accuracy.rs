@@ -10,7 +10,7 @@ use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::App;
 use crate::simulation::{self, cost};
-use stickslip_wire::{AccuracyReply, AccuracyRequest};
+use stickslip_wire::{AccuracyReply, AccuracyRequest, ContactDefinition};
 
 /// Compare solvers
 ///
@@ -22,12 +22,7 @@ use stickslip_wire::{AccuracyReply, AccuracyRequest};
     post, path = "/accuracy", tag = "simulation",
     request_body(content = AccuracyRequest, examples(
         ("as it is" = (summary = "A contact and a path, and the usual solvers", value = json!({
-            "contact": {
-                "profile": {"type": "sphere", "radius": 0.01},
-                "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-                "friction": 0.3,
-                "preload": {"normal_force": 10.0}
-            },
+            "contact": ContactDefinition::example(),
             "path": {"falling_amplitude": {"reversals": 20}}
         }))),
         ("own solvers" = (summary = "Two spring foundations, at given radii", value = json!({

@@ -61,14 +61,15 @@ pub async fn get_openapi(Extension(OpenApiText(text)): Extension<OpenApiText>) -
 )]
 pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Response, Problem> {
     let Some(kind) = Code::parse(&code) else {
-        return Err(nothing_at(&uri));
+        return Err(not_found(uri).await);
     };
     Ok(reply::json(reply::written(&json!({"code": code, "title": kind.title(), "status": kind.status()}))?))
 }
 
 /// The answer to a path that does not exist.
 pub async fn not_found(uri: Uri) -> Problem {
-    nothing_at(&uri)
+    let path: String = uri.path().chars().take(100).collect();
+    Problem::new(Code::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
 }
 
 /// The answer to a request that is refused before routing.
@@ -78,11 +79,6 @@ pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
         Some(Extension(Refusal::Full(error))) => error.into(),
         None => PoolError::Busy.into(),
     }
-}
-
-fn nothing_at(uri: &Uri) -> Problem {
-    let path: String = uri.path().chars().take(100).collect();
-    Problem::new(Code::NotFound, format!("there is nothing at {path}; /docs shows what there is"))
 }
 
 /// The answer when a handler panicked.

@@ -68,13 +68,13 @@ fn gauge(page: &Registry, options: Opts, value: f64) -> prometheus::Result<()> {
 }
 
 fn sessions(page: &Registry, readings: &Readings<'_>) -> prometheus::Result<()> {
-    show(page, readings.moves)?;
-    show(page, readings.hits)?;
+    show(page, &readings.counted.moves)?;
+    show(page, &readings.counted.hits)?;
     let misses =
         IntCounter::new("stickslip_cache_misses_total", "Times that it was not, and was brought from the store.")?;
-    misses.inc_by(readings.open.get_sample_count());
+    misses.inc_by(readings.counted.open.get_sample_count());
     show(page, &misses)?;
-    show(page, readings.open)?;
+    show(page, &readings.counted.open)?;
     for (name, help, value) in [
         ("stickslip_cache_contacts", "Contacts in memory that nobody works on.", readings.cached),
         ("stickslip_cache_bytes", "Bytes of their states.", readings.bytes),

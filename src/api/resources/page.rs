@@ -10,6 +10,7 @@ use axum::routing::get;
 use sha2::{Digest as _, Sha256};
 
 use super::meta;
+use crate::api::params::list_members;
 use crate::api::{reply, routes};
 
 /// One file of the page.
@@ -52,14 +53,12 @@ impl Asset {
         // The two encodings have different tags, because a tag identifies bytes.
         let tag = format!("\"{hash}-{coding}\"");
         let current = reply::is_current(asked, &tag);
-        let mut response = if current { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
+        let response = if current { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
+        let mut response = reply::tagged(response, &tag);
         let headers = response.headers_mut();
         headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
         // Revalidated each time: after an update no old file is used with a new one.
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-cache"));
-        if let Ok(tag) = HeaderValue::from_str(&tag) {
-            headers.insert(header::ETAG, tag);
-        }
         if !current {
             headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.media_type()));
             if coding == "gzip" {
@@ -80,8 +79,7 @@ impl Asset {
 }
 
 fn takes_gzip(headers: &HeaderMap) -> bool {
-    let values = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
-    values.flat_map(|value| value.split(',')).any(|coding| {
+    list_members(headers, "accept-encoding").any(|coding| {
         let (name, weight) = coding.split_once(';').unwrap_or((coding, "q=1"));
         let weight = weight.trim().trim_start_matches("q=").parse::<f64>();
         name.trim().eq_ignore_ascii_case("gzip") && weight.is_ok_and(|weight| weight > 0.0)

@@ -8,7 +8,7 @@ use crate::api::reply;
 use crate::api::state::TenantApp;
 use crate::simulation::{self, cost};
 use stickslip_wire::protocol::ProtocolSubject;
-use stickslip_wire::{ProtocolReply, ProtocolRequest};
+use stickslip_wire::{ContactDefinition, ProtocolReply, ProtocolRequest};
 
 /// Find a protocol
 ///
@@ -19,12 +19,7 @@ use stickslip_wire::{ProtocolReply, ProtocolRequest};
     post, path = "/protocols", tag = "protocols",
     request_body(content = ProtocolRequest, examples(
         ("best" = (summary = "The least that 20 reversals can leave on a sphere", value = json!({
-            "contact": {
-                "profile": {"type": "sphere", "radius": 0.01},
-                "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-                "friction": 0.3,
-                "preload": {"normal_force": 10.0}
-            },
+            "contact": ContactDefinition::example(),
             "reversals": 20, "kind": "minimax", "end": "free"
         }))),
         ("target" = (summary = "The fewest reversals that leave a quarter, and how robust they are with a coarse actuator", value = json!({
@@ -57,7 +52,7 @@ pub async fn find_protocol(
             held.resize(&app.pool, bytes).await?;
             let cost = cost::of_protocol(&setup.profile, &task, 0);
             let work = move || {
-                let found = simulation::protocol_for(&definition, &setup, first, &task, &stop)?;
+                let found = simulation::protocol_for(&setup, first, &task, &stop)?;
                 reply::written(&found)
             };
             Ok(held.on(reply::json(app.pool.run(cost, work).await??)))

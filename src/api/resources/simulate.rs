@@ -11,7 +11,7 @@ use crate::api::reply;
 use crate::api::state::App;
 use crate::otlp;
 use crate::simulation::{self, cost};
-use stickslip_wire::{SimulateReply, SimulateRequest};
+use stickslip_wire::{ContactDefinition, SimulateReply, SimulateRequest};
 
 /// Simulate a path
 ///
@@ -21,12 +21,7 @@ use stickslip_wire::{SimulateReply, SimulateRequest};
     post, path = "/simulate", tag = "simulation",
     request_body(content = SimulateRequest, examples(
         ("back and forth" = (summary = "Falling amplitude, with the residual stresses", value = json!({
-            "contact": {
-                "profile": {"type": "sphere", "radius": 0.01},
-                "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-                "friction": 0.3,
-                "preload": {"normal_force": 10.0}
-            },
+            "contact": ContactDefinition::example(),
             "path": {"falling_amplitude": {"reversals": 20}},
             "stress": {"points": 200}, "residual": true
         }))),

@@ -58,21 +58,12 @@ pub struct ConnectionCounts {
     pub closed: u64,
 }
 
-/// The decision on a new connection.
-pub enum Admission {
-    /// It is served.
-    Admitted(ConnectionPermit),
-    /// It is answered for the health of the server alone; every other request is refused.
-    Spare(ConnectionPermit),
-    /// It is closed at once.
-    Refused,
-}
-
-/// A connection that is counted until this is dropped.
+/// A connection that is counted until this is dropped. A spare one is answered for the health of the server alone; every
+/// other request is refused.
 pub struct ConnectionPermit {
     limiter: ConnectionLimiter,
-    // None for a spare one.
-    number: Option<u64>,
+    /// Its number; none for a spare one, which is never closed to make room.
+    pub number: Option<u64>,
     /// What it is doing.
     pub activity: Arc<ConnectionActivity>,
 }
@@ -106,8 +97,8 @@ impl ConnectionLimiter {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Decides on a connection from `address`.
-    pub(crate) fn admit(&self, address: IpAddr) -> Admission {
+    /// Decides on a connection from `address`; without a permit it is closed at once.
+    pub(crate) fn admit(&self, address: IpAddr) -> Option<ConnectionPermit> {
         let (client, activity) = (client(address), Arc::new(ConnectionActivity::new()));
         let mut table = self.table();
         if table.connections.len() >= self.limits.most {
@@ -120,13 +111,13 @@ impl ConnectionLimiter {
             table.next += 1;
             table.clients.insert(client, mine + 1);
             table.connections.insert(number, Connection { client, activity: Arc::clone(&activity), task: None });
-            Admission::Admitted(permit(Some(number)))
+            Some(permit(Some(number)))
         } else if table.spare < SPARE_CONNECTIONS {
             table.spare += 1;
-            Admission::Spare(permit(None))
+            Some(permit(None))
         } else {
             table.refused += 1;
-            Admission::Refused
+            None
         }
     }
 
@@ -194,11 +185,6 @@ impl ConnectionPermit {
     /// Whether it is a spare one.
     pub fn is_spare(&self) -> bool {
         self.number.is_none()
-    }
-
-    /// Its number; none for a spare one, which is never closed to make room.
-    pub fn number(&self) -> Option<u64> {
-        self.number
     }
 }
 

@@ -17,7 +17,7 @@ use std::time::Duration;
 
 pub(crate) use activity::ConnectionActivity;
 pub use bodies::SlowBody;
-pub(crate) use limiter::{Admission, ConnectionPermit};
+pub(crate) use limiter::ConnectionPermit;
 pub use limiter::{ConnectionCounts, ConnectionLimiter};
 pub use service::{Refusal, Service};
 pub(crate) use socket::Socket;

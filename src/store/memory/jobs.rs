@@ -1,7 +1,6 @@
 //! Jobs in the process.
 
-use std::collections::{BTreeMap, HashMap};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use async_trait::async_trait;
@@ -9,32 +8,20 @@ use jiff::Timestamp;
 use uuid::Uuid;
 
 use super::MemoryStore;
-use crate::store::jobs::{ChunkQueue, ChunkResult, Claim, Job, JobLimits, JobStore};
+use crate::store::jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
 use crate::store::{Receipt, Result, StoreError};
 
-/// Jobs in a map.
-#[derive(Default)]
-pub(super) struct Jobs {
-    // A std mutex: held for a lookup or the copy of a few chunks, never across an await.
-    jobs: Mutex<HashMap<Uuid, StoredJob>>,
-    queue: ChunkQueue,
-}
-
-struct StoredJob {
+pub(super) struct StoredJob {
     job: Job,
     request: String,
     chunks: BTreeMap<u64, Vec<u8>>,
 }
 
-impl Jobs {
-    fn lock(&self) -> MutexGuard<'_, HashMap<Uuid, StoredJob>> {
-        self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
+impl MemoryStore {
     /// Deletes the jobs that have expired.
-    pub(super) fn purge(&self) {
+    pub(super) fn purge_jobs(&self) {
         let now = Timestamp::now();
-        self.lock().retain(|id, stored| {
+        self.lock().jobs.retain(|id, stored| {
             let stays = stored.job.expires_at() > now;
             if !stays {
                 self.queue.remove_job(*id);
@@ -43,8 +30,8 @@ impl Jobs {
         });
     }
 
-    fn with<T>(&self, id: Uuid, look: impl FnOnce(&mut StoredJob) -> T) -> Result<T> {
-        self.lock().get_mut(&id).map(look).ok_or(StoreError::NotFound)
+    fn with_job<T>(&self, id: Uuid, look: impl FnOnce(&mut StoredJob) -> T) -> Result<T> {
+        self.lock().jobs.get_mut(&id).map(look).ok_or(StoreError::NotFound)
     }
 }
 
@@ -53,44 +40,43 @@ impl JobStore for MemoryStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
-        let mut stored = self.jobs.lock();
         let (mut jobs, mut bytes, mut cost) = (0, 0, 0);
-        for other in stored.values().map(|stored| &stored.job).filter(|other| other.tenant == job.tenant) {
+        for other in inner.jobs.values().map(|stored| &stored.job).filter(|other| other.tenant == job.tenant) {
             jobs += 1;
             bytes += other.bytes;
             cost += if other.finished_at.is_none() { other.cost } else { 0 };
         }
         limits.check(jobs, bytes, cost, &job)?;
         let (id, chunks) = (job.id, job.chunks());
-        stored.insert(id, StoredJob { job, request, chunks: BTreeMap::new() });
-        self.jobs.queue.add_job(id, 0..chunks);
+        inner.jobs.insert(id, StoredJob { job, request, chunks: BTreeMap::new() });
+        self.queue.add_job(id, 0..chunks);
         inner.receipts.insert(receipt);
         Ok(())
     }
 
     async fn job(&self, id: Uuid) -> Result<Job> {
-        self.jobs.with(id, |stored| stored.job.clone())
+        self.with_job(id, |stored| stored.job.clone())
     }
 
     async fn job_request(&self, id: Uuid) -> Result<String> {
-        self.jobs.with(id, |stored| stored.request.clone())
+        self.with_job(id, |stored| stored.request.clone())
     }
 
     async fn claim(&self, owner: Uuid, after: Option<Uuid>, _: Duration) -> Result<Option<Claim>> {
-        Ok(self.jobs.queue.claim(owner, after))
+        Ok(self.queue.claim(owner, after))
     }
 
     async fn renew(&self, claim: Claim, _: Duration) -> Result<bool> {
-        Ok(self.jobs.queue.is_claimed(claim))
+        Ok(self.queue.is_claimed(claim))
     }
 
     async fn release(&self, claim: Claim) -> Result<()> {
-        self.jobs.queue.release(claim);
+        self.queue.release(claim);
         Ok(())
     }
 
     async fn save_chunk(&self, claim: Claim, result: ChunkResult) -> Result<()> {
-        let saved = self.jobs.with(claim.job, |StoredJob { job, chunks, .. }| {
+        let saved = self.with_job(claim.job, |StoredJob { job, chunks, .. }| {
             if job.finished_at.is_none() && !chunks.contains_key(&claim.chunk) {
                 job.done += result.points;
                 job.failed += result.failed;
@@ -100,30 +86,30 @@ impl JobStore for MemoryStore {
                 }
             }
         });
-        self.jobs.queue.finish(claim);
+        self.queue.finish(claim);
         self.changes.wake(claim.job);
         saved
     }
 
     async fn fail_job(&self, id: Uuid, error: String) -> Result<()> {
-        let failed = self.jobs.with(id, |StoredJob { job, .. }| {
+        let failed = self.with_job(id, |StoredJob { job, .. }| {
             if job.finished_at.is_none() {
                 job.finished_at = Some(Timestamp::now());
                 job.error = Some(error);
             }
         });
-        self.jobs.queue.remove_job(id);
+        self.queue.remove_job(id);
         self.changes.wake(id);
         failed
     }
 
     async fn chunks(&self, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>> {
-        self.jobs.with(id, |stored| stored.chunks.range(first..).take(limit).map(|(_, chunk)| chunk.clone()).collect())
+        self.with_job(id, |stored| stored.chunks.range(first..).take(limit).map(|(_, chunk)| chunk.clone()).collect())
     }
 
     async fn delete_job(&self, id: Uuid) -> Result<()> {
-        let deleted = self.jobs.lock().remove(&id).map(drop).ok_or(StoreError::NotFound);
-        self.jobs.queue.remove_job(id);
+        let deleted = self.lock().jobs.remove(&id).map(drop).ok_or(StoreError::NotFound);
+        self.queue.remove_job(id);
         self.changes.wake(id);
         deleted
     }

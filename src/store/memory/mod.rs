@@ -13,6 +13,9 @@ use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
+use jobs::StoredJob;
+
+use super::jobs::ChunkQueue;
 use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
@@ -25,8 +28,7 @@ const RECEIPT_OVERHEAD: usize = 256;
 pub struct MemoryStore {
     // A std mutex: it is held for a lookup, a push or a page of copies, never across an await.
     inner: Mutex<Inner>,
-    // Locked after the others, where both are.
-    jobs: jobs::Jobs,
+    queue: ChunkQueue,
     changes: Changes,
 }
 
@@ -36,6 +38,7 @@ struct Inner {
     receipts: Receipts,
     // Only what expired: a deleted session leaves nothing behind.
     expired: HashMap<Uuid, Tenant>,
+    jobs: HashMap<Uuid, StoredJob>,
 }
 
 struct Stored {
@@ -219,7 +222,7 @@ impl Store for MemoryStore {
     }
 
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64> {
-        self.jobs.purge();
+        self.purge_jobs();
         let mut inner = self.lock();
         inner.receipts.purge();
         let Some(since) = idle_since else { return Ok(0) };
@@ -241,9 +244,8 @@ impl Store for MemoryStore {
 
 #[cfg(test)]
 mod tests {
-    use super::{MemoryStore, RECEIPT_BYTES, Receipts};
-    use crate::store::{Receipt, Reply, RequestKey, Store as _, StoreError};
-    use uuid::Uuid;
+    use super::{RECEIPT_BYTES, Receipts};
+    use crate::store::{Receipt, Reply, RequestKey};
 
     fn receipt(key: &str, bytes: usize) -> Receipt {
         let request = RequestKey { key: key.to_owned(), fingerprint: [0; 32] };
@@ -259,19 +261,5 @@ mod tests {
         assert!(!receipts.by_key.contains_key("a"));
         assert!(receipts.check_free(Some(&receipt("c", 0))).is_err() && receipts.bytes <= RECEIPT_BYTES);
         assert_eq!(receipts.arrivals.len(), receipts.by_key.len());
-    }
-
-    #[tokio::test]
-    async fn what_is_not_there_cannot_be_changed() {
-        let (store, id) = (MemoryStore::new(), Uuid::now_v7());
-        assert!(matches!(store.append(id, 0, Vec::new(), None).await, Err(StoreError::NotFound)));
-        assert!(matches!(store.delete(id, 0).await, Err(StoreError::NotFound)));
-        assert!(matches!(store.history(id, 0, 1).await, Err(StoreError::NotFound)));
-    }
-
-    #[test]
-    fn timestamps_and_identifiers_agree_on_the_order() {
-        let ids: Vec<Uuid> = (0..1000).map(|_| Uuid::now_v7()).collect();
-        assert!(ids.is_sorted());
     }
 }

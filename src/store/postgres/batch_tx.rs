@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use futures::future::try_join_all;
 use tokio::time::timeout;
-use tokio_postgres::{Client, Statement};
+use tokio_postgres::{Client, Error, Statement};
 use uuid::Uuid;
 
 use super::client_pool::{ANSWER, ClientPool, Parameter};
@@ -63,10 +63,7 @@ impl WriterConnection {
         let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
         let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
-        // The first column of a receipt names the session whose change must succeed for it; that of a new one always
-        // does.
-        let first_receipts = columns.first_receipts.parameters().into_iter().skip(1);
-        let created: Vec<_> = columns.sessions.parameters().into_iter().chain(first_receipts).collect();
+        let created = created(&columns.sessions, &columns.first_receipts);
 
         let locked: [Parameter<'_>; 1] = [&columns.requests.id];
         let announced: [Parameter<'_>; 2] = [&sql::CHANNEL, &columns.announcements];
@@ -76,26 +73,9 @@ impl WriterConnection {
             futures::join!(
                 self.client.batch_execute(sql::BEGIN),
                 self.client.query(&self.lock, &locked),
-                async {
-                    if columns.requests.id.is_empty() {
-                        Ok(0)
-                    } else {
-                        self.client.execute(&self.append, &appended).await
-                    }
-                },
-                async {
-                    if columns.sessions.id.is_empty() {
-                        Ok(0)
-                    } else {
-                        self.client.execute(&self.create, &created).await
-                    }
-                },
-                async {
-                    match &self.notify {
-                        Some(notify) => self.client.execute(notify, &announced).await,
-                        None => Ok(0),
-                    }
-                },
+                self.execute(Some(&self.append).filter(|_| !columns.requests.id.is_empty()), &appended),
+                self.execute(Some(&self.create).filter(|_| !columns.sessions.id.is_empty()), &created),
+                self.execute(self.notify.as_ref(), &announced),
                 self.client.batch_execute(sql::COMMIT),
             )
         };
@@ -109,6 +89,14 @@ impl WriterConnection {
         notified?;
         committed?;
         Ok(found.iter().map(|row| (row.get(0), from_bigint(row.get(1)))).collect())
+    }
+
+    /// Executes a statement if there is one.
+    async fn execute(&self, statement: Option<&Statement>, parameters: &[Parameter<'_>]) -> Result<u64, Error> {
+        match statement {
+            Some(statement) => self.client.execute(statement, parameters).await,
+            None => Ok(0),
+        }
     }
 }
 
@@ -138,6 +126,12 @@ impl Columns {
         columns.announcements = announcements(&columns.requests.id);
         columns
     }
+}
+
+/// The parameters of [`sql::CREATE`].
+pub(super) fn created<'a>(sessions: &'a Sessions, receipts: &'a Receipts) -> Vec<Parameter<'a>> {
+    // The first column of a receipt names the session whose change must succeed for it; that of a new one always does.
+    sessions.parameters().into_iter().chain(receipts.parameters().into_iter().skip(1)).collect()
 }
 
 /// Payloads that name these sessions.

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use deadpool_postgres::{Hook, HookError, Manager, ManagerConfig, Object, Pool, RecyclingMethod, Runtime};
+use deadpool_postgres::{
+    GenericClient, Hook, HookError, Manager, ManagerConfig, Object, Pool, RecyclingMethod, Runtime,
+};
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
 
@@ -135,12 +137,22 @@ impl Tries {
     }
 }
 
-/// The rows of a statement, prepared once on each connection.
+/// The rows of a statement, on a connection or in a transaction; it is prepared once on each connection.
 pub(super) async fn rows(
-    connection: &Object,
+    client: &impl GenericClient,
     statement: &str,
     parameters: &[Parameter<'_>],
 ) -> Result<Vec<Row>, Fault> {
-    let statement = connection.prepare_cached(statement).await?;
-    Ok(connection.query(&statement, parameters).await?)
+    let statement = client.prepare_cached(statement).await?;
+    Ok(client.query(&statement, parameters).await?)
+}
+
+/// The number of rows that a statement has changed, likewise.
+pub(super) async fn execute(
+    client: &impl GenericClient,
+    statement: &str,
+    parameters: &[Parameter<'_>],
+) -> Result<u64, Fault> {
+    let statement = client.prepare_cached(statement).await?;
+    Ok(client.execute(&statement, parameters).await?)
 }

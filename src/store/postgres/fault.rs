@@ -10,7 +10,7 @@ use tokio_postgres::error::{DbError, SqlState};
 
 use crate::store::StoreError;
 
-use super::connect::error_chain;
+use super::connect::{causes, error_chain};
 
 /// How long to wait for a lost database before requests fail. After that no request waits until it is back.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -58,15 +58,10 @@ impl From<StoreError> for Fault {
 
 /// Whether TLS failed, which a retry would not change.
 fn distrusted(error: &Error) -> bool {
-    let mut source = std::error::Error::source(error);
-    while let Some(inner) = source {
-        let carried = inner.downcast_ref::<io::Error>().and_then(io::Error::get_ref);
-        if carried.is_some_and(|carried| carried.is::<rustls::Error>()) {
-            return true;
-        }
-        source = inner.source();
-    }
-    false
+    causes(error).any(|cause| {
+        let carried = cause.downcast_ref::<io::Error>().and_then(io::Error::get_ref);
+        carried.is_some_and(|carried| carried.is::<rustls::Error>())
+    })
 }
 
 fn refused(refusal: &DbError) -> Fault {

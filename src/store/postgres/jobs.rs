@@ -12,29 +12,27 @@ use uuid::Uuid;
 
 use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows;
-use crate::store::{RECEIPT_LIFETIME, Receipt, Result, StoreError};
+use crate::store::{Receipt, Result, StoreError};
 
 use super::PostgresStore;
-use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
-use super::columns::{from_bigint, reader, split_time, to_bigint};
+use super::client_pool::{self, ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, try_once, with_retries};
+use super::columns::{Receipts, Sessions, from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
-use super::transactions::{begin, execute};
+use super::transactions::{begin, create};
 
 /// Jobs that one statement deletes: their results are large.
 const PURGED_AT_ONCE: i64 = 4;
 
-/// A job to be stored.
-struct NewJob {
-    job: Job,
-    request: String,
-    limits: JobLimits,
-    receipt: Option<Receipt>,
-}
-
-impl NewJob {
-    async fn make(&self, pool: &ClientPool, connection: &mut Object, commit_sent: &AtomicBool) -> Result<(), Fault> {
-        let NewJob { job, request, limits, receipt } = self;
+impl ClientPool {
+    async fn create_job(
+        &self,
+        connection: &mut Object,
+        (job, request): (&Job, &str),
+        limits: JobLimits,
+        receipt: Option<&Receipt>,
+        commit_sent: &AtomicBool,
+    ) -> Result<(), Fault> {
         let transaction = begin(connection).await?;
         let tenant = job.tenant.name();
         // Tenants that share a number wait for each other, and no more.
@@ -45,47 +43,24 @@ impl NewJob {
         let (at, ns) = split_time(job.created_at);
         let (points, chunk) = (to_bigint(job.points), to_bigint(job.chunk));
         let (bytes, cost) = (to_bigint(job.bytes), to_bigint(job.cost));
-        let row: [Parameter<'_>; 9] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, request];
+        let row: [Parameter<'_>; 9] = [&job.id, &tenant, &at, &ns, &points, &chunk, &bytes, &cost, &request];
         execute(&transaction, sql::CREATE_JOB, &row).await?;
         execute(&transaction, sql::CREATE_CHUNKS, &[&job.id, &to_bigint(job.chunks())]).await?;
-        if let Some(Receipt { request, reply }) = receipt {
-            let keys = [request.key.as_str()];
-            execute(&transaction, sql::DELETE_OLD_KEYS, &[&keys.as_slice(), &RECEIPT_LIFETIME.as_secs_f64()]).await?;
-            let fingerprint = request.fingerprint.as_slice();
-            let sequence = to_bigint(reply.sequence);
-            let row: [Parameter<'_>; 5] = [&request.key, &fingerprint, &reply.created, &sequence, &reply.body];
-            execute(&transaction, sql::SAVE_RECEIPT, &row).await?;
+        if let Some(receipt) = receipt {
+            let mut receipts = Receipts::default();
+            receipts.push((job.id, receipt));
+            create(&transaction, &Sessions::default(), &receipts).await?;
         }
-        pool.announce(&transaction, &[job.id]).await?;
+        self.announce(&transaction, &[job.id]).await?;
         commit_sent.store(true, Ordering::Relaxed);
         transaction.commit().await?;
         Ok(())
     }
-}
-
-impl ClientPool {
-    async fn create_job(&self, new: NewJob) -> Result<()> {
-        let commit_sent = AtomicBool::new(false);
-        let error = match with_retries!(self, LONG_ANSWER, connection => new.make(self, connection, &commit_sent)) {
-            Ok(()) => return Ok(()),
-            Err(error) => error,
-        };
-        // A lost connection may have hidden that an earlier attempt went well.
-        if commit_sent.into_inner() && self.row(sql::JOB, &[&new.job.id]).await?.is_some() {
-            return Ok(());
-        }
-        match &new.receipt {
-            Some(receipt) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
-            _ => Err(error),
-        }
-    }
-
     /// Whether there was such a job.
     async fn save_chunk(&self, connection: &mut Object, claim: Claim, result: &ChunkResult) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         let Claim { job, chunk, .. } = claim;
-        let statement = transaction.prepare_cached(sql::LOCK_JOB).await?;
-        if transaction.query_opt(&statement, &[&job]).await?.is_none() {
+        if client_pool::rows(&transaction, sql::LOCK_JOB, &[&job]).await?.is_empty() {
             return Ok(false);
         }
         if execute(&transaction, sql::SAVE_CHUNK, &[&job, &to_bigint(chunk), &result.content]).await? > 0 {
@@ -99,8 +74,7 @@ impl ClientPool {
 
     async fn fail_job(&self, connection: &mut Object, id: Uuid, error: &str) -> Result<(), Fault> {
         let transaction = begin(connection).await?;
-        let statement = transaction.prepare_cached(sql::LOCK_JOB).await?;
-        if transaction.query_opt(&statement, &[&id]).await?.is_some() {
+        if !client_pool::rows(&transaction, sql::LOCK_JOB, &[&id]).await?.is_empty() {
             execute(&transaction, sql::FAIL_JOB, &[&id, &error]).await?;
             execute(&transaction, sql::DROP_CHUNKS, &[&id]).await?;
             self.announce(&transaction, &[id]).await?;
@@ -138,7 +112,18 @@ async fn purge(connection: &mut Object) -> Result<u64, Fault> {
 #[async_trait]
 impl JobStore for PostgresStore {
     async fn create_job(&self, job: Job, request: String, limits: JobLimits, receipt: Option<Receipt>) -> Result<()> {
-        self.pool.create_job(NewJob { job, request, limits, receipt }).await
+        let (pool, receipt, commit_sent) = (&self.pool, receipt.as_ref(), AtomicBool::new(false));
+        let made = with_retries!(pool, LONG_ANSWER, connection =>
+            pool.create_job(connection, (&job, &request), limits, receipt, &commit_sent));
+        let Err(error) = made else { return Ok(()) };
+        // A lost connection may have hidden that an earlier attempt went well.
+        if commit_sent.into_inner() && pool.row(sql::JOB, &[&job.id]).await?.is_some() {
+            return Ok(());
+        }
+        match receipt {
+            Some(receipt) if pool.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
+            _ => Err(error),
+        }
     }
 
     async fn job(&self, id: Uuid) -> Result<Job> {

@@ -33,6 +33,7 @@ use uuid::Uuid;
 use stickslip_wire::SessionSummary;
 
 use super::rows;
+use super::schema::SchemaError;
 use super::{
     Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
 };
@@ -42,7 +43,6 @@ use columns::{from_bigint, reader, to_bigint};
 use connect::ConnectTarget;
 use fault::{Backoff, Fault};
 use request::Change;
-use schema::SchemaError;
 use writer::Writer;
 
 /// How long a start waits for the database.
@@ -55,7 +55,7 @@ pub struct PostgresStore {
     pool: Arc<ClientPool>,
     writer: Writer,
     changes: Arc<Changes>,
-    listener: AbortHandle,
+    listener: Option<AbortHandle>,
 }
 
 impl PostgresStore {
@@ -75,11 +75,10 @@ impl PostgresStore {
         if !announces {
             tracing::warn!("the database has no pg_notify: listeners read changes by other processes once a second");
         }
-        let pool = Arc::new(ClientPool::new(target, announces)?);
-        let changes = Arc::new(Changes::default());
-        let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
-        let listener = tokio::spawn(listen::listen(Arc::clone(&pool), Arc::clone(&changes))).abort_handle();
-        Ok(PostgresStore { pool, writer, changes, listener })
+        let mut store = PostgresStore::start(target, announces)?;
+        let listening = listen::listen(Arc::clone(&store.pool), Arc::clone(&store.changes));
+        store.listener = Some(tokio::spawn(listening).abort_handle());
+        Ok(store)
     }
 
     /// Connects to a database for reading, while other processes may use it. Its tables must exist.
@@ -90,14 +89,17 @@ impl PostgresStore {
         let target = ConnectTarget::parse(url).map_err(StoreError::Failed)?;
         let address = target.address();
         let checked = async { schema::check(&target.open().await?).await };
-        checked.await.map_err(|error: SchemaError| {
+        checked.await.map_err(|error: SchemaError<_>| {
             StoreError::Failed(format!("{address}: {}", Fault::from(error).into_store_error()))
         })?;
-        let pool = Arc::new(ClientPool::new(target, false)?);
-        let changes = Arc::new(Changes::default());
+        PostgresStore::start(target, false)
+    }
+
+    /// A store that does not listen yet.
+    fn start(target: ConnectTarget, announces: bool) -> Result<PostgresStore> {
+        let (pool, changes) = (Arc::new(ClientPool::new(target, announces)?), Arc::default());
         let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
-        let listener = tokio::spawn(std::future::pending::<()>()).abort_handle();
-        Ok(PostgresStore { pool, writer, changes, listener })
+        Ok(PostgresStore { pool, writer, changes, listener: None })
     }
 
     /// Which database it is, without the password.
@@ -109,7 +111,7 @@ impl PostgresStore {
 
 impl Drop for PostgresStore {
     fn drop(&mut self) {
-        self.listener.abort();
+        self.listener.iter().for_each(AbortHandle::abort);
     }
 }
 
@@ -131,8 +133,8 @@ async fn prepare(target: &ConnectTarget) -> Result<bool> {
     }
 }
 
-impl From<SchemaError> for Fault {
-    fn from(error: SchemaError) -> Fault {
+impl From<SchemaError<tokio_postgres::Error>> for Fault {
+    fn from(error: SchemaError<tokio_postgres::Error>) -> Fault {
         match error {
             SchemaError::Database(error) => error.into(),
             SchemaError::Version(error) => Fault::Refused(StoreError::Failed(error.to_string())),

@@ -2,7 +2,7 @@
 
 use tokio_postgres::{Client, Error};
 
-use crate::store::schema::{self, VersionError};
+use crate::store::schema::{self, SchemaError};
 
 /// The migrations, oldest first: each leads from one version of the tables to the next.
 pub const MIGRATIONS: &[&str] = &[include_str!("schema_1.sql")];
@@ -19,27 +19,16 @@ CREATE TABLE IF NOT EXISTS stickslip_schema (
 const VERSION: &str = "SELECT coalesce(max(version), 0) FROM stickslip_schema";
 const RECORD_VERSION: &str = "INSERT INTO stickslip_schema (version) VALUES ($1)";
 
-/// Why the tables cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum SchemaError {
-    /// They have another version.
-    #[error(transparent)]
-    Version(#[from] VersionError),
-    /// The database refused or was lost.
-    #[error(transparent)]
-    Database(#[from] Error),
-}
-
 /// Applies the migrations that a database has not seen, all of them or none.
 ///
 /// # Errors
 /// [`SchemaError`]; nothing has changed then.
-pub async fn migrate(client: &mut Client, migrations: &[&str]) -> Result<(), SchemaError> {
+pub async fn migrate(client: &mut Client, migrations: &[&str]) -> Result<(), SchemaError<Error>> {
     let transaction = client.transaction().await?;
     transaction.batch_execute(ADVISORY_LOCK).await?;
     transaction.batch_execute(CREATE_VERSIONS).await?;
     let found = transaction.query_one(VERSION, &[]).await?.get(0);
-    for (version, script) in schema::pending(found, migrations)? {
+    for (version, script) in schema::pending(found, migrations).map_err(SchemaError::Version)? {
         transaction.batch_execute(script).await?;
         transaction.execute(RECORD_VERSION, &[&version]).await?;
         tracing::info!(version, "the database schema has been migrated");
@@ -48,6 +37,6 @@ pub async fn migrate(client: &mut Client, migrations: &[&str]) -> Result<(), Sch
 }
 
 /// Whether the tables have the version that this program works with.
-pub(super) async fn check(client: &Client) -> Result<(), SchemaError> {
-    Ok(schema::check(client.query_one(VERSION, &[]).await?.get(0), MIGRATIONS)?)
+pub(super) async fn check(client: &Client) -> Result<(), SchemaError<Error>> {
+    schema::check(client.query_one(VERSION, &[]).await?.get(0), MIGRATIONS).map_err(SchemaError::Version)
 }

@@ -182,9 +182,6 @@ VALUES ($1, $2, $3, $4, $5, $6, 0, 0, $7, $8, $9)";
 pub(super) const CREATE_CHUNKS: &str = "
 INSERT INTO job_chunks (job, chunk) SELECT $1::uuid, chunk FROM generate_series(0::bigint, $2::bigint - 1) AS chunk";
 
-pub(super) const SAVE_RECEIPT: &str = "
-INSERT INTO receipts (key, fingerprint, created, sequence, body) VALUES ($1, $2, $3, $4, $5)";
-
 pub(super) const JOB: &str = "
 SELECT id, tenant, created_at, created_ns, finished_at, error, points, chunk, done, failed, bytes, cost
 FROM jobs WHERE id = $1";

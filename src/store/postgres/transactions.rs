@@ -13,8 +13,8 @@ use uuid::Uuid;
 
 use crate::store::{RECEIPT_LIFETIME, Receipt, Result, Session, Snapshot, StoreError, Tenant};
 
-use super::batch_tx::announcements;
-use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, try_once, with_retries};
+use super::batch_tx::{announcements, created};
+use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, rows, try_once, with_retries};
 use super::columns::{Receipts, Sessions, split_time, to_bigint};
 use super::fault::Fault;
 use super::sql;
@@ -114,7 +114,10 @@ impl ClientPool {
 
     /// [`crate::store::Store::purge_expired`]
     pub(super) async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<Vec<Uuid>> {
-        while to_bigint(with_retries!(self, ANSWER, connection => purge_receipts(connection))?) == RECEIPTS {}
+        let lifetime = RECEIPT_LIFETIME.as_secs_f64();
+        let which: [Parameter<'_>; 2] = [&lifetime, &RECEIPTS];
+        let purge = async |connection: &Object| execute(connection, sql::PURGE_RECEIPTS, &which).await;
+        while to_bigint(with_retries!(self, ANSWER, connection => purge(connection))?) == RECEIPTS {}
         let Some((since, since_ns)) = idle_since.map(split_time) else {
             return Ok(Vec::new());
         };
@@ -136,8 +139,7 @@ impl ClientPool {
 
     async fn purge_idle(&self, connection: &mut Object, which: &[Parameter<'_>]) -> Result<Vec<Uuid>, Fault> {
         let transaction = begin(connection).await?;
-        let statement = transaction.prepare_cached(sql::PURGE_IDLE).await?;
-        let gone = transaction.query(&statement, which).await?;
+        let gone = rows(&transaction, sql::PURGE_IDLE, which).await?;
         let gone: Vec<Uuid> = gone.iter().map(|row| row.get(0)).collect();
         self.announce(&transaction, &gone).await?;
         transaction.commit().await?;
@@ -166,14 +168,9 @@ impl Fork {
     /// Makes it, unless the session is at another sequence or deleted.
     async fn make(&self, connection: &mut Object, commit_sent: &AtomicBool) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
-        let lifetime = RECEIPT_LIFETIME.as_secs_f64();
-        execute(&transaction, sql::DELETE_OLD_KEYS, &[&self.receipts.key, &lifetime]).await?;
-        let first_receipts = self.receipts.parameters().into_iter().skip(1);
-        let created: Vec<Parameter<'_>> = self.sessions.parameters().into_iter().chain(first_receipts).collect();
-        execute(&transaction, sql::CREATE, &created).await?;
-        let statement = transaction.prepare_cached(sql::SEQUENCE).await?;
-        let found: Option<i64> = transaction.query_opt(&statement, &[&self.id]).await?.map(|row| row.get(0));
-        if found != Some(self.sequence) {
+        create(&transaction, &self.sessions, &self.receipts).await?;
+        let found = rows(&transaction, sql::SEQUENCE, &[&self.id]).await?;
+        if found.first().is_none_or(|row| row.get::<_, i64>(0) != self.sequence) {
             return Ok(false);
         }
         let copied = execute(&transaction, sql::COPY_PAST, &[&self.copy, &self.id, &self.sequence]).await?;
@@ -188,11 +185,6 @@ impl Fork {
     }
 }
 
-async fn purge_receipts(connection: &Object) -> Result<u64, Fault> {
-    let statement = connection.prepare_cached(sql::PURGE_RECEIPTS).await?;
-    Ok(connection.execute(&statement, &[&RECEIPT_LIFETIME.as_secs_f64(), &RECEIPTS]).await?)
-}
-
 /// Begins a transaction that may take long.
 pub(super) async fn begin(connection: &mut Object) -> Result<Transaction<'_>, Fault> {
     let transaction = connection.build_transaction().isolation_level(IsolationLevel::ReadCommitted).start().await?;
@@ -200,12 +192,12 @@ pub(super) async fn begin(connection: &mut Object) -> Result<Transaction<'_>, Fa
     Ok(transaction)
 }
 
-/// The number of rows that a statement has changed.
-pub(super) async fn execute(
+/// Makes sessions, and keeps receipts in place of expired ones.
+pub(super) async fn create(
     transaction: &Transaction<'_>,
-    statement: &str,
-    parameters: &[Parameter<'_>],
-) -> Result<u64, Fault> {
-    let statement = transaction.prepare_cached(statement).await?;
-    Ok(transaction.execute(&statement, parameters).await?)
+    sessions: &Sessions,
+    receipts: &Receipts,
+) -> Result<(), Fault> {
+    execute(transaction, sql::DELETE_OLD_KEYS, &[&receipts.key, &RECEIPT_LIFETIME.as_secs_f64()]).await?;
+    execute(transaction, sql::CREATE, &created(sessions, receipts)).await.map(drop)
 }

@@ -14,7 +14,7 @@ use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Receipt, Result, StoreErr
 use super::batch_tx::WriterConnection;
 use super::client_pool::ClientPool;
 use super::fault::{Backoff, Fault};
-use super::outcome::{Outcome, outcome_of};
+use super::outcome::outcome_of;
 use super::request::{Change, WriteRequest, collect_batch, stamp};
 use super::sql;
 
@@ -153,14 +153,11 @@ impl WriterTask {
 
     /// Answers a request of a batch that has been committed.
     fn reply_committed(&self, found: Option<u64>, request: WriteRequest, in_doubt: bool) {
-        let Change::Append { id, expected, .. } = &request.change else {
+        let Change::Append { expected, .. } = &request.change else {
             return request.answer(Ok(()));
         };
         match found {
-            Some(found) if found == *expected => {
-                self.changes.wake(*id);
-                request.answer(Ok(()));
-            }
+            Some(found) if found == *expected => answer_known(request, Ok(()), &self.changes),
             Some(found) if request.receipt.is_none() && !in_doubt => request.answer(Err(StoreError::Stale { found })),
             found => {
                 // The next batch need not wait for the reasons why a request of this one lost.
@@ -168,12 +165,8 @@ impl WriterTask {
                 tokio::spawn(async move {
                     let unexplained = found.map_or(StoreError::NotFound, |found| StoreError::Stale { found });
                     match outcome_of(&pool, &request, in_doubt).await {
-                        Outcome::Stored => {
-                            changes.wake(request.id());
-                            request.answer(Ok(()));
-                        }
-                        Outcome::Refused(error) => request.answer(Err(error)),
-                        Outcome::NotStored => request.answer(Err(unexplained)),
+                        Ok(false) => request.answer(Err(unexplained)),
+                        known => answer_known(request, known.map(drop), &changes),
                     }
                 });
             }
@@ -191,16 +184,20 @@ impl WriterTask {
         let mut rest = Vec::new();
         for (request, outcome) in batch.into_iter().zip(outcome) {
             match outcome {
-                Outcome::Stored => {
-                    self.changes.wake(request.id());
-                    request.answer(Ok(()));
-                }
-                Outcome::Refused(error) => request.answer(Err(error)),
-                Outcome::NotStored => rest.push(request),
+                Ok(false) => rest.push(request),
+                known => answer_known(request, known.map(drop), &self.changes),
             }
         }
         rest
     }
+}
+
+/// Answers a request, and wakes the listeners of a session that it has changed.
+fn answer_known(request: WriteRequest, outcome: Result<()>, changes: &Changes) {
+    if outcome.is_ok() {
+        changes.wake(request.id());
+    }
+    request.answer(outcome);
 }
 
 fn answer_all(batch: Vec<WriteRequest>, error: impl Fn() -> StoreError) {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use hashlink::LruCache;
 use jiff::{SignedDuration, Timestamp};
 use rusqlite::{Connection, OptionalExtension as _, params};
 use uuid::Uuid;
@@ -10,16 +11,20 @@ use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError};
 
 use super::columns::{CONTACTS, MOVE_COLUMNS, clamped_nanoseconds, insert_move, reader, to_integer, to_nanoseconds};
+use super::fault::Fault;
 use super::fork::{Copying, Fork};
-use super::sequence_cache::SequenceCache;
 
 /// Receipts that one change looks at.
 const RECEIPTS_AT_ONCE: i64 = 256;
 /// Bytes of their replies that it deletes, roughly.
 const RECEIPT_BYTES_AT_ONCE: i64 = 4 * 1024 * 1024;
 
+/// Numbers and sequences of contacts that have moved lately, as the transaction under way leaves them: what the writer,
+/// which alone changes them, need not ask the database. A rollback clears the cache.
+pub(super) type SequenceCache = LruCache<Uuid, (i64, u64)>;
+
 /// Makes a change within the transaction under way.
-type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send;
+type Apply = dyn Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send;
 
 /// A change to the database.
 pub(super) struct Change {
@@ -49,23 +54,9 @@ pub(super) enum Done {
     Copying(Arc<Fork>, Copying),
 }
 
-/// Why a change was not made.
-pub(super) enum ChangeError {
-    /// It was refused; nothing was written.
-    Refused(StoreError),
-    /// SQLite failed half-way: the transaction must be rolled back.
-    Failed(rusqlite::Error),
-}
-
-impl From<rusqlite::Error> for ChangeError {
-    fn from(error: rusqlite::Error) -> Self {
-        ChangeError::Failed(error)
-    }
-}
-
 impl Transaction<'_> {
     /// [`crate::store::Store::create`]
-    pub(super) fn create(&self, session: &Session, receipt: Option<&Receipt>) -> Result<Done, ChangeError> {
+    pub(super) fn create(&self, session: &Session, receipt: Option<&Receipt>) -> Result<Done, Fault> {
         check_key(self.database, receipt)?;
         insert_session(self.database, self.number, session, 0)?;
         insert_receipt(self.database, receipt)?;
@@ -79,11 +70,11 @@ impl Transaction<'_> {
         expected: u64,
         records: &[Record],
         receipt: Option<&Receipt>,
-    ) -> Result<Done, ChangeError> {
+    ) -> Result<Done, Fault> {
         check_key(self.database, receipt)?;
-        let number = match self.cache.number(id, expected) {
-            Some(number) => number,
-            None => number_at(self.database, id, expected)?,
+        let number = match self.cache.get(&id) {
+            Some((number, sequence)) if *sequence == expected => *number,
+            _ => number_at(self.database, id, expected)?,
         };
         let mut insert = self.database.prepare_cached(&format!(
             "INSERT INTO moves (contact, {MOVE_COLUMNS})
@@ -92,21 +83,21 @@ impl Transaction<'_> {
         records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
         insert_receipt(self.database, receipt)?;
         if let Some(last) = records.last() {
-            self.cache.insert(id, number, last.sequence);
+            self.cache.insert(id, (number, last.sequence));
         }
         Ok(Done::Made(0))
     }
 
     /// [`crate::store::Store::delete`]
-    pub(super) fn delete(&mut self, id: Uuid, expected: u64) -> Result<Done, ChangeError> {
+    pub(super) fn delete(&mut self, id: Uuid, expected: u64) -> Result<Done, Fault> {
         let number = number_at(self.database, id, expected)?;
-        self.cache.remove(id);
+        self.cache.remove(&id);
         delete_contact(self.database, number)?;
         Ok(Done::Removed(0))
     }
 
     /// [`crate::store::Store::save_snapshot`]
-    pub(super) fn save_snapshot(&self, id: Uuid, snapshot: &Snapshot) -> Result<Done, ChangeError> {
+    pub(super) fn save_snapshot(&self, id: Uuid, snapshot: &Snapshot) -> Result<Done, Fault> {
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT number, ?2, ?3 FROM contacts WHERE id = ?1
                    ON CONFLICT (contact) DO UPDATE SET sequence = excluded.sequence, state = excluded.state
@@ -117,7 +108,7 @@ impl Transaction<'_> {
     }
 
     /// Deletes expired receipts; returns 1 if there may be more of them.
-    pub(super) fn purge_receipts(&self) -> Result<Done, ChangeError> {
+    pub(super) fn purge_receipts(&self) -> Result<Done, Fault> {
         let cutoff = clamped_nanoseconds(receipt_cutoff());
         let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
         let mut statement = self.database.prepare_cached(sql)?;
@@ -137,10 +128,10 @@ impl Transaction<'_> {
     }
 
     /// Expires those of the sessions that still exist and have not moved since; returns their number.
-    pub(super) fn expire(&mut self, ids: &[Uuid], since: Timestamp) -> Result<Done, ChangeError> {
+    pub(super) fn expire(&mut self, ids: &[Uuid], since: Timestamp) -> Result<Done, Fault> {
         let mut expired = 0;
         for id in ids {
-            self.cache.remove(*id);
+            self.cache.remove(id);
             expired += u64::from(expire(self.database, *id, since)?);
         }
         Ok(Done::Removed(expired))
@@ -148,11 +139,11 @@ impl Transaction<'_> {
 }
 
 /// Refuses a receipt whose key is in use.
-pub(super) fn check_key(database: &Connection, receipt: Option<&Receipt>) -> Result<(), ChangeError> {
+pub(super) fn check_key(database: &Connection, receipt: Option<&Receipt>) -> Result<(), Fault> {
     let Some(receipt) = receipt else { return Ok(()) };
     let mut statement = database.prepare_cached("SELECT number FROM receipts WHERE key = ?1 AND at > ?2")?;
     if statement.exists(params![receipt.request.key, clamped_nanoseconds(receipt_cutoff())])? {
-        return Err(ChangeError::Refused(StoreError::KeyTaken));
+        return Err(StoreError::KeyTaken.into());
     }
     Ok(())
 }
@@ -203,27 +194,31 @@ pub(super) fn insert_session(
     Ok(())
 }
 
-/// The number of a session that must be at a sequence.
-pub(super) fn number_at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, ChangeError> {
+/// The number of a session, and its sequence.
+pub(super) fn number_and_sequence(database: &Connection, id: Uuid) -> Result<(i64, u64), Fault> {
     let sql = "SELECT number, (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number) FROM contacts
                WHERE id = ?1";
-    let mut statement = database.prepare_cached(sql)?;
-    let found = statement.query_row([id.to_string()], |row| {
+    let found = database.prepare_cached(sql)?.query_row([id.to_string()], |row| {
         let mut row = reader(row);
         Ok((row.next()?, row.count()?))
     });
-    match found.optional()? {
-        Some((number, found)) if found == expected => Ok(number),
-        Some((_, found)) => Err(ChangeError::Refused(StoreError::Stale { found })),
-        None => Err(ChangeError::Refused(missing(database, id)?)),
+    found.optional()?.ok_or_else(|| missing(database, id))
+}
+
+/// The number of a session that must be at a sequence.
+pub(super) fn number_at(database: &Connection, id: Uuid, expected: u64) -> Result<i64, Fault> {
+    match number_and_sequence(database, id)? {
+        (number, found) if found == expected => Ok(number),
+        (_, found) => Err(StoreError::Stale { found }.into()),
     }
 }
 
 /// Why there is no such session.
-pub(super) fn missing(database: &Connection, id: Uuid) -> rusqlite::Result<StoreError> {
-    let mut statement = database.prepare_cached("SELECT tenant FROM expired WHERE id = ?1")?;
-    let expired = statement.query_row([id.to_string()], |row| tenant(&mut reader(row))).optional()?;
-    Ok(expired.map_or(StoreError::NotFound, StoreError::Expired))
+pub(super) fn missing(database: &Connection, id: Uuid) -> Fault {
+    let expired = database
+        .prepare_cached("SELECT tenant FROM expired WHERE id = ?1")
+        .and_then(|mut statement| statement.query_row([id.to_string()], |row| tenant(&mut reader(row))).optional());
+    expired.map_or_else(Fault::from, |tenant| tenant.map_or(StoreError::NotFound, StoreError::Expired).into())
 }
 
 /// Deletes a contact and leaves its moves to be removed some at a time.

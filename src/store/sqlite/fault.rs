@@ -4,6 +4,17 @@ use rusqlite::{Error, ErrorCode, ffi};
 
 use crate::store::StoreError;
 
+/// Why a read or a change was not done.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Fault {
+    /// The store refuses it; nothing was written.
+    #[error(transparent)]
+    Refused(#[from] StoreError),
+    /// SQLite failed: a transaction under way must be rolled back.
+    #[error(transparent)]
+    Sqlite(#[from] Error),
+}
+
 /// When a failure occurred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stage {

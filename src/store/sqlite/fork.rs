@@ -11,8 +11,9 @@ use uuid::Uuid;
 
 use crate::store::{Receipt, Session, StoreError};
 
-use super::change::{ChangeError, Done, Transaction, check_key, insert_receipt, insert_session, number_at};
+use super::change::{Done, Transaction, check_key, insert_receipt, insert_session, number_at};
 use super::columns::{MOVE_COLUMNS, to_integer};
+use super::fault::Fault;
 
 /// Moves that are copied or removed in one step.
 const MOVES_AT_ONCE: i64 = 4_000;
@@ -41,7 +42,7 @@ pub(super) struct Copying {
 
 impl Transaction<'_> {
     /// [`crate::store::Store::fork`]: checks, and makes a short fork at once; a long one begins.
-    pub(super) fn fork(&self, fork: &Arc<Fork>) -> Result<Done, ChangeError> {
+    pub(super) fn fork(&self, fork: &Arc<Fork>) -> Result<Done, Fault> {
         check_key(self.database, fork.receipt.as_ref())?;
         let from = number_at(self.database, fork.id, fork.copy.sequence)?;
         let mut copying = Copying { from, to: self.number, copied: 0, last: to_integer(fork.copy.sequence)? };
@@ -58,7 +59,7 @@ impl Transaction<'_> {
 impl Fork {
     /// Goes on with a fork; returns whether it is complete. The original may have moved on meanwhile, which the copy
     /// does not see.
-    pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, ChangeError> {
+    pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, Fault> {
         copying.step(database)?;
         if copying.copied < copying.last {
             return Ok(false);
@@ -66,14 +67,14 @@ impl Fork {
         check_key(database, self.receipt.as_ref())?;
         let mut original = database.prepare_cached("SELECT number FROM contacts WHERE number = ?1")?;
         if !original.exists([copying.from])? {
-            return Err(ChangeError::Refused(StoreError::NotFound));
+            return Err(StoreError::NotFound.into());
         }
         database.prepare_cached("DELETE FROM unowned WHERE contact = ?1")?.execute([copying.to])?;
         self.complete(database, *copying)?;
         Ok(true)
     }
 
-    fn complete(&self, database: &Connection, copying: Copying) -> Result<(), ChangeError> {
+    fn complete(&self, database: &Connection, copying: Copying) -> Result<(), Fault> {
         insert_session(database, copying.to, &self.copy, self.copy.sequence)?;
         let sql = "INSERT INTO snapshots (contact, sequence, state)
                    SELECT ?2, sequence, state FROM snapshots WHERE contact = ?1 AND sequence <= ?3";

@@ -13,9 +13,9 @@ use crate::store::rows::{self, RowReader as _};
 use crate::store::{Receipt, Result, StoreError};
 
 use super::SqliteStore;
-use super::change::{ChangeError, Done, Transaction, check_key, insert_receipt};
+use super::change::{Done, Transaction, check_key, insert_receipt};
 use super::columns::{clamped_nanoseconds, reader, to_integer, to_nanoseconds};
-use super::readers::ReadError;
+use super::fault::Fault;
 
 impl Transaction<'_> {
     fn create_job(
@@ -24,7 +24,7 @@ impl Transaction<'_> {
         request: &str,
         limits: JobLimits,
         receipt: Option<&Receipt>,
-    ) -> Result<Done, ChangeError> {
+    ) -> Result<Done, Fault> {
         let database = self.database;
         check_key(database, receipt)?;
         let sql = "SELECT count(*), coalesce(sum(bytes), 0), coalesce(sum(iif(finished_at IS NULL, cost, 0)), 0)
@@ -33,7 +33,7 @@ impl Transaction<'_> {
             let mut row = reader(row);
             Ok((row.count()?, row.count()?, row.count()?))
         })?;
-        limits.check(jobs, bytes, cost, job).map_err(ChangeError::Refused)?;
+        limits.check(jobs, bytes, cost, job)?;
         let sql = "INSERT INTO jobs (id, tenant, created_at, points, chunk, done, failed, bytes, cost, request)
                    VALUES (?1, ?2, ?3, ?4, ?5, 0, 0, ?6, ?7, ?8)";
         database.prepare_cached(sql)?.execute(params![
@@ -50,11 +50,11 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    fn save_chunk(&self, claim: Claim, result: &ChunkResult) -> Result<Done, ChangeError> {
+    fn save_chunk(&self, claim: Claim, result: &ChunkResult) -> Result<Done, Fault> {
         let sql = "SELECT number FROM jobs WHERE id = ?1 AND finished_at IS NULL";
         let mut statement = self.database.prepare_cached(sql)?;
         let number: Option<i64> = statement.query_row([claim.job.to_string()], |row| row.get(0)).optional()?;
-        let number = number.ok_or(ChangeError::Refused(StoreError::NotFound))?;
+        let number = number.ok_or(StoreError::NotFound)?;
         let sql = "INSERT OR IGNORE INTO job_chunks (job, chunk, content) VALUES (?1, ?2, ?3)";
         let chunk = params![number, to_integer(claim.chunk)?, result.content];
         if self.database.prepare_cached(sql)?.execute(chunk)? > 0 {
@@ -68,22 +68,22 @@ impl Transaction<'_> {
         Ok(Done::Made(0))
     }
 
-    fn fail_job(&self, id: Uuid, error: &str) -> Result<Done, ChangeError> {
+    fn fail_job(&self, id: Uuid, error: &str) -> Result<Done, Fault> {
         let sql = "UPDATE jobs SET finished_at = ?2, error = ?3 WHERE id = ?1 AND finished_at IS NULL";
         let now = to_nanoseconds(Timestamp::now())?;
         self.database.prepare_cached(sql)?.execute(params![id.to_string(), now, error])?;
         Ok(Done::Made(0))
     }
 
-    fn delete_job(&self, id: Uuid) -> Result<Done, ChangeError> {
+    fn delete_job(&self, id: Uuid) -> Result<Done, Fault> {
         match self.database.prepare_cached("DELETE FROM jobs WHERE id = ?1")?.execute([id.to_string()])? {
-            0 => Err(ChangeError::Refused(StoreError::NotFound)),
+            0 => Err(StoreError::NotFound.into()),
             _ => Ok(Done::Made(0)),
         }
     }
 
     /// Deletes an expired job, if there is one; returns their number. One at a time: their results are large.
-    fn purge_job(&self) -> Result<Done, ChangeError> {
+    fn purge_job(&self) -> Result<Done, Fault> {
         let before = |time| {
             let time = SignedDuration::try_from(time).unwrap_or(SignedDuration::MAX);
             clamped_nanoseconds(Timestamp::now().checked_sub(time).unwrap_or(Timestamp::MIN))
@@ -110,21 +110,21 @@ pub(super) fn restore_queue(database: &Connection, queue: &ChunkQueue) -> rusqli
     Ok(())
 }
 
-fn find(database: &Connection, id: Uuid) -> Result<Job, ReadError> {
+fn find(database: &Connection, id: Uuid) -> Result<Job, Fault> {
     let sql = "SELECT id, tenant, created_at, finished_at, error, points, chunk, done, failed, bytes, cost FROM jobs
                WHERE id = ?1";
     let found =
         database.prepare_cached(sql)?.query_row([id.to_string()], |row| rows::job(&mut reader(row))).optional()?;
-    found.ok_or(ReadError::Store(StoreError::NotFound))
+    Ok(found.ok_or(StoreError::NotFound)?)
 }
 
-fn request(database: &Connection, id: Uuid) -> Result<String, ReadError> {
+fn request(database: &Connection, id: Uuid) -> Result<String, Fault> {
     let mut statement = database.prepare_cached("SELECT request FROM jobs WHERE id = ?1")?;
     let found = statement.query_row([id.to_string()], |row| row.get(0)).optional()?;
-    found.ok_or(ReadError::Store(StoreError::NotFound))
+    Ok(found.ok_or(StoreError::NotFound)?)
 }
 
-fn chunks(database: &Connection, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, ReadError> {
+fn chunks(database: &Connection, id: Uuid, first: u64, limit: usize) -> Result<Vec<Vec<u8>>, Fault> {
     let sql = "SELECT c.content FROM job_chunks AS c INNER JOIN jobs AS j ON j.number = c.job
                WHERE j.id = ?1 AND c.chunk >= ?2 ORDER BY c.chunk LIMIT ?3";
     let mut statement = database.prepare_cached(sql)?;

@@ -15,7 +15,6 @@ mod jobs;
 mod read;
 mod readers;
 pub mod schema;
-mod sequence_cache;
 mod wal_check;
 mod writer;
 
@@ -32,7 +31,8 @@ use uuid::Uuid;
 use super::jobs::ChunkQueue;
 use super::{Changes, Commits, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 use crate::metrics::Counted;
-use change::{Change, ChangeError, Done, Transaction};
+use change::{Change, Done, Transaction};
+use fault::Fault;
 use fork::Fork;
 use readers::Readers;
 use stickslip_wire::SessionSummary;
@@ -105,7 +105,7 @@ impl SqliteStore {
         &self,
         weight: usize,
         touched: impl Into<Vec<Uuid>>,
-        apply: impl Fn(&mut Transaction<'_>) -> Result<Done, ChangeError> + Send + 'static,
+        apply: impl Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send + 'static,
     ) -> Result<u64> {
         let ended = || StoreError::Failed("the writer of the database has ended".to_owned());
         let _pending = Counted::by(&self.commits.pending);

@@ -8,29 +8,27 @@ use crate::store::rows::{self, RowReader as _};
 use crate::store::{Receipt, Record, Session, Snapshot, Tenant};
 use stickslip_wire::SessionSummary;
 
-use super::change::missing;
+use super::change::{missing, number_and_sequence};
 use super::columns::{CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, clamped_nanoseconds, reader, record, to_integer};
-use super::readers::ReadError;
+use super::fault::Fault;
 
 /// Sessions that one search for idle ones examines.
 const IDLE_PAGE: i64 = 1_000;
 
 /// Whether the database can be read at all.
-pub(super) fn alive(database: &Connection) -> Result<(), ReadError> {
+pub(super) fn alive(database: &Connection) -> Result<(), Fault> {
     Ok(database.prepare_cached("SELECT number FROM contacts LIMIT 1")?.exists([]).map(drop)?)
 }
 
-pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, ReadError> {
+pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, Fault> {
     let mut statement = database
         .prepare_cached(&format!("SELECT {SUMMARY_COLUMNS}, c.definition, c.tenant FROM {CONTACTS} WHERE c.id = ?1"))?;
     let found = statement.query_row([id.to_string()], |row| rows::session(&mut reader(row))).optional()?;
-    found.map_or_else(|| Err(ReadError::Store(missing(database, id)?)), Ok)
+    found.ok_or_else(|| missing(database, id))
 }
 
-pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, ReadError> {
-    let number = number(database, id)?;
-    let mut statement = database.prepare_cached("SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = ?1")?;
-    Ok(statement.query_row([number], |row| reader(row).count())?)
+pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, Fault> {
+    Ok(number_and_sequence(database, id)?.1)
 }
 
 pub(super) fn list(
@@ -38,7 +36,7 @@ pub(super) fn list(
     tenant: Option<&Tenant>,
     after: Option<Uuid>,
     limit: usize,
-) -> Result<Vec<SessionSummary>, ReadError> {
+) -> Result<Vec<SessionSummary>, Fault> {
     // Every identifier comes after the empty text.
     let after = after.map_or_else(String::new, |id| id.to_string());
     let limit = to_integer(limit as u64)?;
@@ -54,7 +52,7 @@ pub(super) fn list(
     Ok(found?)
 }
 
-pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, ReadError> {
+pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, Fault> {
     let number = number(database, id)?;
     let Ok(after) = to_integer(after) else { return Ok(Vec::new()) };
     let sql =
@@ -64,7 +62,7 @@ pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize)
     Ok(found.collect::<Result<_, _>>()?)
 }
 
-pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, ReadError> {
+pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, Fault> {
     let sql = "SELECT fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
     let mut statement = database.prepare_cached(sql)?;
     Ok(statement
@@ -72,7 +70,7 @@ pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -
         .optional()?)
 }
 
-pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, ReadError> {
+pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, Fault> {
     let number = number(database, id)?;
     let mut statement = database.prepare_cached("SELECT sequence, state FROM snapshots WHERE contact = ?1")?;
     let found = statement.query_row([number], |row| rows::snapshot(&mut reader(row)));
@@ -80,7 +78,7 @@ pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapsho
 }
 
 /// The sessions of a page that have not moved since a time, and where the next page begins, if there is one.
-pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Result<(Vec<Uuid>, Option<i64>), ReadError> {
+pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Result<(Vec<Uuid>, Option<i64>), Fault> {
     let sql = format!(
         "SELECT c.number, c.id, iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?1 FROM {CONTACTS}
          WHERE c.number > ?2 ORDER BY c.number LIMIT ?3"
@@ -101,7 +99,7 @@ pub(super) fn idle(database: &Connection, since: Timestamp, after: i64) -> Resul
 }
 
 /// Faults of the file, and of data that belongs to no single session.
-pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, ReadError> {
+pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, Fault> {
     let texts = |sql: &str| -> rusqlite::Result<Vec<String>> {
         database.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
     };
@@ -136,8 +134,8 @@ pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, Read
     Ok(found)
 }
 
-fn number(database: &Connection, id: Uuid) -> Result<i64, ReadError> {
+fn number(database: &Connection, id: Uuid) -> Result<i64, Fault> {
     let mut statement = database.prepare_cached("SELECT number FROM contacts WHERE id = ?1")?;
     let found = statement.query_row([id.to_string()], |row| row.get(0)).optional()?;
-    found.map_or_else(|| Err(ReadError::Store(missing(database, id)?)), Ok)
+    found.ok_or_else(|| missing(database, id))
 }

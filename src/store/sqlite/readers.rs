@@ -10,7 +10,7 @@ use tokio::task::spawn_blocking;
 
 use crate::store::{Result, StoreError};
 
-use super::fault::{Stage, store_error};
+use super::fault::{Fault, Stage, store_error};
 
 /// Reads at a time; more would only slow each other down.
 const READERS: usize = 4;
@@ -32,29 +32,6 @@ struct Idle {
     _lock: Option<Arc<File>>,
 }
 
-/// Why a read failed.
-pub(super) enum ReadError {
-    /// The store refuses it.
-    Store(StoreError),
-    /// SQLite failed.
-    Sqlite(rusqlite::Error),
-}
-
-impl From<rusqlite::Error> for ReadError {
-    fn from(error: rusqlite::Error) -> Self {
-        ReadError::Sqlite(error)
-    }
-}
-
-impl From<ReadError> for StoreError {
-    fn from(error: ReadError) -> Self {
-        match error {
-            ReadError::Store(error) => error,
-            ReadError::Sqlite(error) => store_error(&error, Stage::Before),
-        }
-    }
-}
-
 impl Readers {
     pub(super) fn new(path: PathBuf, lock: Option<Arc<File>>) -> Readers {
         let idle = Idle { connections: Mutex::default(), path, _lock: lock };
@@ -64,22 +41,22 @@ impl Readers {
     /// Runs a query in one transaction, on the blocking pool.
     pub(super) async fn read<T: Send + 'static>(
         &self,
-        question: impl FnOnce(&Connection) -> Result<T, ReadError> + Send + 'static,
+        question: impl FnOnce(&Connection) -> Result<T, Fault> + Send + 'static,
     ) -> Result<T> {
         let permit = Arc::clone(&self.permits).acquire_owned().await;
         let idle = Arc::clone(&self.idle);
         let task = spawn_blocking(move || {
             let connection = idle.take()?;
-            let found = connection
-                .unchecked_transaction()
-                .map_err(ReadError::from)
-                .and_then(|transaction| question(&transaction));
+            let found =
+                connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
             idle.put(connection);
             drop(permit);
             found
         });
         match task.await {
-            Ok(found) => found.map_err(StoreError::from),
+            Ok(Ok(found)) => Ok(found),
+            Ok(Err(Fault::Refused(error))) => Err(error),
+            Ok(Err(Fault::Sqlite(error))) => Err(store_error(&error, Stage::Before)),
             Err(_) => Err(StoreError::Failed("a read of the database panicked".to_owned())),
         }
     }

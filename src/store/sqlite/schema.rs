@@ -1,8 +1,8 @@
 //! The version of the tables in a file, and its migration to the newest one.
 
-use rusqlite::{Connection, TransactionBehavior};
+use rusqlite::{Connection, Error, TransactionBehavior};
 
-use crate::store::schema::{self, VersionError};
+use crate::store::schema::{self, SchemaError};
 
 /// Marks a file as one of this program: "stck" in the header.
 pub(super) const APPLICATION: i32 = 0x7374_636b;
@@ -10,25 +10,14 @@ pub(super) const APPLICATION: i32 = 0x7374_636b;
 /// The migrations, oldest first: each leads from one version of the tables to the next.
 pub const MIGRATIONS: &[&str] = &[include_str!("schema_1.sql")];
 
-/// Why the tables cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum SchemaError {
-    /// They have another version.
-    #[error(transparent)]
-    Version(#[from] VersionError),
-    /// SQLite failed.
-    #[error(transparent)]
-    Sqlite(#[from] rusqlite::Error),
-}
-
 /// The version of the tables; 0 where there are none.
 pub(super) fn version(connection: &Connection) -> rusqlite::Result<i32> {
     connection.pragma_query_value(None, "user_version", |row| row.get(0))
 }
 
 /// Whether the tables have the version that this program works with.
-pub(super) fn check(connection: &Connection) -> Result<(), SchemaError> {
-    Ok(schema::check(version(connection)?, MIGRATIONS)?)
+pub(super) fn check(connection: &Connection) -> Result<(), SchemaError<Error>> {
+    schema::check(version(connection)?, MIGRATIONS).map_err(SchemaError::Version)
 }
 
 /// Whether this program supports a version of tables, and so may migrate it.
@@ -44,9 +33,9 @@ pub(super) fn known(version: i32) -> Result<(), String> {
 ///
 /// # Errors
 /// [`SchemaError`]; nothing has changed then.
-pub fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), SchemaError> {
+pub fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), SchemaError<Error>> {
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    for (version, script) in schema::pending(version(&transaction)?, migrations)? {
+    for (version, script) in schema::pending(version(&transaction)?, migrations).map_err(SchemaError::Version)? {
         transaction.execute_batch(script)?;
         transaction.pragma_update(None, "application_id", APPLICATION)?;
         transaction.pragma_update(None, "user_version", version)?;

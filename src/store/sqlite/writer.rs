@@ -14,15 +14,16 @@ use tokio::sync::{mpsc, oneshot};
 
 use crate::store::{Changes, Commits, Result, StoreError};
 
-use super::change::{Change, ChangeError, Done, Transaction};
-use super::fault::{Stage, store_error, worth_splitting};
+use super::change::{Change, Done, SequenceCache, Transaction};
+use super::fault::{Fault, Stage, store_error, worth_splitting};
 use super::fork::{self, Copying, Fork};
-use super::sequence_cache::SequenceCache;
 
 /// Requests that share a transaction.
 const BATCH: usize = 512;
 /// Rows that they may write before the transaction ends.
 const BATCH_WEIGHT: usize = 10_000;
+/// Contacts in the cache of sequences, of some 64 bytes each.
+const CACHED: usize = 16_384;
 
 /// A change whose caller waits.
 pub(super) struct Request {
@@ -62,14 +63,13 @@ impl Writer {
                               coalesce((SELECT max(contact) FROM moves), 0),
                               coalesce((SELECT max(contact) FROM unowned), 0))";
         let highest: i64 = database.query_row(sql, [], |row| row.get(0))?;
-        let forks = VecDeque::new();
         Ok(Writer {
             database,
             changes,
-            cache: SequenceCache::new(),
+            cache: SequenceCache::new(CACHED),
             commits,
             next_number: highest + 1,
-            forks,
+            forks: VecDeque::new(),
             unowned: true,
             healthy: true,
         })
@@ -132,8 +132,8 @@ impl Writer {
             for request in batch {
                 outcomes.push(match (request.change.apply)(&mut Transaction { database, cache, number }) {
                     Ok(done) => Ok(done),
-                    Err(ChangeError::Refused(error)) => Err(error),
-                    Err(ChangeError::Failed(error)) => return Err(error),
+                    Err(Fault::Refused(error)) => Err(error),
+                    Err(Fault::Sqlite(error)) => return Err(error),
                 });
                 number += 1;
             }
@@ -167,8 +167,8 @@ impl Writer {
             // A refusal has written a part of the copy and nothing else, and that part is removed later.
             let step = self.transaction(|database, _| match fork.proceed(database, &mut proceeded) {
                 Ok(complete) => Ok(Ok(complete)),
-                Err(ChangeError::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
-                Err(ChangeError::Failed(error)) => Err(error),
+                Err(Fault::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
+                Err(Fault::Sqlite(error)) => Err(error),
             });
             match step {
                 Ok(Ok(false)) => self.forks.push_front((fork, proceeded, reply)),

@@ -25,6 +25,7 @@ pub async fn what_is_stored_is_found(store: &dyn Store) {
     assert!(matches!(store.history(nobody, 0, 1).await, Err(StoreError::NotFound)));
     assert!(matches!(store.snapshot(nobody).await, Err(StoreError::NotFound)));
     assert!(matches!(store.append(nobody, 0, records(0, 1), None).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.append(nobody, 0, Vec::new(), None).await, Err(StoreError::NotFound)));
     assert!(matches!(store.fork(nobody, session(None), None).await, Err(StoreError::NotFound)));
     assert!(matches!(store.delete(nobody, 0).await, Err(StoreError::NotFound)));
     assert!(matches!(store.receipt("nobody's").await, Ok(None)));

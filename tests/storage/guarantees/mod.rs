@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use stickslip::store::{MemoryStore, PostgresStore, SqliteStore, Store};
 use tempfile::tempdir;
+use uuid::Uuid;
 
 use crate::common::postgres::Cluster;
 
@@ -65,4 +66,10 @@ async fn are_given<F: Future<Output = Arc<dyn Store>>>(store: impl Fn() -> F) {
     jobs::each_chunk_is_given_once_and_heard_once(&*store().await).await;
     jobs::a_taken_key_or_a_full_tenant_takes_no_job(&*store().await).await;
     wake_ups::a_waiting_listener_is_woken_by_a_change(&*store().await).await;
+}
+
+#[test]
+fn timestamps_and_identifiers_agree_on_the_order() {
+    let ids: Vec<Uuid> = (0..1000).map(|_| Uuid::now_v7()).collect();
+    assert!(ids.is_sorted());
 }

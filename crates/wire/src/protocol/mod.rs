@@ -32,12 +32,7 @@ pub use reply::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
-    "contact": {
-        "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-        "friction": 0.3,
-        "preload": {"normal_force": 10.0}
-    },
+    "contact": ContactDefinition::example(),
     "reversals": 20,
     "kind": "minimax"
 }))]
@@ -152,10 +147,8 @@ limits!(Robustness {
 });
 
 /// How many times a protocol is tried with errors by default.
-const DEFAULT_SAMPLES: usize = 200;
-
 fn samples() -> usize {
-    DEFAULT_SAMPLES
+    200
 }
 
 /// A number of reversals, or what they are to reach.

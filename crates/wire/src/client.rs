@@ -1,7 +1,5 @@
 //! A typed client for the service.
-#![doc = include_str!("../../README.md")]
-
-mod sweeps;
+#![doc = include_str!("../README.md")]
 
 use eventsource_stream::{EventStreamError, Eventsource as _};
 use futures::{Stream, StreamExt as _};
@@ -9,14 +7,13 @@ use reqwest::header::{AUTHORIZATION, HeaderValue};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-pub use sweeps::Swept;
 use uuid::Uuid;
 
 use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage,
-    LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply,
+    JobReply, LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply,
     ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent,
-    StressReply, StressRequest,
+    StressReply, StressRequest, SweepReply, SweepRequest,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
@@ -44,6 +41,15 @@ pub enum Event {
     State(Box<StateEvent>),
     /// There are no more events.
     End(EndReason),
+}
+
+/// The answer to a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Swept {
+    /// Its table.
+    Table(SweepReply),
+    /// A job that computes it.
+    Job(JobReply),
 }
 
 /// Why a call failed.
@@ -203,6 +209,30 @@ impl Client {
         sent(with(self.call(Method::DELETE, &format!("/contacts/{id}")), options)).await.map(drop)
     }
 
+    /// `POST /sweep`.
+    pub async fn sweep(&self, request: &SweepRequest, options: &Options) -> Result<Swept, Error> {
+        let (status, body) = sent(with(self.call(Method::POST, "/sweep").json(request), options)).await?;
+        if status == StatusCode::ACCEPTED {
+            read(status, &body).map(Swept::Job)
+        } else {
+            read(status, &body).map(Swept::Table)
+        }
+    }
+
+    /// `GET /jobs/{id}`.
+    pub async fn job(&self, id: Uuid) -> Result<JobReply, Error> {
+        json(self.call(Method::GET, &format!("/jobs/{id}"))).await
+    }
+
+    /// `GET /jobs/{id}/result`.
+    pub async fn job_result(&self, id: Uuid) -> Result<SweepReply, Error> {
+        json(self.call(Method::GET, &format!("/jobs/{id}/result"))).await
+    }
+
+    /// `DELETE /jobs/{id}`.
+    pub async fn delete_job(&self, id: Uuid) -> Result<(), Error> {
+        sent(self.call(Method::DELETE, &format!("/jobs/{id}"))).await.map(drop)
+    }
     /// `GET /openapi.json`.
     pub async fn openapi(&self) -> Result<serde_json::Value, Error> {
         json(self.call(Method::GET, "/openapi.json")).await
