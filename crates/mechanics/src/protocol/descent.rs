@@ -10,8 +10,8 @@ use fastrand::Rng;
 use super::linear_program::Step;
 
 /// Sequences that are tried at first, and those of them that a descent begins from.
-const TRIED: usize = 160;
-const BEGUN: usize = 10;
+const TRIED: usize = 96;
+const BEGUN: usize = 6;
 /// Steps of a descent at the most.
 const STEPS: usize = 60;
 /// The first distance of a step, and that at which the descent ends.

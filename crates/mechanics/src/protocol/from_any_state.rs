@@ -316,8 +316,8 @@ impl<'a> FromAnyState<'a> {
             let slope = |(point, change): &(Point, f64)| {
                 let apart = (point.radius - radius) * (point.radius + radius);
                 // Within a thousandth of a kink no tangent holds.
-                let least = 1e-6 * problem.edge.radius * problem.edge.radius;
-                if apart > 0.0 { edge * change / apart.max(least).sqrt() } else { 0.0 }
+                let width = (problem.edge.radius - problem.cutoff) * (problem.edge.radius + problem.cutoff);
+                if apart > 0.0 { edge * change / apart.max(1e-6 * width).sqrt() } else { 0.0 }
             };
             unknowns.iter().map(slope).collect()
         };

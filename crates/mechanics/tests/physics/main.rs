@@ -14,6 +14,7 @@ mod minimax;
 mod packed;
 mod paper;
 mod profiles;
+mod protocol_search;
 mod protocols;
 mod relative_moves;
 mod slip_history;
