@@ -5,7 +5,7 @@ use stickslip_mechanics::protocol::{
 };
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
-use stickslip_wire::limits;
+use stickslip_wire::{Residual, limits};
 use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
     ProtocolReply, ProtocolTask, Robustness, RobustnessReply, StartReply,
@@ -122,7 +122,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
     let timer = Timer::start();
     let contact = subject.contact;
     let (figures, judged) = (contact.summary(), EvaluationRange::of(contact));
-    let unit = figures.gross_slip_force / figures.normal_force * figures.unit_pressure();
+    let unit = figures.unit_shear();
     let end = PathEnd::from(task.end);
     let (reversals, chosen) = match task.aim {
         Aim::Reversals(reversals) => (reversals, subject.design(task.kind.into(), reversals, end, stop)?),
@@ -136,7 +136,7 @@ pub fn protocol(subject: &Subject<'_>, task: &ProtocolTask, stop: &Stop) -> Resu
         let tried = task.robustness.as_ref();
         let tried = tried.map(|errors| robustness(subject, errors, &design.displacements, unit, stop)).transpose()?;
         Ok(Outcome {
-            residual: design.residual.clone().into(),
+            residual: Residual::new(design.residual.clone(), unit),
             largest: finite(design.largest),
             relative: finite(design.largest / unit),
             displacement: state.displacement,

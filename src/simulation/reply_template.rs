@@ -11,7 +11,7 @@ use stickslip_wire::{
 pub(super) fn reply_template(simulation: &Simulation) -> SimulateReply {
     let steps = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
     let peak = Peak { radius: 0.0, shear: None };
-    let residual = Residual { centre: None, peaks: vec![peak], max: None, min: None, mean: None };
+    let residual = Residual { centre: None, peaks: vec![peak], max: None, min: None, mean: None, relative: None };
     let protocol = matches!(simulation.plan, Plan::EqualPeaks(_))
         .then(|| Protocol { displacement: vec![0.0; simulation.plan.length()], cutoff_radius: 0.0 });
     SimulateReply {

@@ -177,6 +177,7 @@ fn a_number_is_found_as_a_pointer_finds_it_in_the_written_document() {
         max: Some(2.5),
         min: Some(2.5),
         mean: Some(2.5),
+        relative: Some(2.5),
     };
     let written = serde_json::to_value(&residual).unwrap();
     for pointer in ["/max", "/centre", "/peaks/0/radius", "/peaks/0/shear", "/peaks/1/shear"] {

@@ -55,6 +55,19 @@ impl ContactSummary {
     pub fn unit_pressure(&self) -> f64 {
         self.max_pressure.unwrap_or_else(|| mean_pressure(self.normal_force, self.contact_radius))
     }
+
+    /// mu times [`ContactSummary::unit_pressure`], Pa: what residual stresses are relative to. Not finite without a load.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let summary = contact.summary();
+    /// assert_eq!(Some(summary.unit_shear()), summary.max_pressure.map(|pressure| 0.5 * pressure));
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn unit_shear(&self) -> f64 {
+        self.gross_slip_force / self.normal_force * self.unit_pressure()
+    }
 }
 
 /// F_N/(pi a^2), Pa; not finite without a contact.

@@ -92,6 +92,9 @@ pub struct Residual {
     pub min: Option<f64>,
     /// Mean magnitude of the peaks, Pa; `null` without a peak.
     pub mean: Option<f64>,
+    /// `max` over μ times the largest pressure at the present load (or, where that is infinite, the mean); `null` where
+    /// `max` is, without a load and without friction.
+    pub relative: Option<f64>,
 }
 
 /// A local extremum of the shear stress.
@@ -192,8 +195,10 @@ impl From<mechanics::State> for State {
     }
 }
 
-impl From<mechanics::Residual> for Residual {
-    fn from(residual: mechanics::Residual) -> Self {
+impl Residual {
+    /// The extrema, with the shear stress that `relative` refers to, Pa.
+    #[must_use]
+    pub fn new(residual: mechanics::Residual, unit: f64) -> Residual {
         let peak = |peak: mechanics::Peak| Peak { radius: peak.radius, shear: finite(peak.shear) };
         Residual {
             centre: residual.centre.and_then(finite),
@@ -201,6 +206,7 @@ impl From<mechanics::Residual> for Residual {
             max: residual.max.and_then(finite),
             min: residual.min.and_then(finite),
             mean: residual.mean.and_then(finite),
+            relative: residual.max.and_then(|max| finite(max / unit)),
         }
     }
 }
