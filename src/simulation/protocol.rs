@@ -5,12 +5,12 @@ use stickslip_mechanics::protocol::{
 };
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Setup};
-use stickslip_wire::{Residual, limits};
 use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
     ProtocolReply, ProtocolTask, Robustness, RobustnessReply, StartReply,
 };
 use stickslip_wire::reply::finite;
+use stickslip_wire::{Residual, limits};
 
 use super::run::{Timer, accuracy, contact};
 use super::{Failure, present_warnings};

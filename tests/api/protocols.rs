@@ -299,3 +299,31 @@ async fn the_command_line_says_what_the_service_says() {
         "{refused:?}"
     );
 }
+
+fn steel(profile: &Value) -> Value {
+    let material = json!({"effective": {"e_star": 1e11, "g_star": 8e10}});
+    json!({"profile": profile, "material": material, "friction": 0.3, "preload": {"indentation": 3e-6}})
+}
+
+/// On a parabola the best from a part of gross slip is the best from gross slip, 0.6 after one reversal, times the root of
+/// that part. The residual of every reply says by itself what it is relative to.
+#[tokio::test]
+async fn a_small_start_and_a_live_history_are_relaxed_as_far_as_can_be() {
+    let server = Server::start().await;
+    let ball = steel(&json!({"type": "sphere", "radius": 0.01}));
+    let asked = of(&ball, &json!({"reversals": 1, "end": "free", "start": {"displacement": 2.25e-7}}));
+    let found = good(server.post("/protocols", &asked).await).await;
+    let best = 0.6 * 0.2_f64.sqrt();
+    assert!((number(&found["relative"]) - best).abs() < 1e-6, "{found}");
+    let body = json!({"path": {"displacement": found["path"]["displacement"]}, "residual": true});
+    let simulated = good(server.post("/simulate", &of(&ball, &body)).await).await;
+    assert!((number(&simulated["residual"]["relative"]) - best).abs() < 1e-6, "{simulated}");
+
+    let id = wandered(&server, &steel(&json!({"type": "power_law", "exponent": 1.5, "coefficient": 1.0})), 0).await;
+    good(server.post(&format!("/contacts/{id}/move"), &json!({"displacement": 9e-7})).await).await;
+    let there = good(server.get(&format!("/contacts/{id}/stress?points=2&residual=true")).await).await;
+    assert!((number(&there["residual"]["relative"]) - 0.6294).abs() < 1e-4, "{there}");
+    let asked = json!({"reversals": 1, "end": "force_zero"});
+    let relaxed = good(server.post(&format!("/contacts/{id}/relax"), &asked).await).await;
+    assert!(number(&relaxed["residual"]["relative"]) < 0.31842, "{relaxed}");
+}
