@@ -7,12 +7,10 @@
 //! fall.
 
 mod bound;
-mod descent;
 mod design;
 mod end_constraint;
 mod equal_peak_measure;
 mod from_any_state;
-mod linear_program;
 mod minimax;
 mod robustness;
 

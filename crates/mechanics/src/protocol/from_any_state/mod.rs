@@ -5,13 +5,18 @@
 //! cut is then where the whole inside stays lowest, or, where the end is prescribed, the one that leads there. E is
 //! lowered until the inside would be above it.
 //!
+//! Inside a cut the history may be such that other sequences leave less: few strokes are also searched (`search`).
+//!
 //! At a vertical edge the stress stays finite only if nothing is carried there. The kinks then lie inside the edge, and
 //! a last stroke, during which nothing slips but the edge itself, unloads it.
+
+mod descent;
+mod linear_program;
+mod search;
 
 use super::super::normal::load;
 use super::super::profile::{Point, Ring, StressRadius};
 use super::super::slip_history::Line;
-use super::descent::{Trial, search};
 use super::minimax::Problem;
 use super::{Contact, DoubleDouble, PathEnd, alternating, cutoff_of, outermost_singular};
 
@@ -22,8 +27,6 @@ const GRID: usize = 64;
 const CUTS: usize = 16;
 /// Up to this many strokes all sequences are searched; from more the search would take longer than it gains.
 const SEARCHED: usize = 6;
-/// The step of the difference that gives the slope of the stress at a kink by its own level, over that of the edge.
-const PROBE: f64 = 1e-6;
 /// Halvings of a bracket.
 const HALVINGS: usize = 60;
 /// The largest number of evaluations of E, and the factors that bracket it.
@@ -258,108 +261,6 @@ impl<'a> FromAnyState<'a> {
         let searched =
             if self.problem.reversals < SEARCHED { self.searched(marched.as_ref(), keep_going) } else { Vec::new() };
         marched.iter().chain(&searched).map(|strokes| self.positions(strokes)).collect()
-    }
-
-    /// The best of all sequences of few strokes, where the first stroke slips in part and where it slips as a whole.
-    fn searched(&self, known: Option<&Strokes>, keep_going: &dyn Fn() -> bool) -> Vec<Strokes> {
-        let edge = self.problem.edge.level.value();
-        let known = known.map(|known| {
-            let levels =
-                known.kinks.iter().chain([&known.cut]).map(|point| (point.level.value() / edge).clamp(0.0, 1.0));
-            levels.collect::<Vec<f64>>()
-        });
-        let slides = (self.end == PathEnd::DisplacementZero && self.problem.reversals > 0).then_some(true);
-        let ways = [false].into_iter().chain(slides);
-        let found = ways.filter_map(|slides| {
-            let count = self.problem.reversals + usize::from(!slides);
-            let known = known.iter().map(|known| known[..count].to_vec()).collect();
-            let evaluate = |levels: Vec<f64>| self.trial(levels, slides);
-            let levels = search(count, self.end != PathEnd::Free, known, &evaluate, keep_going)?;
-            let (kinks, cut) = self.points(&levels, slides);
-            let (cut, first) = match self.end {
-                PathEnd::Free => (cut, self.first_to(cut.level)),
-                _ => self.prescribed_cut(&kinks)?,
-            };
-            Some(Strokes { kinks, cut, first })
-        });
-        found.collect()
-    }
-
-    /// The kinks and the cut of the unknowns of the search; if the first stroke slides, the cut is none of them.
-    fn points(&self, levels: &[f64], slides: bool) -> (Vec<Point>, Point) {
-        let edge = self.problem.edge.level.value();
-        let point = |level: &f64| self.problem.profile.point(DoubleDouble::from(level * edge));
-        let mut points: Vec<Point> = levels.iter().chain(slides.then_some(&0.0)).map(point).collect();
-        let cut = points.pop().unwrap_or(self.problem.edge);
-        (points, cut)
-    }
-
-    /// What a sequence of the search leaves, with the slopes by its unknowns. That of the kernel by the level of a kink
-    /// is 1/sqrt(X^2 - r^2), and that of the load carried is X.
-    fn trial(&self, levels: Vec<f64>, slides: bool) -> Trial {
-        let (problem, edge) = (&self.problem, self.problem.edge.level.value());
-        let profile = problem.profile;
-        let (kinks, cut) = self.points(&levels, slides);
-        let sign = |index: usize| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let whole = self.history.partition_point(|(ring, _)| ring.inner.level < cut.level).saturating_sub(1);
-        let kept = self.history.get(whole).filter(|(ring, _)| ring.inner.level < cut.level);
-        let slope_inside = kept.map_or(0.0, |(_, line)| -self.last * line.slope.value());
-        let kept = kept.map(|(ring, _)| Ring::between(ring.inner, cut));
-        // By how much the slope of w changes at an unknown, from its outside to its inside.
-        let unknowns: Vec<(Point, f64)> = kinks
-            .iter()
-            .enumerate()
-            .map(|(index, kink)| (*kink, -2.0 * sign(index)))
-            .chain((!slides).then(|| (cut, slope_inside - sign(kinks.len()))))
-            .collect();
-        let by_levels = |radius: f64| -> Vec<f64> {
-            let slope = |(point, change): &(Point, f64)| {
-                let apart = (point.radius - radius) * (point.radius + radius);
-                // Within a thousandth of a kink no tangent holds.
-                let width = (problem.edge.radius - problem.cutoff) * (problem.edge.radius + problem.cutoff);
-                if apart > 0.0 { edge * change / apart.max(1e-6 * width).sqrt() } else { 0.0 }
-            };
-            unknowns.iter().map(slope).collect()
-        };
-        let mut stresses = Vec::with_capacity(self.samples.len() + unknowns.len());
-        for sample in &self.samples {
-            let mut stress = problem.shear_down_to(cut, &kinks, &sample.at);
-            if sample.at.radius <= cut.radius {
-                stress +=
-                    sample.below[whole] + kept.map_or(0.0, |ring| slope_inside * profile.kernel(&sample.at, &ring));
-            }
-            stresses.push((stress, by_levels(sample.at.radius)));
-        }
-        for (index, (point, _)) in unknowns.iter().enumerate() {
-            if point.radius <= problem.cutoff {
-                continue;
-            }
-            let beyond = &kinks[..index];
-            let stress = problem.shear_down_to(*point, beyond, &StressRadius::of_point(point));
-            let mut slope = by_levels(point.radius);
-            // Further in, which it always may go.
-            let probe = PROBE.min(0.5 * levels[index]);
-            let inner = profile.point(DoubleDouble::from((levels[index] - probe) * edge));
-            let further = problem.shear_down_to(inner, beyond, &StressRadius::of_point(&inner));
-            slope[index..].fill(0.0);
-            slope[index] = if probe > 0.0 { (stress - further) / probe } else { 0.0 };
-            stresses.push((stress, slope));
-        }
-        let miss = match self.end {
-            PathEnd::Free => (0.0, vec![0.0; levels.len()]),
-            PathEnd::DisplacementZero => {
-                let by_kinks = (0..kinks.len()).map(|index| -2.0 * sign(index) * self.first);
-                let by_cut = (!slides).then(|| -1.0 + self.first * slope_inside);
-                let miss = self.miss(&kinks, cut.level) / edge;
-                (if slides { miss.max(0.0) } else { miss }, by_kinks.chain(by_cut).collect())
-            }
-            PathEnd::ForceZero => {
-                let whole = problem.edge.radius * edge;
-                let slope = unknowns.iter().map(|(point, change)| self.first * change * point.radius * edge / whole);
-                (self.miss(&kinks, cut.level) / whole, slope.collect())
-            }
-        };
-        Trial { levels, stresses, miss }
     }
 
     /// The strokes of the smallest E; `None` if there are none, or `keep_going` returned false.
