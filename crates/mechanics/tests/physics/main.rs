@@ -20,6 +20,7 @@ mod relative_moves;
 mod slip_history;
 mod springs;
 mod springs_estimate;
+mod steep_powers;
 mod sums_of_tables;
 mod support;
 mod tables;
