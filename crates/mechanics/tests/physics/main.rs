@@ -24,3 +24,4 @@ mod steep_powers;
 mod sums_of_tables;
 mod support;
 mod tables;
+mod thin_annuli;
