@@ -6,6 +6,7 @@ mod digits;
 mod double_double;
 mod elasticity;
 mod equal_peaks;
+mod equator;
 mod exactness;
 mod extrema;
 mod hard_cases;
