@@ -3,12 +3,16 @@
 //! d = g(a), F_N = 2 E* int_0^a (d - g) dx = 2 E* int_0^d X(y) dy, p(r) = (E*/pi) int dy/sqrt(X(y)^2 - r^2) over
 //! X(y) > r (Popov & Hess 2015; the last form takes in a vertical edge as well).
 
+use std::cmp::Ordering;
+
 use super::profile::{Point, Ring, StressRadius};
 use super::range::{Quantity, short};
-use super::{Elasticity, Error, Profile};
+use super::{DoubleDouble, Elasticity, Error, Profile};
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
+/// Levels of that scan.
+const LEVEL_SCAN: usize = 32;
 
 /// The normal load at the start. Zero is a contact just touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +81,7 @@ pub(super) fn mean_pressure(normal_force: f64, contact_radius: f64) -> f64 {
 
 /// The ring from the centre to `edge`: the whole contact.
 pub(super) fn whole(profile: &Profile, edge: &Point) -> Ring {
-    Ring::between(profile.point(super::double_double::DoubleDouble::ZERO), *edge)
+    Ring::between(profile.point(DoubleDouble::ZERO), *edge)
 }
 
 /// int X dy, m^2, over a ring: its share of F_N/(2 E*).
@@ -150,18 +154,31 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
     if profile.kernel_falls() {
         return Some(at(0.0));
     }
-    // A scan, then a ternary search about its largest value: a profile that is steep outside has its maximum off the
-    // centre.
+    // A scan, then a ternary search about its largest value: a profile that is steep outside has its maximum off the centre.
+    // Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which may be narrower
+    // than a unit in the last place of a radius: so radii at even steps of the level are scanned too, and told apart by their squares.
+    let pressure_at = |square: DoubleDouble| {
+        pressure(profile, elasticity, edge, &StressRadius { radius: square.value().sqrt(), square })
+    };
     let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
-    let scan: Vec<f64> = (0..PRESSURE_SCAN).map(|index| at(radius(index))).collect();
-    let best = (0..PRESSURE_SCAN).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
-    let (mut low, mut high) = (radius(best.saturating_sub(1)), radius(best + 1));
+    let level = |index: usize| edge.level * (index as f64 / LEVEL_SCAN as f64);
+    let mut squares: Vec<DoubleDouble> = (0..PRESSURE_SCAN)
+        .map(|index| DoubleDouble::square_of(radius(index)))
+        .chain((0..LEVEL_SCAN).map(|index| profile.point(level(index)).square))
+        .collect();
+    squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+    let scan: Vec<f64> = squares.iter().map(|&square| pressure_at(square)).collect();
+    squares.push(edge.square);
+    let best = (0..scan.len()).max_by(|&a, &b| scan[a].total_cmp(&scan[b])).unwrap_or(0);
+    let (low, width) = (squares[best.saturating_sub(1)], squares[best + 1] - squares[best.saturating_sub(1)]);
+    let at_share = |share: f64| pressure_at(low + width * share);
+    let (mut below, mut above) = (0.0, 1.0);
     // At a maximum the pressure depends on half the digits of the radius alone.
     for _ in 0..40 {
-        let third = (high - low) / 3.0;
-        if at(low + third) >= at(high - third) { high -= third } else { low += third }
+        let third = (above - below) / 3.0;
+        if at_share(below + third) >= at_share(above - third) { above -= third } else { below += third }
     }
-    Some(at(0.5 * (low + high)).max(scan[best]))
+    Some(at_share(0.5 * (below + above)).max(scan[best]))
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.
@@ -169,7 +186,6 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
 /// The load is concave in the depth from the outside and convex from the inside, so Newton's step from the side of the
 /// smaller slope never passes the root: it converges from any start, even where X vanishes and the slope with it.
 pub(super) fn depth_for(profile: &Profile, ring: &Ring, upward: bool, wanted: f64) -> f64 {
-    use super::double_double::DoubleDouble;
     let part = |depth: f64| {
         let depth = DoubleDouble::from(depth);
         if upward {

@@ -39,6 +39,20 @@ impl ExactSphere {
         (radius / self.radius).min(1.0 - 0.5 * f64::EPSILON)
     }
 
+    /// artanh(x/R). Beside the equator R - x has digits that x/R has lost.
+    fn sigma_at(&self, radius: f64) -> f64 {
+        let share = self.share(radius);
+        if share < 0.5 {
+            return share.atanh();
+        }
+        0.5 * ((self.radius + radius) / self.gap_to_equator(radius)).ln()
+    }
+
+    /// R - x, kept off zero where rounding has x = R, so that levels stay finite.
+    fn gap_to_equator(&self, radius: f64) -> f64 {
+        (self.radius - radius).max(0.5 * f64::EPSILON * self.radius)
+    }
+
     /// R^2 less a square, kept off zero where rounding has x = R.
     fn height_square(&self, square: DoubleDouble) -> f64 {
         let whole = self.radius * self.radius;
@@ -126,12 +140,12 @@ impl SmoothCoordinate for ExactSphere {
 
 impl Shape for ExactSphere {
     fn level(&self, radius: f64) -> f64 {
-        radius * self.share(radius).atanh()
+        radius * self.sigma_at(radius)
     }
 
     fn slope(&self, radius: f64) -> f64 {
-        let u = self.share(radius);
-        u.atanh() + u / ((1.0 - u) * (1.0 + u))
+        let rest = self.gap_to_equator(radius) / self.radius * (1.0 + radius / self.radius);
+        self.sigma_at(radius) + self.share(radius) / rest
     }
 
     fn radius(&self, level: f64) -> f64 {
@@ -141,7 +155,10 @@ impl Shape for ExactSphere {
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         let sigma = self.sigma(level.value());
         if sigma > 1.0 {
-            return DoubleDouble::square_of(self.radius * sigma.tanh());
+            // By R^2 - x^2 = (R/cosh(sigma))^2: beside the equator the level depends on that difference, of which a rounded x
+            // has few digits.
+            let height = self.radius / sigma.cosh();
+            return DoubleDouble::square_of(self.radius) - DoubleDouble::square_of(height);
         }
         // R y tanh(sigma)/sigma: where a << R the factor is so near to one that its rounding does not count.
         let factor = DoubleDouble::from(1.0) - DoubleDouble::from(shortfall(sigma.max(f64::MIN_POSITIVE)));
@@ -149,7 +166,7 @@ impl Shape for ExactSphere {
     }
 
     fn load(&self, radius: f64) -> f64 {
-        let sigma = self.share(radius).atanh();
+        let sigma = self.sigma_at(radius);
         0.5 * (self.radius * self.radius * sigma * shortfall(sigma.max(f64::MIN_POSITIVE)) + radius * radius * sigma)
     }
 

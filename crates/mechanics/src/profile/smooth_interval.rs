@@ -9,6 +9,9 @@ use std::f64::consts::FRAC_PI_2;
 use super::gauss::{Panel, Singular};
 use super::{DoubleDouble, Moments, Span, StressRadius};
 
+/// The power up to which no panel needs a longer rule than the singularities ask for.
+const PARABOLA: f64 = 2.0;
+
 /// A stretch of radii in the coordinate t of the kink beneath it.
 #[derive(Clone, Copy)]
 pub(super) struct SmoothInterval {
@@ -35,6 +38,17 @@ pub(super) struct SmoothInterval {
 pub(super) struct Node {
     pub(super) t: f64,
     pub(super) dt: f64,
+}
+
+/// How fast an integrand changes along its path.
+struct Change {
+    /// At a distance s below the top ln t has fallen by at least rate s + bend s^2/2.
+    rate: f64,
+    bend: f64,
+    /// How many factors of the integrand change like g.
+    factors: f64,
+    /// At s from where t would be zero ln t changes by no more than the larger of 1/s and this.
+    least: f64,
 }
 
 impl SmoothInterval {
@@ -66,10 +80,9 @@ impl SmoothInterval {
         if self.base > 0.0 { t / (self.base * self.base + t * t).sqrt() } else { 1.0 }
     }
 
-    /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows. At a distance s below the top
-    /// ln t has fallen by at least rate s + bend s^2/2.
-    fn sweep(&self, singular: Singular, top: f64, length: f64, fall: (f64, f64), mut visit: impl FnMut(f64, f64)) {
-        let (rate, bend) = (self.power * fall.0, self.power * fall.1);
+    /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows.
+    fn sweep(&self, singular: Singular, top: f64, length: f64, change: Change, mut visit: impl FnMut(f64, f64)) {
+        let (rate, bend) = (self.power * change.rate, self.power * change.bend);
         let mut done = 0.0;
         while done < length {
             let (high, left) = (top - done, length - done);
@@ -79,15 +92,19 @@ impl SmoothInterval {
                 break;
             }
             let mut panel = singular.panel(high, left);
-            if self.power > 10.0 && done * (rate + 0.5 * bend * done) < 40.0 {
-                // A steep power is followed by no more than a factor e^5 at a time, until it counts no longer.
-                let steep = rate + bend * done;
-                // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the loop would not
-                // advance.
-                let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
-                if width > 0.0 && width < panel.width {
-                    panel = Panel::fine(width);
+            // Panels that the singularities alone shape suffice for a parabola, and where a power counts no longer.
+            if self.power > PARABOLA && done * (rate + 0.5 * bend * done) < 40.0 {
+                if self.power > 10.0 {
+                    // A steep power is followed by no more than a factor e^5 at a time.
+                    let steep = rate + bend * done;
+                    // By the hypotenuse: below 1e-154 m the square of `steep` would overflow, and the loop would not
+                    // advance.
+                    let width = 10.0 / (steep + steep.hypot((10.0 * bend).sqrt()));
+                    if width > 0.0 && width < panel.width {
+                        panel = Panel::fine(width);
+                    }
                 }
+                panel = panel.following(change.factors * self.power * panel.width * high.recip().max(change.least));
             }
             panel.visit(|below, weight| visit(done + below, weight));
             done += panel.width;
@@ -100,7 +117,8 @@ impl SmoothInterval {
             return Moments::default();
         }
         let (mut first, mut second) = (0.0, 0.0);
-        self.sweep(self.singular, self.high, self.drop, (self.high.recip(), 0.0), |dt, weight| {
+        let change = Change { rate: self.high.recip(), bend: 0.0, factors: 2.0, least: 0.0 };
+        self.sweep(self.singular, self.high, self.drop, change, |dt, weight| {
             let t = (self.high - dt).max(0.0);
             let h = rise(Node { t, dt });
             let area = weight * h * self.stretch(t);
@@ -138,7 +156,9 @@ impl SmoothInterval {
         let beyond = if beyond < 1.0 { beyond.asin() } else { FRAC_PI_2 + 0.5 * beyond.acosh().min(3.0) };
         let singular = Singular { below: (self.singular.below / tau).asinh(), above: beyond };
         let mut total = 0.0;
-        self.sweep(singular, top.atan2(w_top), angle, (w_top / top, 1.0), |turn, weight| {
+        // A power of the sine is a sum of waves no shorter than that power has them.
+        let change = Change { rate: w_top / top, bend: 1.0, factors: 1.0, least: 1.0 };
+        self.sweep(singular, top.atan2(w_top), angle, change, |turn, weight| {
             let half = (0.5 * turn).sin();
             let dt = 2.0 * top * half * half + w_top * turn.sin();
             let t = (top - dt).max(0.0);

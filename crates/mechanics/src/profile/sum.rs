@@ -8,7 +8,7 @@ use super::roots::increasing;
 use super::shape::{End, Shape};
 use super::{DoubleDouble, Error, InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated, range};
 
-/// How far beyond a kink, relative to its radius, a radius still lacks digits that a level has.
+/// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level has.
 const NEAR: f64 = 1e-2;
 /// Newton's steps for the level that carries a load there, each of which gains two digits at the least.
 const POLISH: usize = 5;
@@ -105,18 +105,22 @@ impl Sum {
         &self.parts
     }
 
-    /// The kink that a radius is so little beyond that what it is beyond it must be known on its own.
-    fn near_kink(&self, radius: f64) -> Option<f64> {
+    /// The radius from which what lies beyond it must be known on its own: the kink that a radius is little beyond, or, where the
+    /// radius is little below the end of a part that is vertical there, one some units in the last place below it.
+    fn counted_from(&self, radius: f64) -> Option<f64> {
+        if radius > (1.0 - NEAR) * self.ceiling {
+            return Some(radius * (1.0 - 8.0 * f64::EPSILON));
+        }
         let above = self.kinks.partition_point(|&kink| kink <= radius);
         let kink = *self.kinks.get(above.checked_sub(1)?)?;
         (radius - kink < NEAR * kink).then_some(kink)
     }
 
-    /// The stretch from a kink outward whose squares differ by `gap`.
-    fn beyond(kink: f64, gap: f64) -> Span {
-        let inner = DoubleDouble::square_of(kink);
+    /// The stretch from a radius outward whose squares differ by `gap`.
+    fn beyond(base: f64, gap: f64) -> Span {
+        let inner = DoubleDouble::square_of(base);
         let outer = inner + DoubleDouble::from(gap);
-        Span { inner, outer, inner_radius: kink, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
+        Span { inner, outer, inner_radius: base, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
     }
 
     fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
@@ -169,18 +173,18 @@ impl Shape for Sum {
         let radius = self.radius(level.value());
         let plain = DoubleDouble::square_of(radius);
         let at_rim = self.rim.is_some_and(|(_, top)| level.value() >= top);
-        let Some(kink) = self.near_kink(radius).filter(|_| !at_rim) else { return plain };
-        let above = (level - DoubleDouble::from(self.level(kink))).value();
+        let Some(base) = self.counted_from(radius).filter(|_| !at_rim) else { return plain };
+        let above = (level - DoubleDouble::from(self.level(base))).value();
         if above <= 0.0 {
             return plain;
         }
-        let gap = increasing((radius - kink) * (radius + kink), |gap| {
-            let span = Sum::beyond(kink, gap);
+        let gap = increasing((radius - base) * (radius + base), |gap| {
+            let span = Sum::beyond(base, gap);
             let rise = self.rise(&span);
             let steepness = Shape::slope(self, span.outer_radius) / (2.0 * span.outer_radius);
             (rise - above, if steepness.is_finite() { steepness } else { rise / gap })
         });
-        Sum::beyond(kink, gap).outer
+        Sum::beyond(base, gap).outer
     }
 
     fn load(&self, radius: f64) -> f64 {
@@ -197,7 +201,7 @@ impl Shape for Sum {
         let radius = |part: &Profile, load: f64| part.radius(part.indentation_for(load));
         let found = self.inverse(load, radius, Shape::load, |x| x * Shape::slope(self, x));
         let mut level = self.level(found);
-        if load > 0.0 && self.near_kink(found).is_some() {
+        if load > 0.0 && self.counted_from(found).is_some() {
             // int_0^d X dy, whose slope X hardly changes here.
             let core = self.radius(0.0);
             let point = |level: f64| {

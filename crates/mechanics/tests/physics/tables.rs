@@ -1,6 +1,10 @@
 //! Tables against the bodies that they were taken from. `--nocapture` prints the numbers of `docs/tables.md`.
 
-use crate::support::displace;
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+
+use crate::support::quadrature::integral;
+use crate::support::{config, displace};
+use proptest::prelude::*;
 use stickslip_mechanics::profile::{ExactSphere, Sphere, Tabulated};
 use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup};
 
@@ -106,4 +110,38 @@ fn amplified_noise() {
     let table = Tabulated::new(&radii, &heights).unwrap();
     assert!((table.height_noise() / sigma - 1.0).abs() < 0.1, "{}", table.height_noise() / sigma);
     assert!((20.0..50.0).contains(&table.noise_amplification(1e-3)), "{}", table.noise_amplification(1e-3));
+}
+
+proptest! {
+    #![proptest_config(config(64))]
+
+    #[test]
+    fn at_the_knots_of_a_tabulated_parabola_the_surface_moves_as_under_a_sphere(
+        curvature in 0.01..1.0_f64,
+        count in 6_usize..60,
+        uneven in prop::collection::vec(-0.3..0.3_f64, 60),
+        slide in 0.05..0.95_f64,
+    ) {
+        let radii: Vec<f64> = (0..=count)
+            .map(|i| if i == 0 { 0.0 } else { 1e-3 * (i as f64 + uneven[i - 1]) / count as f64 })
+            .collect();
+        let heights: Vec<f64> = radii.iter().map(|r| 0.5 * r * r / curvature).collect();
+        let edge = 0.8e-3;
+        let depth = edge * edge / curvature;
+        let (friction, elasticity) = (0.3, Elasticity::effective(1e11, 8e10).unwrap());
+        let ratio = friction * elasticity.e_star() / elasticity.g_star();
+        let profile = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+        let preload = Preload::Indentation(depth);
+        let mut table = Contact::new(Setup { profile, elasticity, friction, preload }).unwrap();
+        table.apply(&displace(slide * ratio * depth)).unwrap();
+        let stick = ((1.0 - slide) * depth * curvature).sqrt();
+        for &r in &radii[1..] {
+            let angle = |x: f64| if x < r { x.atan2(((r - x) * (r + x)).sqrt()) } else { FRAC_PI_2 };
+            let slipped = |turn: f64| depth - (r * turn.sin()).powi(2) / curvature;
+            let slipped = integral(&slipped, angle(stick), angle(edge), 1e-16 * depth);
+            let expected = ratio * FRAC_2_PI * (slide * depth * angle(stick) + slipped);
+            let error = (table.surface_displacement(r) / expected - 1.0).abs();
+            prop_assert!(error < 1e-12, "at {r:e} m off by {error:e}");
+        }
+    }
 }

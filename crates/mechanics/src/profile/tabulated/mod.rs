@@ -334,7 +334,7 @@ impl Shape for Tabulated {
 
     fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let (low, whole, high) = self.parts(span);
-        let whole = whole.map(|index| (index, self.panels[index].span()));
+        let whole = whole.map(|index| (index, self.panels[index].span_up_to(&self.panels[index + 1])));
         let (mut sum, mut above) = (0.0, 0.0);
         for (index, span) in high.into_iter().chain(whole.rev()).chain(low) {
             let panel = &self.panels[index];

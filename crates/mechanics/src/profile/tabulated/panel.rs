@@ -130,6 +130,13 @@ impl Panel {
         Span { inner: self.square, outer, inner_radius: self.radius, outer_radius, gap, edge: 0.0 }
     }
 
+    /// All of it, up to the very square where the next one begins: its own end is rounded, and 1/sqrt(r^2 - x^2) would turn a gap of
+    /// one unit in the last place beneath r into 1e-8 of a displacement.
+    pub(super) fn span_up_to(&self, next: &Panel) -> Span {
+        let gap = (next.square - self.square).value();
+        Span { outer: next.square, outer_radius: next.radius, gap, ..self.span() }
+    }
+
     /// The t of a radius that lies in it.
     pub(super) fn t_of(&self, square: DoubleDouble) -> f64 {
         (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
