@@ -32,6 +32,9 @@ pub struct Springs {
     stick_radius: f64,
     /// Error of the displacement under a prescribed force, m.
     misplaced: f64,
+    /// The largest displacement from zero, and the least indentation, that the path has led to, m.
+    farthest: f64,
+    shallowest: f64,
     /// The same contact on fewer springs, for the error estimate.
     coarser: Vec<Springs>,
 }
@@ -120,6 +123,8 @@ impl Springs {
             slipped: false,
             stick_radius: initial.contact_radius,
             misplaced: 0.0,
+            farthest: 0.0,
+            shallowest: initial.indentation,
             coarser: Vec::new(),
         })
     }
@@ -230,6 +235,8 @@ impl Springs {
         self.dissipated += work;
         self.indentation = d1;
         self.displacement = u1;
+        self.farthest = self.farthest.max(u1.abs());
+        self.shallowest = self.shallowest.min(d1);
         let radius = self.contact_radius();
         self.stick_radius = if self.slipped { stick_radius.min(radius) } else { radius };
     }

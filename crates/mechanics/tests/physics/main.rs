@@ -9,6 +9,7 @@ mod elasticity;
 mod equal_peaks;
 mod exactness;
 mod extrema;
+mod few_springs;
 mod hard_cases;
 mod laws;
 mod minimax;
