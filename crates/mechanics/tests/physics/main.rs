@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod closed_loops;
+mod coarse_tables;
 mod curved_moves;
 mod digits;
 mod double_double;
