@@ -14,6 +14,9 @@ use super::{
     Contact, ContactSummary, Error, Move, Normal, Profile, Regime, Setup, State, Tangential, UnsupportedMove, range,
 };
 
+/// A slip up to this, relative to bound and move, is what the rounding of displacements leaves of none.
+const ROUNDED: f64 = 8.0 * f64::EPSILON;
+
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
 pub struct Springs {
@@ -226,9 +229,13 @@ impl Springs {
                 let mean = bound - 0.5 * scale * dd * slip / rate;
                 work += spring.weight * stiffness * slip * mean;
                 spring.carried = bound.copysign(trial);
-                self.slipped = true;
             } else {
                 spring.carried = trial;
+            }
+            // Where a loop closes, a spring comes back to its bound but for the last digits.
+            if slip > ROUNDED * (bound + (du * span).abs()) {
+                self.slipped = true;
+            } else {
                 stick_radius = stick_radius.max(spring.radius + 0.5 * self.spacing);
             }
         }

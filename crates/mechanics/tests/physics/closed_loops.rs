@@ -1,9 +1,9 @@
 //! The stick radius where loops close exactly: that of the last move itself, point by point in whole numbers.
 
-use crate::support::{UNIT, config, displace, press};
+use crate::support::{PLAIN, UNIT, config, displace, press};
 use proptest::prelude::*;
 use stickslip_mechanics::profile::Sphere;
-use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Regime, Setup};
+use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Regime, Setup, Springs};
 
 /// Points from the centre to the indentation of the preload. Turning points lie between them, on even multiples of
 /// half their distance.
@@ -89,6 +89,34 @@ proptest! {
             let level = expected.unwrap_or(row.depth) as f64 / whole;
             let off = (state.stick_radius * state.stick_radius - level).abs();
             prop_assert!(off < 1e-15, "{} to {step:?}: {} is not {level}", row.depth, state.stick_radius);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(200))]
+
+    #[test]
+    fn springs_stick_where_the_last_move_leaves_them_within_a_cell(
+        path in prop::collection::vec(-2 * POINTS / STEP..=2 * POINTS / STEP, 1..24)
+    ) {
+        const COUNT: usize = 300;
+        // Numbers that are not round, so that a spring comes back to its bound but for its last digits.
+        let full = PLAIN.full_slip();
+        let (mut row, mut springs) = (Row::new(), Springs::new(PLAIN.setup(), COUNT, PLAIN.radius).unwrap());
+        for target in path {
+            let expected = row.go(Along::Slide(target));
+            springs.apply(&displace((target * STEP) as f64 / (2 * POINTS) as f64 * full)).unwrap();
+            let state = springs.state();
+            let regime = match expected {
+                None => Regime::Stick,
+                Some(0) => Regime::GrossSlip,
+                Some(_) => Regime::PartialSlip,
+            };
+            prop_assert_eq!(state.regime, regime, "to {}", target);
+            let radius = (expected.unwrap_or(row.depth) as f64 / (2 * POINTS) as f64).sqrt();
+            let off = (state.stick_radius / state.contact_radius - radius).abs();
+            prop_assert!(off <= 2.0 / COUNT as f64, "to {target}: {} is not {radius}", state.stick_radius);
         }
     }
 }
