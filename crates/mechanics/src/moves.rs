@@ -164,7 +164,7 @@ impl Contact {
         let scale = self.scale();
         let work = 2.0 * self.elasticity.g_star() * scale * scale * scaled_work;
         self.dissipated = self.dissipated + DoubleDouble::from(work);
-        if self.history.slip_from().is_some_and(|start| start.level.value() <= 0.0) {
+        if self.history.slipped_to_one_piece() {
             // Gross slip wipes out the history, and its errors with it.
             self.path_error = 0.0;
             self.path_kernel = 0.0;

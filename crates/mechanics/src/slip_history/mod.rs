@@ -81,7 +81,8 @@ pub(super) struct SlipHistory {
     /// W, and the value it had when the stack was last begun: pieces are relative to the latter.
     position: DoubleDouble,
     reference: DoubleDouble,
-    /// y*, where the slip of the last move began; `None` if nothing slipped.
+    /// y*, where the slip of the last move began; `None` if nothing slipped. A move that closes an inner loop exactly
+    /// wipes out pieces that it left stuck, so this may lie outside the inner end of the top piece.
     slip_from: Option<Point>,
 }
 
@@ -117,6 +118,12 @@ impl SlipHistory {
 
     pub(super) fn slip_from(&self) -> Option<&Point> {
         self.slip_from.as_ref()
+    }
+
+    /// Whether the last move slipped and has left the trace of gross slip alone: the whole contact at its bound,
+    /// whether it slipped all of it or closed a loop that began there.
+    pub(super) fn slipped_to_one_piece(&self) -> bool {
+        self.slip_from.is_some() && self.pieces.len() == 1
     }
 
     pub(super) fn in_contact(&self) -> bool {
@@ -263,7 +270,13 @@ impl SlipHistory {
         }
         let mut outer = self.edge;
         let mut slipped = None;
+        // Where a loop closes, the old pieces within it lie at the bound and are popped, though they did not slip.
+        let at_bound = closes_at(d1, shift, excess);
+        let mut stuck_from = None;
         let start = loop {
+            if stuck_from.is_none() && excess <= at_bound {
+                stuck_from = Some(outer);
+            }
             let Some(top) = self.pieces.last().copied() else { break profile.point(DoubleDouble::ZERO) };
             let inner_excess = slipping.excess(&top.line, top.inner.level);
             if let Some(level) = slipping.crossing(&top, inner_excess, &outer) {
@@ -293,7 +306,7 @@ impl SlipHistory {
             self.reference = w1;
             Sums::default()
         };
-        self.slip_from = Some(start);
+        self.slip_from = Some(stuck_from.unwrap_or(start));
         if start.level < d1 {
             let ring = Ring::between(start, self.edge);
             let moments = slipped.unwrap_or_else(|| profile.moments(&ring));
@@ -357,6 +370,11 @@ impl Sums {
 /// given.
 fn round_off(indentation: DoubleDouble, shift: DoubleDouble, change: DoubleDouble) -> f64 {
     (ROUND_OFF * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change.value().abs())
+}
+
+/// An excess over the bound up to this, m, is what rounding leaves of none; `change` is that of the move at the edge.
+fn closes_at(indentation: DoubleDouble, shift: DoubleDouble, change: f64) -> f64 {
+    (SAME_TURNING_POINT * (indentation.value() + shift.value().abs())).min(ROUNDED_SHARE * change)
 }
 
 /// The edge of a contact at `indentation`; with a gap there is none, and its radius is zero.

@@ -3,12 +3,13 @@
 //! Each of these alone may miss an error by accident. A displacement u that is known at the springs, and bends by s in a
 //! cell dx, is off by no more than s dx^2/8 in its integral, and in a stress at r by that times the derivative of
 //! 1/sqrt(x^2 - r^2): the second differences between the springs bound both. Where more than a bend falls into a cell,
-//! springs of another number differ.
+//! springs of another number differ. With so few springs that every radius is near the centre or the edge, none of these
+//! says anything, and friction alone bounds the error.
 
 use std::f64::consts::PI;
 
 use super::super::accuracy::ErrorEstimate;
-use super::Springs;
+use super::{Move, Normal, Springs};
 
 /// Radii at which stresses are compared.
 const COMPARED: usize = 64;
@@ -18,7 +19,9 @@ const NEAREST: f64 = 2.0;
 impl Springs {
     /// The errors by the discretisation: the largest of several estimates. The one of the stress is for radii some
     /// cells (of twice the largest contact radius over the number of springs) away from the kinks of the displacement,
-    /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell.
+    /// the centre, the edge and whatever singular radius the profile has: nearer, a stress is smeared over a cell. Where
+    /// no radius is that far from the centre, the edge and the singular radii, it is a bound for all radii but the
+    /// nearest to a singular one.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -40,7 +43,11 @@ impl Springs {
         let differences = self.coarser.iter().map(|coarse| (self.force() - coarse.force()).abs());
         let normal = self.friction * (self.normal_force() - figures.normal_force).abs();
         let force = differences.fold(normal.max(self.force_bound(&bends)), f64::max) + misplaced * edge;
-        let stress = self.off_kinks(edge).map(|radius| self.stress_doubt(radius, &bends)).fold(0.0, f64::max);
+        let stress = if self.resolves_a_radius(edge) {
+            self.off_kinks(edge, NEAREST * self.spacing).map(|at| self.stress_doubt(at, &bends)).fold(0.0, f64::max)
+        } else {
+            self.friction_bound(edge)
+        };
         let stress = stress + misplaced / (PI * (2.0 * NEAREST * edge * self.spacing).sqrt());
         ErrorEstimate {
             path_error: 0.0,
@@ -49,9 +56,34 @@ impl Springs {
         }
     }
 
-    /// Radii over the contact, but for those where the profile has a singular stress.
-    fn off_kinks(&self, edge: f64) -> impl Iterator<Item = f64> {
+    /// Whether some radius is so far from the centre, the edge and the singular radii that estimates are meant for it.
+    fn resolves_a_radius(&self, edge: f64) -> bool {
         let near = NEAREST * self.spacing;
+        self.off_kinks(edge, near).any(|radius| radius > near && edge - radius > near)
+    }
+
+    /// Bound on the error of the shear stress, Pa, at any radius: its own magnitude and that of the true one. Over y =
+    /// g(x) the true displacement has slopes of one at the most (see `slip_history`), and none below the level that
+    /// the path cannot have reached, the least indentation less |U|/m; so |tau| is no more than mu times the pressure
+    /// that was added beyond that level.
+    fn friction_bound(&self, edge: f64) -> f64 {
+        if self.farthest <= 0.0 {
+            return 0.0;
+        }
+        let scale = self.scale();
+        let held = if scale > 0.0 { (self.shallowest - self.farthest / scale).max(0.0) } else { 0.0 };
+        let mut core = self.normal.clone();
+        let kept = core.apply(&Move { normal: Some(Normal::Indentation(held)), ..Move::default() }).is_ok();
+        self.off_kinks(edge, 0.0)
+            .map(|radius| {
+                let inner = if kept { core.pressure(radius) } else { 0.0 };
+                self.shear(radius).abs() + self.friction * (self.normal.pressure(radius) - inner)
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Radii over the contact, but for those as `near` to where the profile has a singular stress, m.
+    fn off_kinks(&self, edge: f64, near: f64) -> impl Iterator<Item = f64> {
         let singular = self.profile.singular_radii();
         (0..COMPARED)
             .map(move |index| edge * (index as f64 + 0.5) / COMPARED as f64)

@@ -14,6 +14,9 @@ use super::{
     Contact, ContactSummary, Error, Move, Normal, Profile, Regime, Setup, State, Tangential, UnsupportedMove, range,
 };
 
+/// A slip up to this, relative to bound and move, is what the rounding of displacements leaves of none.
+const ROUNDED: f64 = 8.0 * f64::EPSILON;
+
 /// A foundation of springs in contact.
 #[derive(Clone, Debug)]
 pub struct Springs {
@@ -32,6 +35,9 @@ pub struct Springs {
     stick_radius: f64,
     /// Error of the displacement under a prescribed force, m.
     misplaced: f64,
+    /// The largest displacement from zero, and the least indentation, that the path has led to, m.
+    farthest: f64,
+    shallowest: f64,
     /// The same contact on fewer springs, for the error estimate.
     coarser: Vec<Springs>,
 }
@@ -120,6 +126,8 @@ impl Springs {
             slipped: false,
             stick_radius: initial.contact_radius,
             misplaced: 0.0,
+            farthest: 0.0,
+            shallowest: initial.indentation,
             coarser: Vec::new(),
         })
     }
@@ -221,15 +229,21 @@ impl Springs {
                 let mean = bound - 0.5 * scale * dd * slip / rate;
                 work += spring.weight * stiffness * slip * mean;
                 spring.carried = bound.copysign(trial);
-                self.slipped = true;
             } else {
                 spring.carried = trial;
+            }
+            // Where a loop closes, a spring comes back to its bound but for the last digits.
+            if slip > ROUNDED * (bound + (du * span).abs()) {
+                self.slipped = true;
+            } else {
                 stick_radius = stick_radius.max(spring.radius + 0.5 * self.spacing);
             }
         }
         self.dissipated += work;
         self.indentation = d1;
         self.displacement = u1;
+        self.farthest = self.farthest.max(u1.abs());
+        self.shallowest = self.shallowest.min(d1);
         let radius = self.contact_radius();
         self.stick_radius = if self.slipped { stick_radius.min(radius) } else { radius };
     }

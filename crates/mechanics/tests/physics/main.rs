@@ -1,6 +1,8 @@
 //! The physics tests, one program: each module holds the solver against closed forms, laws or an independent reference.
 
 mod accuracy;
+mod closed_loops;
+mod coarse_tables;
 mod curved_moves;
 mod digits;
 mod double_double;
@@ -9,6 +11,7 @@ mod equal_peaks;
 mod equator;
 mod exactness;
 mod extrema;
+mod few_springs;
 mod hard_cases;
 mod laws;
 mod minimax;

@@ -4,6 +4,7 @@
 pub mod masing;
 pub mod paths;
 pub mod points;
+pub mod power_sums;
 pub mod quadrature;
 pub mod reference;
 
