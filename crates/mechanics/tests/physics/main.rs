@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod curved_moves;
+mod curved_tolerance;
 mod digits;
 mod double_double;
 mod elasticity;
