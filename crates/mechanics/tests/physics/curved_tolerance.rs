@@ -227,3 +227,25 @@ proptest! {
         prop_assert!(stated <= 100.0 * error + 1e-13, "{stated:e} is stated for {error:e}");
     }
 }
+
+#[test]
+fn stated_stress_errors_of_a_ball_that_slips_in_the_end_are_near_the_true_ones() {
+    let load: f64 = 50.0;
+    let full = ball(load).gross_slip_displacement();
+    for (start, moved) in [(0.0, 0.7), (0.0, 0.8), (0.0, 0.95), (0.3, 0.6), (0.3, 0.7)] {
+        let [coarse, fine] = [1e-8, 1e-12].map(|tolerance| {
+            let mut contact = ball(start * load);
+            contact.apply_within(&slide_and_press(moved * full, load), tolerance).unwrap();
+            contact
+        });
+        assert!(coarse.state().dissipated_energy > 0.0);
+        let unit = FRICTION * fine.summary().max_pressure.unwrap();
+        let error = (0..400)
+            .map(|index| f64::from(index) / 400.0 * fine.contact_radius())
+            .map(|r| (coarse.shear(r) - fine.shear(r)).abs() / unit)
+            .fold(0.0, f64::max);
+        let (stated, rest) = (coarse.accuracy().stress_error, fine.accuracy().stress_error);
+        assert!(error <= stated + rest, "{moved} from {start}: {error:e} is more than the stated {stated:e}");
+        assert!(stated <= 100.0 * error + 1e-13, "{moved} from {start}: {stated:e} is stated for {error:e}");
+    }
+}
