@@ -112,6 +112,7 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
             ["residual", "min" | "mean"] => reply.residual.as_ref().is_some_and(|residual| residual.peaks.is_empty()),
             ["residual", "centre"] => spike(0.0, edge),
             ["residual", "max"] => spiked(edge),
+            ["residual", "relative"] => spiked(edge) || untouched(reply) || simulation.setup.friction <= 0.0,
             ["stress", "slip", index] => radius(reply, index) > edge || untouched(reply),
             ["stress", "pressure" | "shear", index] => spike(radius(reply, index), edge),
             _ => false,
