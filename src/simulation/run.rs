@@ -247,7 +247,7 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
         return Err(Failure::TooLong { pointer: "/residual".to_owned(), allowed });
     }
     match solver.residual(&|| stop.check().is_ok()) {
-        Some(residual) => Ok(Residual::new(residual, solver.exact().summary().unit_shear())),
+        Some(residual) => Ok(Residual::new(residual, solver.unit_shear())),
         None => Err(stop.check().err().map_or(Failure::Stopped, Failure::from)),
     }
 }

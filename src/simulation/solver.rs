@@ -36,6 +36,8 @@ pub trait Solver {
     fn contact_radius(&self) -> f64;
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual>;
+    /// mu p_max at the present load, Pa, or mu times the mean pressure where p_max is infinite.
+    fn unit_shear(&self) -> f64;
     /// Estimated errors of force and stress, relative to μ F_N and μ p_max.
     fn accuracy(&self) -> ErrorEstimate;
     /// Error that curved moves have left in the force, relative to μ F_N.
@@ -91,6 +93,10 @@ impl Solver for Contact {
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
         self.residual_while(go_on)
+    }
+
+    fn unit_shear(&self) -> f64 {
+        Contact::summary(self).unit_shear()
     }
 
     fn accuracy(&self) -> ErrorEstimate {
@@ -151,6 +157,11 @@ impl Solver for Springs {
 
     fn residual(&self, go_on: &dyn Fn() -> bool) -> Option<Residual> {
         go_on().then(|| self.residual())
+    }
+
+    fn unit_shear(&self) -> f64 {
+        // Their load does not change.
+        self.initial_summary().unit_shear()
     }
 
     fn accuracy(&self) -> ErrorEstimate {

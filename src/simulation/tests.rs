@@ -103,6 +103,10 @@ impl Solver for Counting<'_> {
         self.contact.residual_while(go_on)
     }
 
+    fn unit_shear(&self) -> f64 {
+        self.contact.summary().unit_shear()
+    }
+
     fn accuracy(&self) -> ErrorEstimate {
         self.contact.accuracy()
     }
