@@ -36,7 +36,8 @@ const CONDITIONS: [HeaderName; 2] = [header::IF_MATCH, header::IF_NONE_MATCH];
 
 /// What the client of a request accepts and has.
 pub struct Client {
-    accepted: Option<HeaderValue>,
+    /// The lines of `Accept-Encoding`.
+    accepted: Vec<HeaderValue>,
     /// The tags that it sent, if one is that of a compressed reply.
     tags: Option<HeaderValue>,
 }
@@ -44,7 +45,7 @@ pub struct Client {
 impl Client {
     /// The client of a request, in which the tags of compressed replies become those of the plain ones.
     pub fn of(request: &mut Request) -> Client {
-        let accepted = request.headers().get(header::ACCEPT_ENCODING).cloned();
+        let accepted = request.headers().get_all(header::ACCEPT_ENCODING).iter().cloned().collect();
         let mut tags = None;
         for name in CONDITIONS {
             if let Some(plain) = request.headers().get(&name).and_then(without_coding) {
@@ -68,20 +69,21 @@ pub async fn compress(mut response: Response, client: Client, pool: &Pool) -> Re
         return response;
     }
     vary(&mut response);
-    let (Some(accepted), Some(room)) = (client.accepted, pool.try_reserve(ENCODER)) else {
+    if client.accepted.is_empty() {
         return response;
-    };
+    }
+    let Some(room) = pool.try_reserve(ENCODER) else { return response };
     // This is still the only handle.
     let held = response.extensions_mut().remove::<Arc<Reservation>>().and_then(Arc::into_inner).unwrap_or_default();
     response.extensions_mut().insert(Arc::new(held.with(room)));
-    encode(response, accepted).await
+    encode(response, client.accepted).await
 }
 
 /// The reply in the coding that suits `accepted` best.
-async fn encode(response: Response, accepted: HeaderValue) -> Response {
+async fn encode(response: Response, accepted: Vec<HeaderValue>) -> Response {
     let status = response.status();
     let mut request = axum::http::Request::new(());
-    request.headers_mut().insert(header::ACCEPT_ENCODING, accepted);
+    request.headers_mut().extend(accepted.into_iter().map(|line| (header::ACCEPT_ENCODING, line)));
     let mut response = Some(response);
     let reply = service_fn(move |_| std::future::ready(response.take().ok_or(())));
     let coded = Compression::new(reply).quality(CompressionLevel::Fastest).compress_when(SizeAbove::new(0));
