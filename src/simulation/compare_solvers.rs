@@ -17,7 +17,8 @@ use super::run::{contact, equal_peaks, follow, spring_foundation, stresses};
 use super::{Failure, Solver};
 use crate::admission::Stop;
 
-/// The reference is held to this part of the tolerance: four times the chords, with a sixteenth of their error.
+/// The reference is held to this part of the tolerance: some two and a half times the chords, with a
+/// sixteenth of the error of their forces and a quarter of that of their stresses.
 const REFERENCE_TOLERANCE: f64 = 1.0 / 16.0;
 /// A solver runs again, for the median of the times, until its runs together have taken this long.
 const REPEAT_UNTIL: Duration = Duration::from_millis(5);

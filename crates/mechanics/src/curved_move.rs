@@ -1,29 +1,37 @@
 //! Moves that are straight in a force, followed by exact straight moves within a tolerance.
 //!
-//! A path straight in (F_x, F_N), (U, F_N) or (F_x, d) is a curve in (d, W). It is followed by chords between points of
-//! the curve, each an exact move. A chord differs from the curve only for levels that come into contact on the way
-//! (each keeps the displacement gained since its touch) and where slip begins between its ends; both errors are
-//! estimated from the distance between the middle of the curve and the chord. While nothing slips, dU/dd = (E*/G*)
-//! dF_x/dF_N: such stretches are straight and cost one chord.
+//! A path straight in (F_x, F_N), (U, F_N) or (F_x, d) is a curve in (d, W). A straight move between two of its points
+//! is exact unless W - d or W + d turns between them, where slip begins or ends, or levels come into contact without
+//! slip, which keep the displacement gained since their touch. So the turns are searched for, and the stretches
+//! between them followed by pairs of chords, each with the integral of the curve (`curve_panel`): the errors of two
+//! pairs do not add up, and what a pair may be off in its middle falls with the cube of its length.
 
 use std::ops::{Add, Mul, Sub};
 
-use super::profile::{Ring, StressRadius};
+use super::curve_panel::Panel;
 use super::{Contact, DoubleDouble, Error};
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The largest number of chords of one move: a bound on its time and on the pieces that it leaves.
 pub const MAX_CHORDS: usize = 1 << 16;
-/// Up to this many chords the tolerance holds: a load that rises from zero to any value takes half of them at the
-/// default.
+/// Up to this many chords the tolerance holds: ten times what a load that rises from zero takes at the default.
 const FULL_TOLERANCE_CHORDS: usize = MAX_CHORDS / 2;
-/// After every further interval of this many chords the tolerance is relaxed by a factor of four, which halves the
+/// After every further interval of this many chords the tolerance is relaxed by a factor of eight, which halves the
 /// number that the rest of the move needs: a move ends within [`MAX_CHORDS`], and its actual error is reported.
 const RELAXATION_INTERVAL: usize = MAX_CHORDS / 16;
 
-/// The share of the tolerance that a chord may use on which slip begins or ends.
-const SLIP_CHANGE_SHARE: f64 = 1.0 / 16.0;
+/// The share of the tolerance that the middle of a pair of chords may use; the rest is for the quadratures.
+const PAIR_SHARE: f64 = 0.5;
+/// The least share of it that the quadrature of one pair may use: without a least, a load that rises from zero could
+/// not begin.
+const QUADRATURE_SHARE: f64 = 1.0 / 1024.0;
+/// A turn this near an end of a stretch, relative to its length, is at that end. W - d is flat there, so that its
+/// extremum is right to the square of this.
+const SAME_TURN: f64 = 1e-6;
+/// Steps of a ternary search down to [`SAME_TURN`], and down to round-off.
+const TURN_STEPS: usize = 40;
+const LIMIT_STEPS: usize = 80;
 
 /// How the tangential target is reached: straight from one value to the other.
 #[derive(Clone, Copy, Debug)]
@@ -57,20 +65,21 @@ pub(super) struct PathPoint {
     pub(super) displacement: DoubleDouble,
 }
 
-/// The errors of a chord.
-struct Deviation {
-    /// int |error of w| dx, m^2.
-    integral: f64,
-    /// Whether slip begins or ends between its ends.
-    slip_changes: bool,
-    /// Error of the slope of w over y, times the kernel of the newly touched ring at its inner radius.
+/// What a pair of chords leaves in the history, as long as it is not wiped out.
+struct Trace {
+    /// The level from which on it lies.
+    inner: DoubleDouble,
+    /// Errors of the force in the middle of the pair and by its quadrature, relative to mu F_N.
+    within: f64,
+    quadrature: f64,
+    /// Error of the slope of w over y, times the kernel of the ring, at the ring's inner radius.
     kernel: f64,
 }
 
 /// The factor by which the tolerance is relaxed after this many chords.
 fn relaxation(chords: usize) -> f64 {
     let intervals = (chords + RELAXATION_INTERVAL).saturating_sub(FULL_TOLERANCE_CHORDS) / RELAXATION_INTERVAL;
-    (0..intervals).fold(1.0, |factor, _| 4.0 * factor)
+    (0..intervals).fold(1.0, |factor, _| 8.0 * factor)
 }
 
 fn between<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>>(from: T, to: T, part: f64) -> T {
@@ -94,33 +103,66 @@ impl Contact {
         }
         let unit = self.force_unit();
         let largest = self.friction * self.normal_force_on(path, 0.0).max(self.normal_force_on(path, 1.0));
-        let (mut done, mut step, mut chords) = (0.0, 1.0_f64, 0);
+        let relative = if largest > 0.0 { unit / largest } else { 0.0 };
+        let (mut done, mut step, mut chords) = (0.0_f64, 1.0_f64, 0);
+        let mut traces: Vec<Trace> = Vec::new();
         while done < 1.0 {
             if !keep_going() {
                 return Err(Error::Interrupted);
             }
-            let next = if chords < MAX_CHORDS && done + step < 1.0 { done + step } else { 1.0 };
-            let end = self.point_on(path, next);
-            let deviation = self.deviation(path, done, next, &end);
-            let error = if largest > 0.0 { unit * deviation.integral / largest } else { 0.0 };
-            let share = if deviation.slip_changes { SLIP_CHANGE_SHARE } else { next - done };
+            let refinable = chords + 2 <= MAX_CHORDS && step > f64::EPSILON * done.max(f64::EPSILON);
+            let next = if chords + 2 <= MAX_CHORDS && done + step < 1.0 { done + step } else { 1.0 };
+            let panel = self.panel(path, done, next);
+            if refinable && let Some(turn) = self.turn(path, (done, next), &panel) {
+                step = turn - done;
+                continue;
+            }
+            let (within, quadrature) = (relative * panel.within, relative * panel.quadrature);
             let tolerance = tolerance * relaxation(chords);
-            if error > tolerance * share && step > f64::EPSILON && chords < MAX_CHORDS {
-                // The error of a smooth chord falls with the cube of its length, its share with the length.
-                let shorter = if deviation.slip_changes { 0.25 } else { 0.9 * (tolerance * share / error).sqrt() };
+            let (most, most_quadrature) = (PAIR_SHARE * tolerance, tolerance * (next - done).max(QUADRATURE_SHARE));
+            if refinable && (within > most || quadrature > most_quadrature) {
+                // What a pair is off in its middle falls with the cube of its length.
+                let shorter = if within > most { 0.9 * (most / within).cbrt() } else { 0.5 };
                 step = (next - done) * shorter.clamp(0.02, 0.5);
                 continue;
             }
-            // Errors of the force accumulate, those of the stress are local. Before the move, because gross slip wipes
-            // out the error of the chord that leads into it too.
-            self.path_error += error;
-            self.path_kernel = self.path_kernel.max(deviation.kernel);
-            self.advance(&end);
+            let straight = within.max(quadrature) <= f64::EPSILON;
+            let inner = self.history.edge().level;
+            if !straight {
+                self.advance(&panel.elbow);
+            }
+            self.advance(&panel.end);
+            let slip = self.history.slip_from().map_or(panel.end.indentation, |start| start.level);
+            while traces.last().is_some_and(|last| last.inner >= slip || last.inner >= panel.end.indentation) {
+                traces.pop();
+            }
+            if panel.sticks {
+                traces.push(Trace { inner, within, quadrature, kernel: panel.kernel });
+            }
             done = next;
-            chords += 1;
+            chords += if straight { 1 } else { 2 };
             step *= 2.0;
         }
+        // Each pair has the integral of the curve, so what comes later finds the error of one pair at most: that in
+        // which its slip ends. The errors of the quadratures add up.
+        self.path_error += traces.iter().fold(0.0, |most: f64, trace| most.max(trace.within));
+        self.path_error += traces.iter().map(|trace| trace.quadrature).sum::<f64>();
+        self.path_kernel = traces.iter().fold(self.path_kernel, |most, trace| most.max(trace.kernel));
         Ok(())
+    }
+
+    /// Where slip begins or ends on a stretch, unless that is at an end of it: W - d or W + d has an extremum there.
+    fn turn(&self, path: &CurvedMove, (done, next): (f64, f64), panel: &Panel) -> Option<f64> {
+        let (sign, rises_first) = panel.turn?;
+        let towards = if rises_first { -1.0 } else { 1.0 };
+        let distance = |part: f64| {
+            let point = self.point_on(path, part);
+            let rise = point.indentation - self.history.edge().level;
+            towards * (self.advance_to(&point) * sign - rise).value()
+        };
+        let turn = lowest_of(&distance, done, next, TURN_STEPS);
+        let margin = SAME_TURN * (next - done);
+        (turn > done + margin && turn < next - margin).then_some(turn)
     }
 
     /// Refuses a path on which the tangential force does not stay below mu F_N, and reports where it first does not.
@@ -137,7 +179,7 @@ impl Contact {
         let middle = if from * to < 0.0 { from / (from - to) } else { 1.0 };
         let curved = matches!(path.normal, NormalPath::Indentation { from, to } if from != to);
         for (low, high) in [(0.0, middle), (middle, 1.0)] {
-            let lowest = if curved { lowest_of(&room, low, high) } else { high };
+            let lowest = if curved { lowest_of(&room, low, high, LIMIT_STEPS) } else { high };
             let Some(bad) = [lowest, high].into_iter().find(|&part| fails(part)) else { continue };
             let (mut good, mut bad) = (low, bad);
             for _ in 0..64 {
@@ -159,7 +201,7 @@ impl Contact {
         }
     }
 
-    fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
+    pub(super) fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
         let normal_force = self.normal_force_on(path, part);
         let indentation = match path.normal {
             NormalPath::Indentation { from, to } => between(from, to, part),
@@ -168,49 +210,23 @@ impl Contact {
         let displacement = match path.tangential {
             TangentialPath::Displacement { from, to } => between(from, to, part),
             TangentialPath::Force { from, to } => {
-                self.unscaled(self.position_for(indentation, normal_force, between(from, to, part)))
+                let target = between(from, to, part);
+                let stuck = self.stuck_position(path, indentation, target);
+                self.unscaled(stuck.unwrap_or_else(|| self.position_for(indentation, normal_force, target)))
             }
         };
         PathPoint { indentation, normal_force, displacement }
     }
 
-    /// The errors of the chord from here to `end`, judged at the middle of its stretch.
-    fn deviation(&self, path: &CurvedMove, done: f64, next: f64, end: &PathPoint) -> Deviation {
-        let start = self.history.edge().level;
-        let rise = end.indentation - start;
-        if rise.abs() <= DoubleDouble::ZERO {
-            return Deviation { integral: 0.0, slip_changes: false, kernel: 0.0 };
-        }
-        let middle = self.point_on(path, 0.5 * (done + next));
-        let half_rise = middle.indentation - start;
-        let (half, whole) = (self.advance_to(&middle), self.advance_to(end));
-        let off = (half - (whole * half_rise).over(rise)).value().abs();
-        // Slip towards s goes on while s dW - dd > 0.
-        let slips = |advance: DoubleDouble, rise: DoubleDouble, sign: f64| (advance * sign - rise).value() > 0.0;
-        let slip_changes = [1.0, -1.0]
-            .into_iter()
-            .any(|sign| slips(half, half_rise, sign) != slips(whole - half, rise - half_rise, sign));
-        let lower = if rise.value() > 0.0 { start } else { end.indentation };
-        let lower = if lower.value() > 0.0 { lower } else { DoubleDouble::ZERO };
-        let upper = if rise.value() > 0.0 { end.indentation } else { start };
-        let edge = self.profile.point(upper);
-        let touched = Ring::between(self.profile.point(lower), edge);
-        let width = if slip_changes { edge.radius } else { self.profile.moments(&touched).width };
-        // A parabola's slope is four times its height over its base off its chord's.
-        let kernel =
-            4.0 * off / rise.abs().value() * self.profile.kernel(&StressRadius::of_point(&touched.inner), &touched);
-        Deviation { integral: off * width, slip_changes, kernel }
-    }
-
     /// Scaled displacement from here to a point of the path, m.
-    fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
+    pub(super) fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
         self.scaled(point.displacement) - self.history.position()
     }
 }
 
-/// The minimum of a convex function on an interval, by ternary search down to round-off.
-fn lowest_of(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    for _ in 0..80 {
+/// The minimum of a function with one minimum on an interval, by ternary search in so many steps.
+fn lowest_of(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64, steps: usize) -> f64 {
+    for _ in 0..steps {
         let third = (high - low) / 3.0;
         if function(low + third) <= function(high - third) { high -= third } else { low += third }
     }

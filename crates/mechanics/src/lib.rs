@@ -45,6 +45,7 @@
 //! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |
 //! | `force_control` | which displacement gives a tangential force? |
 //! | `curved_move` | how is a move followed that is straight in a force? |
+//! | `curve_panel` | which two chords have the integral of a curve? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
@@ -56,6 +57,7 @@
 
 mod accuracy;
 mod contact;
+mod curve_panel;
 mod curved_move;
 mod double_double;
 pub mod elasticity;

@@ -50,7 +50,7 @@ impl Panel {
     }
 
     /// A panel by the longer rule, for an integrand analytic far around.
-    pub(super) fn fine(width: f64) -> Panel {
+    pub(crate) fn fine(width: f64) -> Panel {
         Panel { width, rule: &TWENTY }
     }
 

@@ -147,6 +147,34 @@ fn estimates_of_paths_straight_in_a_force_are_honest() {
     stresses.close();
 }
 
+#[test]
+fn energies_and_displacements_of_paths_straight_in_a_force_are_as_good_as_the_forces() {
+    let mut random = Random(11);
+    let mut compared = 0;
+    let (mut energies, mut displacements) = (0.0_f64, 0.0_f64);
+    for _ in 0..200 {
+        let contact = random_contact(&mut random);
+        let curve = random_curve(&mut random, &contact);
+        let tolerance = 10_f64.powf(random.within(-8.0, -4.0));
+        let (mut coarse, mut fine) = (contact.clone(), contact);
+        if coarse.apply_within(&curve, tolerance).is_err() {
+            // Friction cannot hold it.
+            continue;
+        }
+        fine.apply_within(&curve, 1e-3 * tolerance).unwrap();
+        let (coarse, fine, figures) = (coarse.state(), fine.state(), fine.summary());
+        let work = figures.gross_slip_force * figures.gross_slip_displacement;
+        for error in [coarse.dissipated_energy - fine.dissipated_energy, coarse.elastic_energy - fine.elastic_energy] {
+            energies = energies.max((error / work).abs() / tolerance);
+        }
+        let error = (coarse.displacement - fine.displacement) / figures.gross_slip_displacement;
+        displacements = displacements.max(error.abs() / tolerance);
+        compared += 1;
+    }
+    println!("energies {energies:.2} of the tolerance, displacements {displacements:.2}, over {compared} paths");
+    assert!(compared > 150 && energies <= 1.0 && displacements <= 1.0);
+}
+
 /// A smooth body of about unit size.
 fn smooth_body(random: &mut Random) -> Profile {
     let blunt = 1.0 / random.within(0.5, 3.0);

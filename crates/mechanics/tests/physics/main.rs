@@ -4,6 +4,7 @@ mod accuracy;
 mod closed_loops;
 mod coarse_tables;
 mod curved_moves;
+mod curved_tolerance;
 mod digits;
 mod double_double;
 mod elasticity;

@@ -1,0 +1,177 @@
+//! Two chords in the place of a stretch of a curved path, with the same integral.
+//!
+//! Chords between points of a curve all err to one side: their errors add up, and fall with the square of their length
+//! only. Here the point between two chords is moved off the curve until the pair has the integral of the curve, which
+//! a quadrature over the newly touched ring gives to round-off. Let h(x) = d1 - g(x) in the ring x0 < x < x1, whose
+//! depth is D. Levels touched without slip carry w = W1 - W(x). With F_N' = 2 E* x g' (the Galin-Sneddon integral):
+//! - W straight in F_N: int w dx = (W1 - W0) int (2x - x0) h dx/(x0 D + int h dx);
+//! - F_x straight in d: dF_x = 2 G* m x dW (no slip), so W1 - W0 = c (D/x0 - J) and int w dx = c x0 J, with
+//!   c = (dF_x/dd)/(2 G* m) and J = int h/x^2 dx.
+
+use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use super::profile::gauss::Panel as GaussPanel;
+use super::profile::{Ring, StressRadius};
+use super::{Contact, DoubleDouble};
+
+/// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.
+const RATE_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
+/// Slip that ends within this share of a stretch is over at its start, as far as it was found: W - d is flat there, so
+/// that the share is wrong by its square.
+const BEGINNING: f64 = 1e-3;
+
+/// A stretch of a curved path, from the present state on.
+pub(super) struct Panel {
+    /// Where the two chords meet.
+    pub(super) elbow: PathPoint,
+    pub(super) end: PathPoint,
+    /// Whether all of it is without slip, so that what it touches keeps a part of the curve.
+    pub(super) sticks: bool,
+    /// The sign of slip, and whether slip towards it goes on at the start, if it does so in a part alone.
+    pub(super) turn: Option<(f64, bool)>,
+    /// A bound of int (error of w) dx up to anywhere within the pair of chords, m^2.
+    pub(super) within: f64,
+    /// Error of that integral over the whole pair, m^2.
+    pub(super) quadrature: f64,
+    /// Error of the slope of w over y, times the kernel of the newly touched ring at its inner radius.
+    pub(super) kernel: f64,
+}
+
+/// An integral by two rules: its value, and their difference.
+struct Quadrature {
+    value: f64,
+    difference: f64,
+}
+
+/// A quadrature over the radii of a ring of (weight(x) (y_outer - g(x))).
+fn over_ring(contact: &Contact, ring: &Ring, weight: impl Fn(f64) -> f64) -> Quadrature {
+    let (inner, width) = (ring.inner.radius, ring.outer.radius - ring.inner.radius);
+    let integral = |rule: GaussPanel| {
+        let mut sum = 0.0;
+        // Over the root of the distance from the inner radius: next to a flat g rises like a root.
+        rule.visit(|u, share| {
+            let x = inner + width * u * u;
+            let height = (ring.outer.level - DoubleDouble::from(contact.profile.level(x))).value();
+            sum += 2.0 * u * share * weight(x) * height.clamp(0.0, ring.depth);
+        });
+        width * sum
+    };
+    let value = integral(GaussPanel::fine(1.0));
+    Quadrature { value, difference: (value - integral(GaussPanel::coarse(1.0))).abs() }
+}
+
+/// Whether slip towards `sign` goes on while the position advances and the indentation rises by so much.
+fn slips((advance, rise): (DoubleDouble, DoubleDouble), sign: f64, noise: f64) -> bool {
+    (advance * sign - rise).value() > noise
+}
+
+impl Contact {
+    /// The displacement, scaled, m, at which a contact that does not slip has the tangential force `target`, N, on a
+    /// path straight in (F_x, d); `None` where it slips, or on another path.
+    pub(super) fn stuck_position(
+        &self,
+        path: &CurvedMove,
+        indentation: DoubleDouble,
+        target: f64,
+    ) -> Option<DoubleDouble> {
+        let here = self.history.edge().level;
+        if !matches!(path.normal, NormalPath::Indentation { .. }) || here.value() < 0.0 || indentation <= here {
+            return None;
+        }
+        let ring = Ring::between(self.profile.point(here), self.profile.point(indentation));
+        let gain = target / self.force_unit() - self.history.force();
+        let inner = ring.inner.radius;
+        let begun = self.profile.point(here + (indentation - here) * BEGINNING);
+        if gain.abs() > ring.depth * begun.radius {
+            return None;
+        }
+        let bend = over_ring(self, &ring, |x| (x * x).recip());
+        let advance = gain / inner - gain / ring.depth * bend.value;
+        Some(self.history.position() + DoubleDouble::from(advance))
+    }
+
+    /// The stretch of a path from here, at `done`, to `next`.
+    pub(super) fn panel(&self, path: &CurvedMove, done: f64, next: f64) -> Panel {
+        let end = self.point_on(path, next);
+        let start = self.history.edge().level;
+        let rise = end.indentation - start;
+        let mut panel = Panel { elbow: end, end, sticks: false, turn: None, within: 0.0, quadrature: 0.0, kernel: 0.0 };
+        let middle = self.point_on(path, 0.5 * (done + next));
+        let rises = (middle.indentation - start, end.indentation - middle.indentation);
+        if rise.value().abs() <= 0.0 || rises.0.value() * rises.1.value() <= 0.0 {
+            return panel;
+        }
+        panel.elbow = middle;
+        let (half, whole) = (self.advance_to(&middle), self.advance_to(&end));
+        let noise = RATE_ROUND_OFF * (start.abs() + end.indentation.abs() + self.history.position().abs()).value();
+        // Half the curvature of W over d: the parabola through both ends and the middle.
+        let (first, second) = (rises.0.value(), rises.1.value());
+        let bend = ((whole - half).over(rises.1) - half.over(rises.0)).value() / rise.value();
+        // Its rates at the ends show a turn that the halves as a whole do not.
+        let ends = [(half, rises.0, -bend * first * first), (whole - half, rises.1, bend * second * second)]
+            .map(|(advance, rise, more)| (advance + DoubleDouble::from(more), rise));
+        let halves = [(half, rises.0), (whole - half, rises.1)];
+        let slip = |sign: f64| halves.map(|way| slips(way, sign, noise));
+        panel.turn = [1.0, -1.0].into_iter().find_map(|sign| {
+            let at_ends = ends.map(|way| slips(way, sign, noise));
+            let same = [at_ends, slip(sign)].as_flattened().iter().all(|&rate| rate == at_ends[0]);
+            (!same).then_some((sign, at_ends[0]))
+        });
+        panel.sticks = rise.value() > 0.0 && [1.0, -1.0].into_iter().all(|sign| slip(sign) == [false, false]);
+        let (lower, upper) = if rise.value() > 0.0 { (start, end.indentation) } else { (end.indentation, start) };
+        let lower = if lower.value() > 0.0 { lower } else { DoubleDouble::ZERO };
+        let ring = Ring::between(self.profile.point(lower), self.profile.point(upper));
+        if panel.sticks {
+            self.bend_stuck(path, &mut panel, &ring, (whole.value(), bend));
+            return panel;
+        }
+        // The state at the end is that of the curve already. The friction work is not: what a level slips under the
+        // bound d - y depends on int W dd, here that of the parabola.
+        let area = bend * (first.abs().powi(3) + second.abs().powi(3)) / 6.0;
+        let shift = DoubleDouble::from(-2.0 * area / rise.value().abs());
+        let bent = [(half + shift, rises.0), (whole - half - shift, rises.1)];
+        if [1.0, -1.0].into_iter().all(|sign| bent.map(|way| slips(way, sign, noise)) == slip(sign)) {
+            panel.elbow.displacement = self.unscaled(self.history.position() + half + shift);
+        }
+        panel.within = area.abs() * self.profile.moments(&ring).width / rise.value().abs();
+        panel
+    }
+
+    /// The elbow and the errors of a stretch without slip, on which the position advances by `whole`.
+    fn bend_stuck(&self, path: &CurvedMove, panel: &mut Panel, ring: &Ring, (whole, bend): (f64, f64)) {
+        let inner = ring.inner.radius;
+        let touched = self.profile.moments(ring).first;
+        let (gained, error) = match (path.tangential, path.normal) {
+            (TangentialPath::Displacement { .. }, NormalPath::Force { .. }) => {
+                let lever = over_ring(self, ring, |x| 2.0 * x - inner);
+                let rate = whole / (inner * ring.depth + touched);
+                (rate * lever.value, (rate * lever.difference).abs())
+            }
+            (TangentialPath::Force { .. }, NormalPath::Indentation { .. }) => {
+                let lag = over_ring(self, ring, |x| inner / x * (inner / x));
+                // c (D/x0 - J) is what the position advances by.
+                let rate = whole / (ring.depth - lag.value / inner);
+                (rate * lag.value, (rate * lag.difference).abs())
+            }
+            // In two forces dU/dd = (E*/G*) dF_x/dF_N, and in displacement and indentation, the path is straight.
+            _ => return,
+        };
+        let middle = self.profile.point(panel.elbow.indentation);
+        let (low, high) = (Ring::between(ring.inner, middle), Ring::between(middle, ring.outer));
+        let (low_moments, high_moments) = (self.profile.moments(&low), self.profile.moments(&high));
+        let (low_mean, high_mean) = (low_moments.first / low.depth, high_moments.first / high.depth);
+        let share = low_moments.width + high_mean - low_mean;
+        if share > 0.0 {
+            let left = (gained - whole * low_mean) / share;
+            let advance = self.advance_to(&panel.end) - DoubleDouble::from(left);
+            panel.elbow.displacement = self.unscaled(self.history.position() + advance);
+            panel.within = 0.25 * (gained - whole * touched / ring.depth).abs();
+            panel.quadrature = error;
+        }
+        // A chord of half the depth is off the parabola's slope by a half of bend times the depth at its ends, and the
+        // elbow by a sixth more.
+        let kernel = self.profile.kernel(&StressRadius::of_point(&ring.inner), ring);
+        // At the tip of a cone it is infinite, and so is the stress itself.
+        panel.kernel = if kernel.is_finite() { (bend * ring.depth).abs() / 1.5 * kernel } else { 0.0 };
+    }
+}
