@@ -5,8 +5,8 @@
 //! a quadrature over the newly touched ring gives to round-off. Let h(x) = d1 - g(x) in the ring x0 < x < x1, whose
 //! depth is D. Levels touched without slip carry w = W1 - W(x). With F_N' = 2 E* x g' (the Galin-Sneddon integral):
 //! - W straight in F_N: int w dx = (W1 - W0) int (2x - x0) h dx/(x0 D + int h dx);
-//! - F_x straight in d: dF_x = 2 G* m x dW (no slip), so W1 - W0 = c (D/x0 - J) and int w dx = c x0 J, with
-//!   c = (dF_x/dd)/(2 G* m) and J = int h/x^2 dx.
+//! - F_x straight in d: dF_x = 2 G* m x dW (no slip), so W1 - W0 = c (D/x1 + K) and int w dx = c x0 J, with
+//!   c = (dF_x/dd)/(2 G* m), J = int h/x^2 dx and K = int (D - h)/x^2 dx; J = D/x0 - D/x1 - K.
 
 use super::curved_move::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use super::profile::gauss::Panel as GaussPanel;
@@ -43,16 +43,18 @@ struct Quadrature {
     difference: f64,
 }
 
-/// A quadrature over the radii of a ring of (weight(x) (y_outer - g(x))).
-fn over_ring(contact: &Contact, ring: &Ring, weight: impl Fn(f64) -> f64) -> Quadrature {
+/// A quadrature over the radii of a ring of an integrand of (x, D - h, h).
+fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -> f64) -> Quadrature {
     let (inner, width) = (ring.inner.radius, ring.outer.radius - ring.inner.radius);
     let integral = |rule: GaussPanel| {
         let mut sum = 0.0;
         // Over the root of the distance from the inner radius: next to a flat g rises like a root.
         rule.visit(|u, share| {
             let x = inner + width * u * u;
-            let height = (ring.outer.level - DoubleDouble::from(contact.profile.level(x))).value();
-            sum += 2.0 * u * share * weight(x) * height.clamp(0.0, ring.depth);
+            let level = DoubleDouble::from(contact.profile.level(x));
+            let [risen, left] = [level - ring.inner.level, ring.outer.level - level];
+            let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth));
+            sum += 2.0 * u * share * integrand(x, risen, left);
         });
         width * sum
     };
@@ -80,14 +82,13 @@ impl Contact {
         }
         let ring = Ring::between(self.profile.point(here), self.profile.point(indentation));
         let gain = target / self.force_unit() - self.history.force();
-        let inner = ring.inner.radius;
         let begun = self.profile.point(here + (indentation - here) * BEGINNING);
         if gain.abs() > ring.depth * begun.radius {
             return None;
         }
-        let bend = over_ring(self, &ring, |x| (x * x).recip());
-        let advance = gain / inner - gain / ring.depth * bend.value;
-        Some(self.history.position() + DoubleDouble::from(advance))
+        let compliance = ring.depth / ring.outer.radius + over_ring(self, &ring, |x, risen, _| risen / x / x).value;
+        let advance = gain / ring.depth * compliance;
+        advance.is_finite().then(|| self.history.position() + DoubleDouble::from(advance))
     }
 
     /// The stretch of a path from here, at `done`, to `next`.
@@ -143,15 +144,22 @@ impl Contact {
         let touched = self.profile.moments(ring).first;
         let (gained, error) = match (path.tangential, path.normal) {
             (TangentialPath::Displacement { .. }, NormalPath::Force { .. }) => {
-                let lever = over_ring(self, ring, |x| 2.0 * x - inner);
+                let lever = over_ring(self, ring, |x, _, left| (2.0 * x - inner) * left);
                 let rate = whole / (inner * ring.depth + touched);
                 (rate * lever.value, (rate * lever.difference).abs())
             }
             (TangentialPath::Force { .. }, NormalPath::Indentation { .. }) => {
-                let lag = over_ring(self, ring, |x| inner / x * (inner / x));
-                // c (D/x0 - J) is what the position advances by.
-                let rate = whole / (ring.depth - lag.value / inner);
-                (rate * lag.value, (rate * lag.difference).abs())
+                let (outer, depth) = (ring.outer.radius, ring.depth);
+                let bend = over_ring(self, ring, |x, risen, _| risen / x / x);
+                let rate = whole / (depth / outer + bend.value);
+                if inner > 0.5 * outer {
+                    let lag = over_ring(self, ring, |x, _, left| inner / x * (left / x));
+                    (rate * lag.value, (rate * lag.difference).abs())
+                } else {
+                    // The same by K, since h/x^2 is steep where the ring begins next to the axis.
+                    let lag = depth * (1.0 - inner / outer) - inner * bend.value;
+                    (rate * lag, (rate * inner * bend.difference).abs())
+                }
             }
             // In two forces dU/dd = (E*/G*) dF_x/dF_N, and in displacement and indentation, the path is straight.
             _ => return,

@@ -6,7 +6,7 @@
 
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{ExactSphere, PowerLaw, RoundedCone, RoundedPunch, TruncatedCone, TruncatedSphere};
-use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere};
+use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
 use crate::support::quadrature::integral;
 use crate::support::{config, displace};
@@ -189,6 +189,35 @@ proptest! {
         let stated = contact.accuracy();
         prop_assert!(stated.path_error <= tolerance, "{:e} stated within {tolerance:e}", stated.path_error);
         prop_assert!(error <= stated.force_error + 1e-13, "{error:e}, stated {:e}", stated.force_error);
+        prop_assert!(contact.memory_depth() < 30_000, "{} pieces", contact.memory_depth());
+    }
+
+    #[test]
+    fn moves_of_power_laws_that_are_pulled_while_they_sink_meet_their_tolerance(
+        exponent in prop_oneof![Just(2.0), 1.2_f64..6.0, 6.0_f64..40.0],
+        indentation in 1e-9_f64..1e-3,
+        start in prop_oneof![0.0_f64..0.9, (-24.0_f64..-1.0).prop_map(|power| 10_f64.powf(power)), 0.9_f64..0.999],
+        share in prop_oneof![Just(1.0), 1e-6_f64..1.0],
+        digits in 3.0_f64..12.0,
+    ) {
+        let profile = Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap());
+        let elasticity = Elasticity::effective(E_STAR, G_STAR).unwrap();
+        let preload = Preload::Indentation(start * indentation);
+        let mut contact = Contact::new(Setup { profile, elasticity, friction: FRICTION, preload }).unwrap();
+        // Without slip as long as dW/dd < 1 where the contact is smallest.
+        let rise = indentation - start * indentation;
+        let force = 0.9 * share * 2.0 * FRICTION * E_STAR * rise * contact.contact_radius();
+        let tolerance = 10_f64.powf(-digits);
+        let step = Move { tangential: Some(Tangential::Force(force)), normal: Some(Normal::Indentation(indentation)), relative: false };
+        contact.apply_within(&step, tolerance).unwrap();
+        // dU = dF/(2 G* a), F is straight in d, and a goes with d^(1/n).
+        let power = 1.0 - exponent.recip();
+        let grown = (1.0 - start.powf(power)) / power;
+        let expected = force / (2.0 * G_STAR * (1.0 - start)) / contact.contact_radius() * grown;
+        let error = (contact.state().displacement - expected).abs() / contact.gross_slip_displacement();
+        prop_assert!(error <= tolerance + 1e-13, "{error:e} within {tolerance:e}");
+        let missed = (contact.force() - force).abs() / (FRICTION * contact.normal_force());
+        prop_assert!(missed <= contact.accuracy().force_error, "{missed:e}, stated {:?}", contact.accuracy());
         prop_assert!(contact.memory_depth() < 30_000, "{} pieces", contact.memory_depth());
     }
 
