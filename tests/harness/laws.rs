@@ -45,9 +45,7 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
     residual(simulation, &all);
     mirror(request, &all);
     repeat_last_move(request, &all);
-    if !near_equator(&request.contact.profile, &all) {
-        balance::check(request, simulation, &all);
-    }
+    balance::check(request, simulation, &all);
 }
 
 /// A variation of a request that has been answered must be answered too.
@@ -71,15 +69,6 @@ fn below_table(profile: &Profile, reply: &SimulateReply) -> bool {
     match profile {
         Profile::Tabulated(table) => least.is_some_and(|radius| radius < 1e-3 * table.r[1]),
         Profile::Sum(sum) => sum.parts.iter().any(|part| below_table(part, reply)),
-        _ => false,
-    }
-}
-
-/// Whether the contact comes so close to the vertical edge of an exact sphere that energies lose digits.
-fn near_equator(profile: &Profile, reply: &SimulateReply) -> bool {
-    match profile {
-        Profile::ExactSphere(sphere) => reply.contact.contact_radius > 0.99 * sphere.radius,
-        Profile::Sum(sum) => sum.parts.iter().any(|part| near_equator(part, reply)),
         _ => false,
     }
 }

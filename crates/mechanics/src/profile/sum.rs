@@ -12,8 +12,10 @@ use super::{DoubleDouble, Error, InterpolationError, Point, Profile, Ring, Span,
 const NEAR: f64 = 1e-2;
 /// Newton's steps for the level that carries a load there, each of which gains two digits at the least.
 const POLISH: usize = 5;
-/// How far, of itself, they may move an indentation.
+/// How far, of itself, they may move an indentation; and to which part of itself the radius is searched, which is more where
+/// g is steep.
 const FARTHEST: f64 = 1e-3;
+const SEARCHED: f64 = 1e-14;
 
 /// A sum of profiles, none of them a sum.
 #[derive(Clone, Debug, PartialEq)]
@@ -215,7 +217,8 @@ impl Shape for Sum {
                 polished = (polished + (load - carried) / ring.outer.radius).max(0.0);
             }
             // Beyond the end of a part the search has gone as far as it can, and there is nothing to polish.
-            if (polished - level).abs() <= FARTHEST * level {
+            let [low, high] = [1.0 - SEARCHED, 1.0 + SEARCHED].map(|share| self.level(found * share));
+            if (polished - level).abs() <= FARTHEST * level || (low..=high).contains(&polished) {
                 level = polished;
             }
         }

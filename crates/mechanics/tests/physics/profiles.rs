@@ -9,6 +9,8 @@ use stickslip_mechanics::profile::{
     Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
 
+use crate::support::config;
+
 fn profile(family: &str, parameters: &str) -> Profile {
     if family == "sum" {
         let parts = parameters.split(" + ").map(|part| part.split_once(' ').unwrap());
@@ -189,7 +191,7 @@ fn a_profile_that_ends_says_where() {
 }
 
 /// Any profile at all, with a contact radius that suits it.
-fn any() -> impl Strategy<Value = (Profile, f64)> {
+fn any_profile() -> impl Strategy<Value = (Profile, f64)> {
     let scale = (-9.0..3.0f64).prop_map(|decade| 10f64.powf(decade));
     (0..11u8, scale, 0.02..0.9f64, 0.1..6.0f64).prop_map(|(family, a, share, n)| {
         let b = share * a;
@@ -237,10 +239,10 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(config(400))]
 
     #[test]
-    fn the_inverse_is_one((profile, a) in any(), share in 0.0..1.0f64) {
+    fn the_inverse_is_one((profile, a) in any_profile(), share in 0.0..1.0f64) {
         let core = profile.radius(0.0);
         let x = core + share * (a - core);
         let y = profile.level(x);
@@ -249,7 +251,7 @@ proptest! {
     }
 
     #[test]
-    fn adjacent_rings_add_up((profile, a) in any(), low in 0.01..0.98f64, cut in 0.01..0.99f64, r in 0.0..1.3f64) {
+    fn adjacent_rings_add_up((profile, a) in any_profile(), low in 0.01..0.98f64, cut in 0.01..0.99f64, r in 0.0..1.3f64) {
         let y = profile.level(a);
         let point = |share: f64| profile.point(DoubleDouble::from(y) * share);
         let (inner, middle, outer) = (point(low), point(low + cut * (1.0 - low)), point(1.0));
@@ -310,7 +312,7 @@ proptest! {
     }
 
     #[test]
-    fn loads_of_any_size_have_an_indentation((profile, a) in any(), decade in -20.0..2.0f64) {
+    fn loads_of_any_size_have_an_indentation((profile, a) in any_profile(), decade in -20.0..2.0f64) {
         let load = profile.level(a) * a * 10f64.powf(decade);
         let d = profile.indentation_for(load);
         prop_assert!(d > 0.0 && d.is_finite());
@@ -318,5 +320,19 @@ proptest! {
         // d load = X dd, and X lies between that at half the indentation and that at all of it.
         let ratio = load / d;
         prop_assert!(ratio <= profile.radius(d) * (1.0 + 1e-12) && ratio >= 0.5 * profile.radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
+    }
+
+    #[test]
+    fn a_rim_however_steep_leaves_a_load_to_its_core(
+        slope in -3.0..9.0f64, size in -6.0..0.0f64, depth in -12.0..1.0f64, halves in any::<bool>(),
+    ) {
+        let (slope, core) = (10f64.powf(slope), 10f64.powf(size));
+        let cone = |share: f64| Profile::TruncatedCone(TruncatedCone::new(share * slope, core).unwrap());
+        let profile = if halves { Profile::Sum(Sum::new(vec![cone(0.5), cone(0.5)]).unwrap()) } else { cone(1.0) };
+        let load = core * core * 10f64.powf(depth);
+        let d = profile.indentation_for(load);
+        // load = int X dd, and X lies between the core and X(d).
+        let ratio = load / d;
+        prop_assert!(ratio >= core * (1.0 - 1e-12) && ratio <= profile.radius(d) * (1.0 + 1e-12), "{ratio} {core}");
     }
 }
