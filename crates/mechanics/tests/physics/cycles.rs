@@ -219,7 +219,8 @@ fn the_density_of_friction_work_adds_up_to_the_work() {
             let cycle = SteadyCycle::of(&virgin, share * virgin.gross_slip_displacement());
             // Over the angle with r = a sin(angle) the pressure's root at the edge is smooth, and the slip begins like
             // a power of the distance from the stuck core.
-            let inner = (cycle.stick_radius() / edge).clamp(0.0, 1.0).asin();
+            // At the tip of a cone it is infinite.
+            let inner = (cycle.stick_radius() / edge).clamp(1e-9, 1.0).asin();
             let area = 2.0 * PI * edge * edge / cycle.dissipated_energy();
             let part = |angle: f64| area * angle.sin() * angle.cos() * cycle.friction_work(&[edge * angle.sin()])[0];
             let total = integral(&part, inner, 0.5 * PI, 1e-12);
