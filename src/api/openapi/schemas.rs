@@ -87,12 +87,16 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
         "description": "One that names a contact."}}});
     let nowhere = json!({"not": {"anyOf": [have(&["contact"]), named]}});
     let protocol = json!([aims[0], aims[1], nowhere]);
+    let one_of = |names: &[&str]| json!([have(names), none(names)]);
+    let (cycles, oscillation) = (one_of(&targets[..2]), one_of(&targets[2..]));
     for (schema, wrong) in [
         ("Move", &step),
         ("MoveRequest", &step),
         ("StressRequest", &places),
         ("RelaxRequest", &aims),
         ("ProtocolRequest", &protocol),
+        ("CyclicPath", &cycles),
+        ("NormalOscillation", &oscillation),
     ] {
         schemas[schema]["not"] = json!({"anyOf": wrong});
     }
