@@ -250,9 +250,9 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        ForkRequest, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
-        SimulateRequest, Span, Springs, StressRequest, SweepRequest,
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CyclicPath, Effective, ElasticBody, EqualPeaks,
+        FallingAmplitude, ForkRequest, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload,
+        ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SweepRequest,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
