@@ -98,7 +98,7 @@ async fn a_load_oscillates_about_that_of_the_contact_when_the_path_begins() {
 #[tokio::test]
 async fn the_work_of_each_cycle_is_that_of_the_chord_of_the_load() {
     let server = Server::start().await;
-    let (radius, e_star, g_star, friction, depth) = (0.02, 1.2e11, 0.9e11, 0.4, 3e-6);
+    let (radius, e_star, g_star, friction, depth) = (0.02_f64, 1.2e11, 0.9e11, 0.4, 3e-6);
     let contact = json!({"profile": {"type": "sphere", "radius": radius}, "friction": friction,
         "material": {"effective": {"e_star": e_star, "g_star": g_star}}, "preload": {"indentation": depth}});
     let ratio = friction * e_star / g_star;
@@ -118,7 +118,7 @@ async fn the_work_of_each_cycle_is_that_of_the_chord_of_the_load() {
         for (reply, per_cycle) in [(&turns, 2), (&points, 10)] {
             let lost = numbers(reply, "dissipated_energy");
             assert_eq!(lost.len(), 1 + 5 * per_cycle);
-            for begin in (0..5).map(|cycle| cycle * per_cycle) {
+            for begin in (1..5).map(|cycle| cycle * per_cycle) {
                 let work = lost[begin + per_cycle] - lost[begin];
                 assert!((work / expected - 1.0).abs() < 1e-11, "{part} from {begin}: {work:e}, and not {expected:e}");
             }

@@ -102,12 +102,13 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     }
 }
 
-/// Quantities that are either zero or not too small.
+/// Quantities that are either zero or not too small, and counts that are even.
 fn write_gaps(schemas: &mut Map<String, Value>) {
     let gap = |least: f64| json!({"exclusiveMinimum": 0, "exclusiveMaximum": least});
     for schema in ["ContactDefinition", "CreateRequest"] {
         schemas[schema]["properties"]["friction"]["not"] = gap(range::MIN_POSITIVE_FRICTION);
     }
+    schemas["CyclicPath"]["properties"]["points_per_cycle"]["multipleOf"] = json!(2);
     for choice in schemas["Preload"]["oneOf"].as_array_mut().into_iter().flatten() {
         if let Some(force) = choice["properties"].get_mut("normal_force") {
             force["not"] = gap(range::MIN_POSITIVE_NORMAL_FORCE);
