@@ -250,9 +250,9 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        ForkRequest, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
-        SimulateRequest, Span, Springs, StressRequest, SweepRequest,
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CyclicPath, Effective, ElasticBody, EqualPeaks,
+        FallingAmplitude, ForkRequest, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload,
+        ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SweepRequest,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -262,8 +262,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        ForkRequest, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
+        ForkRequest, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
         Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest
     }
 }
