@@ -46,6 +46,7 @@
 //! | `force_control` | which displacement gives a tangential force? |
 //! | `curved_move` | how is a move followed that is straight in a force? |
 //! | `curve_panel` | which two chords have the integral of a curve? |
+//! | [`cycle`] | what does it do in a steady cycle? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
@@ -59,6 +60,7 @@ mod accuracy;
 mod contact;
 mod curve_panel;
 mod curved_move;
+pub mod cycle;
 mod double_double;
 pub mod elasticity;
 mod error;

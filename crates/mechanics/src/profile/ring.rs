@@ -14,7 +14,7 @@ pub struct Point {
 }
 
 /// The part of the contact between two levels, `inner` the nearer to the centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ring {
     /// The lower level.
     pub inner: Point,

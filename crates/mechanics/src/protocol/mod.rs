@@ -7,6 +7,7 @@
 //! fall.
 
 mod bound;
+mod branch_and_bound;
 mod design;
 mod end_constraint;
 mod equal_peak_measure;
@@ -14,7 +15,7 @@ mod from_any_state;
 mod minimax;
 mod robustness;
 
-pub use bound::lower_bound;
+pub use bound::{lower_bound, lower_bound_while};
 pub use design::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 pub use robustness::{ExecutionErrors, trials};
 

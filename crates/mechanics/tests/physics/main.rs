@@ -5,6 +5,7 @@ mod closed_loops;
 mod coarse_tables;
 mod curved_moves;
 mod curved_tolerance;
+mod cycles;
 mod digits;
 mod double_double;
 mod elasticity;

@@ -6,7 +6,7 @@ use crate::support::{config, follow, power, pressed, sphere};
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{Cone, ExactSphere, FlatPunch, RoundedCone, RoundedPunch, Sum, Tabulated};
 use stickslip_mechanics::protocol::{
-    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound,
+    AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design, lower_bound, lower_bound_while,
 };
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::{Contact, Error, Move, Normal, Profile, Tangential};
@@ -166,6 +166,57 @@ fn left(contact: &Contact, levels: &[f64]) -> f64 {
     EvaluationRange::of(contact).largest(&after, &after.residual())
 }
 
+/// What part of minimax is proven, from one reversal on.
+#[test]
+fn few_reversals_are_nearly_proven_to_leave_no_less_than_minimax() {
+    let cone = Profile::Cone(Cone::new(0.05).unwrap());
+    let mut sphere_at_one = 0.0;
+    for (name, shape, least) in [
+        ("sphere", sphere(10.0), [0.995, 0.99, 0.99, 0.98, 0.98, 0.97, 0.9, 0.8]),
+        ("cone", cone, [0.99, 0.99, 0.98, 0.98, 0.97, 0.92, 0.84, 0.7]),
+        ("r^4", power(4.0), [0.99, 0.99, 0.98, 0.98, 0.98, 0.97, 0.9, 0.79]),
+        ("table", table(), [0.99, 0.99, 0.99, 0.98, 0.98, 0.97, 0.9, 0.77]),
+    ] {
+        let contact = pressed(shape);
+        let mut line = format!("{name:>6}:");
+        for (index, least) in least.into_iter().enumerate() {
+            let bound = lower_bound(&contact, index + 1);
+            let share = bound / of(&contact, AmplitudeLaw::Minimax, index + 1, PathEnd::Free).largest;
+            line += &format!(" {:.1}", 100.0 * share);
+            assert!((least..1.0).contains(&share), "{name} {}: {share}", index + 1);
+            if name == "sphere" && index == 0 {
+                sphere_at_one = bound / unit(&contact);
+            }
+        }
+        println!("{line} % of minimax after 1 to {} reversals", least.len());
+    }
+    assert!((0.99 * 0.6..0.6).contains(&sphere_at_one), "{sphere_at_one}");
+}
+
+#[test]
+fn many_reversals_are_proven_to_leave_more_than_half_of_minimax() {
+    let contact = pressed(sphere(10.0));
+    for (reversals, known) in [(9, 0.608), (20, 0.577), (100, 0.540), (200, 0.528)] {
+        let least = of(&contact, AmplitudeLaw::Minimax, reversals, PathEnd::Free).largest;
+        let share = lower_bound(&contact, reversals) / least;
+        println!("{:.1} % of minimax after {reversals} reversals", 100.0 * share);
+        assert!((share - known).abs() < 1e-3, "{reversals}: {share}");
+    }
+}
+
+#[test]
+fn the_search_for_a_bound_ends_when_it_is_stopped() {
+    let contact = pressed(sphere(10.0));
+    assert_eq!(lower_bound_while(&contact, 3, || false), None);
+    let left = std::cell::Cell::new(10);
+    let some = || {
+        left.set(left.get() - 1);
+        left.get() > 0
+    };
+    assert_eq!(lower_bound_while(&contact, 4, some), None);
+    assert_eq!(lower_bound_while(&contact, 4, || true), Some(lower_bound(&contact, 4)));
+}
+
 proptest! {
     #![proptest_config(config(12))]
 
@@ -199,6 +250,35 @@ proptest! {
         let known = of(&contact, AmplitudeLaw::Minimax, levels.len(), PathEnd::Free);
         prop_assert!(best >= known.largest * (1.0 - 1e-6), "{levels:?}: {best} {}", known.largest);
         prop_assert!(best >= lower_bound(&contact, levels.len()));
+    }
+
+    /// Sequences near minimax, and far from it.
+    #[test]
+    fn no_sequence_leaves_less_than_the_bound(
+        shape in prop::sample::select(vec![
+            sphere(10.0),
+            power(1.5),
+            power(4.0),
+            Profile::Cone(Cone::new(0.05).unwrap()),
+            Profile::RoundedPunch(RoundedPunch::new(0.2, 1.0).unwrap()),
+            table(),
+            sum(),
+        ]),
+        far in prop::collection::vec(0.0..1.0_f64, 1..=5),
+        spread in 0.0..1.0_f64,
+    ) {
+        let contact = pressed(shape);
+        let bound = lower_bound(&contact, far.len());
+        let best = of(&contact, AmplitudeLaw::Minimax, far.len(), PathEnd::Free).displacements;
+        let full = contact.gross_slip_displacement();
+        let strokes = best.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let near: Vec<f64> = strokes.map(|stroke| 1.0 - 0.5 * stroke / full).collect();
+        for part in [0.0, 1e-4 * spread, 1e-2 * spread, spread, 1.0] {
+            let mut levels: Vec<f64> = near.iter().zip(&far).map(|(near, far)| near + part * (far - near)).collect();
+            levels.sort_by(f64::total_cmp);
+            let left = left(&contact, &levels);
+            prop_assert!(left >= bound, "{levels:?}: {left} {bound}");
+        }
     }
 
     /// From any history the path leaves what it says, ends where it is to, and leaves no more than from gross slip.
