@@ -178,12 +178,7 @@ impl CycleScan {
                 let own = (work - first.work - inner).max(0.0);
                 (Answer::Recorded { force_amplitude: 0.5 * (forces.high - forces.low), dissipated_energy: own }, own)
             };
-            found(ClosedCycle {
-                from: first.sequence,
-                to: end.sequence,
-                displacement_amplitude: 0.5 * range,
-                answer,
-            });
+            found(ClosedCycle { from: first.sequence, to: end.sequence, displacement_amplitude: 0.5 * range, answer });
             self.points.truncate(third);
             if let Some(outer) = self.points.back_mut() {
                 outer.inner_work += inner + own;

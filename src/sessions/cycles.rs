@@ -85,11 +85,11 @@ impl Sessions {
             known => self.look_on(id, sequence, known, &virgin, &stop).await?,
         };
         let work = Work { moves: CYCLE_MOVES * last.min(log.newest.len()), ..Work::default() };
+        let cost = work.cost(virgin.profile());
         let answers = move || {
             let newest = log.newest.range(log.newest.len().saturating_sub(last)..);
             newest.map(|cycle| answered(cycle, &virgin, &stop)).collect::<Result<_, _>>()
         };
-        let cost = work.cost(virgin.profile());
         let items = self.common.pool.run(cost, answers).await??;
         Ok((sequence, CyclePage { items }))
     }

@@ -10,10 +10,10 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::{
-    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CyclePage, EndEvent, EndReason, ForkRequest, HistoryPage,
-    JobReply, LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply,
-    ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent,
-    StressReply, StressRequest, SweepReply, SweepRequest,
+    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CyclePage, EndEvent, EndReason, ForkRequest,
+    HistoryPage, JobReply, LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument,
+    ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply,
+    SimulateRequest, StateEvent, StressReply, StressRequest, SweepReply, SweepRequest,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
