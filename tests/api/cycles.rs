@@ -318,7 +318,7 @@ async fn forces_that_come_back_close_cycles_though_displacements_are_rounded() {
 }
 
 #[tokio::test]
-async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_bit_by_bit() {
+async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece() {
     let folder = tempdir().unwrap();
     let file = folder.path().join("contacts.db");
     let mut runner = TestRunner::deterministic();

@@ -167,6 +167,11 @@ async fn cycles_are_the_same_in_every_format() {
         items.iter().map(|item| names.iter().map(|name| item[*name].clone()).collect()).collect();
     hold(&server, &path, &names, &rows).await;
     hold(&server, &format!("{path}?last=1"), &names, &rows[1..]).await;
+    let svg = server.get(&format!("{path}?format=svg")).await.text().await.unwrap();
+    for word in ["move", "displacement amplitude / nm", "secant stiffness / MN/m", "<polyline"] {
+        assert!(svg.contains(word), "{word}");
+    }
+    assert_eq!(header(&server.get(&format!("{path}?format=png")).await, "content-type"), "image/png");
 }
 
 #[tokio::test]
@@ -384,7 +389,6 @@ async fn plots_name_their_quantities_and_shade_what_stuck_and_what_slipped() {
         ),
         ("/loop?points_per_move=20", &["displacement U / nm", "tangential force F / N"]),
         ("/history", &["move", "displacement / nm", "force / N", "friction work / nJ"]),
-        ("/cycles", &["move", "displacement amplitude / nm", "force amplitude / N", "secant stiffness / MN/m"]),
     ] {
         let join = if path.contains('?') { '&' } else { '?' };
         let response = server.get(&format!("{contact}{path}{join}format=svg")).await;
