@@ -135,16 +135,14 @@ fn by_definition(history: &[HistoryItem]) -> Vec<(u64, u64, f64)> {
                 continue;
             }
             let depth = (begin + 1..end).map(height).fold(f64::INFINITY, f64::min);
-            let rests = (1..=begin).rev().take_while(|index| height(*index) == height(begin)).count();
-            let top = begin + 1 - rests;
-            let way: Vec<usize> = (0..top).rev().take_while(|index| height(*index) < height(begin)).collect();
+            let way: Vec<usize> = (0..=begin).rev().take_while(|index| height(*index) <= height(begin)).collect();
             let mut room = way.iter().map(|index| height(*index)).fold(height(begin), f64::min);
             if way.last() == Some(&0) {
                 room = room.min(-height(begin));
             }
             let slides =
                 |index: usize| states[index - 1].regime == Regime::GrossSlip && sign * states[index - 1].force > 0.0;
-            if (top..=begin).any(slides) {
+            if way.iter().any(|index| *index > 0 && height(*index) == height(begin) && slides(*index)) {
                 room = f64::NEG_INFINITY;
             }
             if depth >= room {
