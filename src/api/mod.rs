@@ -35,7 +35,7 @@ use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use middleware::{access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
-use resources::{accuracy, contacts, events, history, hysteresis_loop, jobs, meta, metrics, moves, page};
+use resources::{accuracy, contacts, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, page};
 use resources::{protocols, simulate, stress, sweep};
 
 pub use problem::Problem;
@@ -127,6 +127,7 @@ fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
         .routes(routes!(stress::get_stress))
         .routes(routes!(history::get_history))
         .routes(routes!(hysteresis_loop::get_loop))
+        .routes(routes!(cycles::get_cycles))
         .routes(routes!(events::watch_contact))
         .routes(routes!(meta::get_openapi).layer(Extension(OpenApiText(document))))
         .routes(routes!(meta::get_problem))

@@ -8,6 +8,7 @@ use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
 use stickslip_wire::{ContactDefinition, ContactSummary, Faults, JsonPath, NewSession, Warning};
 
+use super::cycles::CycleLog;
 use super::snapshot::ReplayCost;
 use super::{SessionError, written};
 
@@ -27,6 +28,8 @@ pub(super) struct LoadedSession {
     pub(super) replay_cost: ReplayCost,
     /// Whether other processes have been seen to move it, so that a move is likely to come too late.
     pub(super) shared: bool,
+    /// The closed cycles of its past, once they have been asked for.
+    pub(super) cycles: Option<Arc<CycleLog>>,
 }
 
 /// Values that follow from the definition and never change.
@@ -42,7 +45,7 @@ impl LoadedSession {
         let contact = simulation::contact(setup, "")?;
         let derived = Derived { figures: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
-        Ok(LoadedSession { session, derived, contact, replay_cost: ReplayCost::default(), shared: false })
+        Ok(LoadedSession { session, derived, contact, replay_cost: ReplayCost::default(), shared: false, cycles: None })
     }
 
     /// The same of a session as it is stored, or why its definition is invalid.
@@ -57,7 +60,8 @@ impl LoadedSession {
     pub(super) fn bytes(&self) -> usize {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
         let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
-        FIXED + self.contact.memory_bytes() + label + warnings + definition_bytes(&self.session.definition)
+        let cycles = self.cycles.as_ref().map_or(0, |cycles| cycles.bytes());
+        FIXED + self.contact.memory_bytes() + label + warnings + cycles + definition_bytes(&self.session.definition)
     }
 
     /// The reply that presents a session just made.

@@ -16,6 +16,8 @@
 mod apply;
 mod cache;
 mod check;
+mod cycle_scan;
+mod cycles;
 mod error;
 mod events;
 mod expiry;

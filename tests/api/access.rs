@@ -37,6 +37,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/loop", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}/cycles", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/events", "", 200, &["read", "write"]),
     ("GET", "/metrics", "", 200, &["metrics"]),
     ("GET", "/openapi.json", "", 200, &[]),

@@ -31,6 +31,9 @@ async fn loops_and_sweeps_answer_the_client() {
     let page = client.hysteresis_loop(contact.id, Some(1), Some(1), Some(4)).await.unwrap();
     assert_eq!((page.sequence, page.part), (vec![2; 4], vec![0.25, 0.5, 0.75, 1.0]));
     assert_eq!((page.displacement[3], page.next), (-1e-7, None));
+    client.apply(contact.id, &Move::displacement(1e-7).into(), &plain).await.unwrap();
+    let cycles = client.cycles(contact.id, Some(1)).await.unwrap().items;
+    assert_eq!((cycles.len(), cycles[0].from, cycles[0].to, cycles[0].displacement_amplitude), (1, 1, 3, 1e-7));
 
     let mut request: SweepRequest = serde_json::from_value(json!({
         "base": {"contact": ball(), "path": {"displacement": [1e-8]}},

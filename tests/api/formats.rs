@@ -145,6 +145,36 @@ async fn a_history_is_the_same_in_every_format() {
 }
 
 #[tokio::test]
+async fn cycles_are_the_same_in_every_format() {
+    let (server, contact) = moved().await;
+    // The load changes in the last of them, which has no sliding ratio then.
+    let moves = json!({"path": {"moves": [{"displacement": -5e-8}, {"displacement": 1e-7, "normal_force": 11.0}]}});
+    assert!(server.post(&format!("{contact}/path"), &moves).await.status().is_success());
+    let path = format!("{contact}/cycles");
+    let page: Value = server.get(&path).await.json().await.unwrap();
+    let names = [
+        "from",
+        "to",
+        "displacement_amplitude",
+        "force_amplitude",
+        "dissipated_energy",
+        "secant_stiffness",
+        "sliding_ratio",
+    ];
+    let items = page["items"].as_array().unwrap();
+    assert!(items.len() == 2 && items[1]["sliding_ratio"].is_null() && items[0]["sliding_ratio"].is_number());
+    let rows: Vec<Vec<Value>> =
+        items.iter().map(|item| names.iter().map(|name| item[*name].clone()).collect()).collect();
+    hold(&server, &path, &names, &rows).await;
+    hold(&server, &format!("{path}?last=1"), &names, &rows[1..]).await;
+    let svg = server.get(&format!("{path}?format=svg")).await.text().await.unwrap();
+    for word in ["move", "displacement amplitude / nm", "secant stiffness / MN/m", "<polyline"] {
+        assert!(svg.contains(word), "{word}");
+    }
+    assert_eq!(header(&server.get(&format!("{path}?format=png")).await, "content-type"), "image/png");
+}
+
+#[tokio::test]
 async fn accept_chooses_and_the_query_outweighs_it() {
     let (server, contact) = moved().await;
     let path = format!("{contact}/{STRESS}");
@@ -164,7 +194,7 @@ async fn accept_chooses_and_the_query_outweighs_it() {
     let named = accepting(&server, &format!("{path}&format=csv"), "application/json").await;
     assert_eq!(header(&named, "content-type"), "text/csv; charset=utf-8");
 
-    for end in [STRESS, "history", "loop"] {
+    for end in [STRESS, "history", "loop", "cycles"] {
         for accept in ["text/html", "application/json;q=0"] {
             let refused = problem(accepting(&server, &format!("{contact}/{end}"), accept).await).await;
             assert_eq!((refused.status, refused.code.as_str()), (406, "not_acceptable"), "{accept}");
@@ -193,6 +223,8 @@ async fn a_client_with_the_current_version_gets_304_until_the_contact_moves() {
         "/history?format=rows&limit=9",
         "/loop?points_per_move=3",
         "/loop?format=png",
+        "/cycles",
+        "/cycles?last=3&format=ndjson",
     ];
     let mut tags = Vec::new();
     for path in paths {
@@ -394,7 +426,14 @@ async fn plots_name_their_quantities_and_shade_what_stuck_and_what_slipped() {
         assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer));
     }
     let virgin = format!("/contacts/{}", server.contact().await);
-    for path in ["/stress?format=png", "/loop?format=svg", "/history?format=png", "/history?format=svg&after=7"] {
+    for path in [
+        "/stress?format=png",
+        "/loop?format=svg",
+        "/history?format=png",
+        "/history?format=svg&after=7",
+        "/cycles?format=svg",
+        "/cycles?format=png",
+    ] {
         assert_eq!(server.get(&format!("{virgin}{path}")).await.status(), 200, "{path}");
     }
 }

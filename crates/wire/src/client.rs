@@ -10,10 +10,10 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::{
-    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, EndEvent, EndReason, ForkRequest, HistoryPage,
-    JobReply, LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply,
-    ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent,
-    StressReply, StressRequest, SweepReply, SweepRequest,
+    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CyclePage, EndEvent, EndReason, ForkRequest,
+    HistoryPage, JobReply, LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument,
+    ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply,
+    SimulateRequest, StateEvent, StressReply, StressRequest, SweepReply, SweepRequest,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
@@ -177,6 +177,11 @@ impl Client {
         let call = self.call(Method::GET, &format!("/contacts/{id}/loop"));
         let call = call.query(&[("after", after)]).query(&[("limit", limit)]);
         json(call.query(&[("points_per_move", points_per_move)])).await
+    }
+
+    /// `GET /contacts/{id}/cycles`: the newest `last` closed cycles, oldest first.
+    pub async fn cycles(&self, id: Uuid, last: Option<usize>) -> Result<CyclePage, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}/cycles")).query(&[("last", last)])).await
     }
 
     /// `GET /contacts/{id}/events`: the states beyond the move `after`, or the present one and then each new one. The stream

@@ -19,6 +19,8 @@ pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
 /// Points of a hysteresis loop per move.
 pub const LOOP_POINTS: RangeInclusive<usize> = 1..=100;
+/// Cycles in a reply.
+pub const CYCLES: RangeInclusive<usize> = 1..=1_000;
 /// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver

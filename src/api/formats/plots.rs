@@ -1,10 +1,10 @@
-//! The plots of a contact's stress, history and loop.
+//! The plots of a contact's stress, history, loop and cycles.
 
 use uuid::Uuid;
 
 use stickslip_mechanics::{Contact, Regime};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot};
-use stickslip_wire::{HistoryPage, LoopPage, State, StressReply};
+use stickslip_wire::{Cycle, CyclePage, HistoryPage, LoopPage, State, StressReply};
 
 /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
 #[must_use]
@@ -76,6 +76,31 @@ pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
             y: Axis { name: "tangential force F", unit: Some("N") },
             curves: vec![Curve { name: "", points, colour: Colour::Blue, silent: true }],
         }],
+        bands: Vec::new(),
+    }
+}
+
+/// Amplitudes, friction work and stiffness of the cycles over the moves that closed them.
+#[must_use]
+pub fn cycles(id: Uuid, page: &CyclePage) -> Plot {
+    let panel = |name, unit, colour, of: fn(&Cycle) -> f64| Panel {
+        y: Axis { name, unit: Some(unit) },
+        curves: vec![Curve {
+            name: "",
+            points: page.items.iter().map(|cycle| (cycle.to as f64, of(cycle))).collect(),
+            colour,
+            silent: true,
+        }],
+    };
+    Plot {
+        title: format!("Contact {id}: closed cycles"),
+        x: Axis { name: "move", unit: None },
+        panels: vec![
+            panel("displacement amplitude", "m", Colour::Blue, |cycle| cycle.displacement_amplitude),
+            panel("force amplitude", "N", Colour::Blue, |cycle| cycle.force_amplitude),
+            panel("friction work", "J", Colour::Red, |cycle| cycle.dissipated_energy),
+            panel("secant stiffness", "N/m", Colour::Blue, |cycle| cycle.secant_stiffness.unwrap_or(f64::NAN)),
+        ],
         bands: Vec::new(),
     }
 }

@@ -1,4 +1,4 @@
-//! The tables of a contact's stress, history and loop, and of a sweep.
+//! The tables of a contact's stress, history, loop and cycles, and of a sweep.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use serde_json::Number;
 
 use crate::simulation::SweepResult;
 use stickslip_wire::sweep::{CheckedSweep, indices};
-use stickslip_wire::{Field, HistoryPage, LoopPage, State, StressReply};
+use stickslip_wire::{Cycle, CyclePage, Field, HistoryPage, LoopPage, State, StressReply};
 
 use super::table::{Cells, Column, Table};
 
@@ -66,6 +66,23 @@ pub fn hysteresis_loop(page: &LoopPage) -> Table<'_> {
         Column::floats("force", "N", |row| page.force[row]),
     ];
     flat(page.sequence.len(), columns)
+}
+
+/// The closed cycles.
+#[must_use]
+pub fn cycles(page: &CyclePage) -> Table<'_> {
+    let items = &page.items;
+    let value = |name, unit, of: fn(&Cycle) -> f64| Column::floats(name, unit, move |row| of(&items[row]));
+    let columns = vec![
+        Column::counts("from", |row| items[row].from),
+        Column::counts("to", |row| items[row].to),
+        value("displacement_amplitude", "m", |cycle| cycle.displacement_amplitude),
+        value("force_amplitude", "N", |cycle| cycle.force_amplitude),
+        value("dissipated_energy", "J", |cycle| cycle.dissipated_energy),
+        value("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness.unwrap_or(f64::NAN)),
+        value("sliding_ratio", "1", |cycle| cycle.sliding_ratio.unwrap_or(f64::NAN)),
+    ];
+    flat(items.len(), columns)
 }
 
 /// The table of a sweep: a row for each point, with the values of its axes and its outputs.

@@ -45,6 +45,7 @@ const ROUTE_ROLES: &[(&str, &str, Need)] = &[
     ("GET", "/contacts/{id}/stress", Key(Role::Read)),
     ("GET", "/contacts/{id}/history", Key(Role::Read)),
     ("GET", "/contacts/{id}/loop", Key(Role::Read)),
+    ("GET", "/contacts/{id}/cycles", Key(Role::Read)),
     ("GET", "/contacts/{id}/events", Key(Role::Read)),
     ("GET", routes::METRICS, Key(Role::Metrics)),
     ("GET", "/healthz", Nothing),

@@ -32,6 +32,10 @@ fn write_parameter(parameter: &mut Value) {
             set_range(schema, &PAGE);
             schema["default"] = json!(DEFAULT_PAGE);
         }
+        "last" => {
+            set_range(schema, &limits::CYCLES);
+            schema["default"] = json!(DEFAULT_PAGE);
+        }
         "points_per_move" => set_range(schema, &limits::LOOP_POINTS),
         "points" => set_range(schema, &limits::STRESS_POINTS),
         "after" | "Last-Event-ID" if is_integer => schema["maximum"] = json!(u64::MAX),

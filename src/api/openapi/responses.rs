@@ -17,7 +17,10 @@ pub fn write(document: &mut Value) {
             }
         }
         match (method, path) {
-            ("get", "/contacts/{id}/stress" | "/contacts/{id}/history" | "/contacts/{id}/loop") => {
+            (
+                "get",
+                "/contacts/{id}/stress" | "/contacts/{id}/history" | "/contacts/{id}/loop" | "/contacts/{id}/cycles",
+            ) => {
                 write_formats(operation, &Format::ALL);
                 write_conditional(operation, true);
             }

@@ -113,11 +113,12 @@ impl SteadyCycle<'_> {
     }
 }
 
-/// Adds ends of panels that halve towards `place` from both sides, down to a singularity at `distance` across from it.
+/// Adds ends of panels that shrink to a quarter of each other towards `place` from both sides, down to a singularity at
+/// `distance` across from it: the rule of twenty points still sees it from rho = 3.
 fn approach(ends: &mut Vec<f64>, place: f64, distance: f64) {
     let mut width = PI;
     while CLEARANCE * width > distance && width > LEAST_PANEL {
-        width *= 0.5;
+        width *= 0.25;
         ends.extend([place - width, place + width].into_iter().filter(|end| (0.0..=PI).contains(end)));
     }
 }
@@ -172,15 +173,16 @@ impl<'a, 'b> Branch<'a, 'b> {
         let Branch { cycle, drive, straight, .. } = *self;
         let (contact, ring) = (cycle.contact, &cycle.ring);
         let (sin, cos) = (0.5 * phi).sin_cos();
+        let (fallen, standing) = (ring.depth * sin * sin, ring.depth * cos * cos);
         // From the nearer end, at which the other one is not seen.
         let level = if phi < FRAC_PI_2 {
-            ring.outer.level - DoubleDouble::from(ring.depth * sin * sin)
+            ring.outer.level - DoubleDouble::from(fallen)
         } else {
-            ring.inner.level + DoubleDouble::from(ring.depth * cos * cos)
+            ring.inner.level + DoubleDouble::from(standing)
         };
         let point = contact.profile.point(level);
         let (scale, unit) = (contact.scale(), contact.force_unit());
-        let [mut gone, mut left] = [sin * sin, cos * cos].map(|share| scale * ring.depth * share);
+        let [mut gone, mut left] = [scale * fallen, scale * standing];
         if cycle.force_driven || cycle.compliance > 0.0 {
             let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
             let forces = [carried(point, ring.outer), carried(ring.inner, point)];
@@ -204,6 +206,6 @@ impl<'a, 'b> Branch<'a, 'b> {
         } else {
             -lost / (1.0 + cycle.compliance * cycle.tangent_stiffness())
         };
-        (sides, rate * 0.5 * scale * ring.depth * phi.sin())
+        (sides, rate * scale * ring.depth * sin * cos)
     }
 }

@@ -149,7 +149,9 @@ impl Sum {
         // Measured from below, so that a flat core does not hide how far beyond it the root lies.
         low + increasing(0.5 * width, |step| {
             let x = low + step.min(width);
-            (self.total(|part| f(part, x)) - target, slope(x))
+            let value = self.total(|part| f(part, x)) - target;
+            // The far end is the rim of a part, as steep as may be: Newton's step from there says nothing.
+            (value, if step < width { slope(x) } else { 2.0 * value / step })
         })
         .min(width)
     }

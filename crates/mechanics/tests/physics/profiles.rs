@@ -335,4 +335,16 @@ proptest! {
         let ratio = load / d;
         prop_assert!(ratio >= core * (1.0 - 1e-12) && ratio <= profile.radius(d) * (1.0 + 1e-12), "{ratio} {core}");
     }
+
+    #[test]
+    fn a_part_beyond_the_edge_changes_nothing(slope in -3.0..9.0f64, beyond in 1e-9..1.0f64, radius in -6.0..0.0f64) {
+        let (slope, edge) = (10f64.powf(slope), 10f64.powf(radius));
+        let sphere = || Profile::Sphere(Sphere::new(10.0 * edge).unwrap());
+        let cone = Profile::TruncatedCone(TruncatedCone::new(slope, edge * (1.0 + beyond)).unwrap());
+        let sum = Profile::Sum(Sum::new(vec![cone, sphere()]).unwrap());
+        let level = sphere().level(edge);
+        prop_assert!(close(sum.radius(level), edge, 1e-14), "{} {edge}", sum.radius(level));
+        let load = sphere().moments(&ring(&sphere(), level, level)).first;
+        prop_assert!(close(sum.indentation_for(load), level, 1e-13), "{} {level}", sum.indentation_for(load));
+    }
 }
