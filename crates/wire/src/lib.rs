@@ -16,6 +16,7 @@
 pub mod accuracy;
 pub mod check;
 pub mod client;
+pub mod cycle;
 pub mod definition;
 pub mod event;
 pub mod job;
@@ -37,6 +38,9 @@ pub mod sweep;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{Fault, Faults, JsonPath};
+pub use cycle::{
+    Amplitudes, CycleDrive, CycleReply, CycleRequest, FrictionWork, Harmonic, Machine, SteadyCycle, WorkDensity,
+};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};

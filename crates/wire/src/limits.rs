@@ -19,6 +19,12 @@ pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
 /// Points of a hysteresis loop per move.
 pub const LOOP_POINTS: RangeInclusive<usize> = 1..=100;
+/// Amplitudes of the steady cycles of one request.
+pub const CYCLE_AMPLITUDES: RangeInclusive<usize> = 1..=10_000;
+/// Amplitudes times radii at which the friction work per area is asked for.
+pub const CYCLE_RADII: usize = 200_000;
+/// Harmonics of a steady cycle.
+pub const HARMONICS: RangeInclusive<usize> = 1..=31;
 /// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
@@ -250,9 +256,9 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        ForkRequest, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
-        SimulateRequest, Span, Springs, StressRequest, SweepRequest,
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, Path, PathRequest, Preload,
+        ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -262,8 +268,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        ForkRequest, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
-        Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity
     }
 }

@@ -1,0 +1,369 @@
+//! The body of `POST /cycle`, the parameters of `GET /contacts/{id}/cycle`, and their reply.
+
+use std::fmt;
+
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Value, json};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::{
+    Setup, cycle,
+    range::{self, Range},
+};
+
+use super::check::{Faults, JsonPath};
+use super::definition::ContactDefinition;
+use super::limits::{CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, limits};
+use super::parse::{Document, Rejection};
+use super::reply::{Accuracy, ContactSummary, Regime, Warning};
+use super::single_key::{not_null, single_key};
+use super::stress::{Points, StressRequest};
+
+/// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing of it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "contact": ContactDefinition::example(),
+    "drive": {"displacement": [5e-8, 1e-7, 2e-7]},
+    "harmonics": 3
+}))]
+pub struct CycleRequest {
+    /// The contact.
+    pub contact: ContactDefinition,
+    /// What is prescribed as a cosine, and its amplitudes.
+    pub drive: CycleDrive,
+    /// A machine in series with the contact: a displacement amplitude is then that of the machine.
+    pub machine: Option<Machine>,
+    /// Ask for the harmonics from the first to this one.
+    pub harmonics: Option<usize>,
+    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000.
+    pub work_density: Option<WorkDensity>,
+}
+limits!(CycleRequest { harmonics: HARMONICS });
+
+/// What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CycleDrive {
+    /// Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
+    Displacement(#[schema(inline)] Amplitudes),
+    /// Amplitude of the tangential force, N; below μ F_N.
+    Force(#[schema(inline)] Amplitudes),
+}
+single_key!(CycleDrive { "displacement" => Displacement, "force" => Force });
+limits!(enum CycleDrive {
+    Displacement "displacement": Within(Range { min: 0.0, ..range::DISPLACEMENT }),
+    Force "force": Within(Range { min: 0.0, ..range::FORCE }),
+});
+
+/// One amplitude, or a list of them.
+// Untagged when written. It is read by hand below, so that a fault in the list has its index.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum Amplitudes {
+    /// One.
+    One(f64),
+    /// A list.
+    Many(Vec<f64>),
+}
+
+/// A machine in series with the contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// Its stiffness, N/m.
+    pub stiffness: f64,
+}
+limits!(Machine { stiffness: range::MACHINE_STIFFNESS });
+
+/// Where the friction work per area is asked for: exactly one of `points` and `radii`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WorkDensity {
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+    pub points: Option<usize>,
+    /// Radii, m; outside the contact there is no work.
+    pub radii: Option<Vec<f64>>,
+}
+limits!(WorkDensity and StressRequest);
+
+/// Steady cycles, one for each amplitude.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CycleReply {
+    /// The contact at its load.
+    pub contact: ContactSummary,
+    /// The cycles, in the order of the amplitudes.
+    pub cycles: Vec<SteadyCycle>,
+    /// Solver, errors and time. `force_error` is that of the harmonics too, relative to the amplitude of the answer.
+    pub accuracy: Accuracy,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+
+/// One steady cycle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SteadyCycle {
+    /// Amplitude of the displacement of the indenter, m.
+    pub displacement_amplitude: f64,
+    /// Amplitude of the tangential force, N.
+    pub force_amplitude: f64,
+    /// Amplitude of the displacement at the machine, m; with `machine` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub machine_amplitude: Option<f64>,
+    /// Friction work of a cycle, J.
+    pub dissipated_energy: f64,
+    /// The largest elastic energy of the tangential deformation in a cycle, J.
+    pub max_elastic_energy: f64,
+    /// Force amplitude over displacement amplitude of the indenter, N/m; at the amplitude zero the tangent stiffness.
+    pub secant_stiffness: f64,
+    /// Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction.
+    pub tangent_stiffness: f64,
+    /// Dissipated energy over 2π times the largest elastic energy, a pure number; `null` where the indenter slides and
+    /// nothing is stored, as without friction and without load.
+    pub loss_factor: Option<f64>,
+    /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where it moves and there is no
+    /// force, as without friction and without load.
+    pub sliding_ratio: Option<f64>,
+    /// Radius of the part that never slips, m; zero in gross slip.
+    pub stick_radius: f64,
+    /// How much of the contact slips.
+    pub regime: Regime,
+    /// The harmonics, if asked for: of the force, N, where the displacement is driven, and of the displacement of the
+    /// indenter, m, where the force is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub harmonics: Option<Vec<Harmonic>>,
+    /// The friction work per area, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub friction_work: Option<FrictionWork>,
+}
+
+/// One harmonic of the answer to a drive that is a cosine.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Harmonic {
+    /// 1 for the fundamental. Even ones vanish at constant load.
+    pub order: usize,
+    /// Amplitude of the cosine, in the unit of the answer.
+    pub in_phase: f64,
+    /// Amplitude of the sine, in the unit of the answer: at the fundamental at most zero for a force, at least zero for a
+    /// displacement.
+    pub quadrature: f64,
+}
+
+/// Friction work of a cycle per area, along the radius.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FrictionWork {
+    /// Radii, m.
+    pub radius: Vec<f64>,
+    /// Friction work per area, J/m²; `null` where it is infinite.
+    pub density: Vec<Option<f64>>,
+}
+
+/// The limits of amplitudes.
+struct Within(Range);
+
+impl Keywords for Within {
+    fn keywords(&self) -> Value {
+        let mut list = Numbers(CYCLE_AMPLITUDES, self.0).keywords();
+        list["type"] = json!("array");
+        list["items"]["type"] = json!("number");
+        let one = json!({"type": "number", "minimum": self.0.min, "maximum": self.0.max});
+        json!({"oneOf": [one, list]})
+    }
+}
+
+impl Limit<Amplitudes> for Within {
+    fn check(&self, value: &Amplitudes, at: JsonPath<'_>, faults: &mut Faults) {
+        match value {
+            Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),
+            Amplitudes::Many(amplitudes) => Numbers(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Amplitudes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(AmplitudesVisitor)
+    }
+}
+
+struct AmplitudesVisitor;
+
+impl<'de> Visitor<'de> for AmplitudesVisitor {
+    type Value = Amplitudes;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or an array of numbers")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Amplitudes, E> {
+        Ok(Amplitudes::One(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Amplitudes, E> {
+        Ok(Amplitudes::One(value as f64))
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Amplitudes, E> {
+        Ok(Amplitudes::One(value as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Amplitudes, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = elements.next_element()? {
+            values.push(value);
+        }
+        Ok(Amplitudes::Many(values))
+    }
+}
+
+impl Amplitudes {
+    /// The amplitudes.
+    #[must_use]
+    pub fn all(&self) -> &[f64] {
+        match self {
+            Amplitudes::One(amplitude) => std::slice::from_ref(amplitude),
+            Amplitudes::Many(amplitudes) => amplitudes,
+        }
+    }
+}
+
+impl CycleDrive {
+    /// Its amplitudes.
+    #[must_use]
+    pub fn amplitudes(&self) -> &Amplitudes {
+        match self {
+            CycleDrive::Displacement(amplitudes) | CycleDrive::Force(amplitudes) => amplitudes,
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            CycleDrive::Displacement(_) => "displacement",
+            CycleDrive::Force(_) => "force",
+        }
+    }
+}
+
+/// What is asked of a contact, before the check.
+pub struct CycleOptions {
+    /// The drive.
+    pub drive: CycleDrive,
+    /// The stiffness of the machine, N/m, if there is one.
+    pub stiffness: Option<f64>,
+    /// The number of harmonics, if they are asked for.
+    pub harmonics: Option<usize>,
+    /// Where the friction work per area is asked for.
+    pub density: Option<WorkDensity>,
+}
+
+/// Where the options are in a request, as JSON pointers.
+#[derive(Clone, Copy, Debug)]
+pub struct CyclePlaces {
+    drive: &'static str,
+    stiffness: &'static str,
+    density: &'static str,
+}
+
+impl CyclePlaces {
+    /// In the body of `POST /cycle`.
+    pub const BODY: CyclePlaces =
+        CyclePlaces { drive: "/drive", stiffness: "/machine/stiffness", density: "/work_density" };
+    /// In a query.
+    pub const QUERY: CyclePlaces = CyclePlaces { drive: "", stiffness: "/machine_stiffness", density: "" };
+}
+
+/// Checked options.
+#[derive(Clone, Debug)]
+pub struct CycleTask {
+    drive: CycleDrive,
+    /// The stiffness of the machine, N/m, if there is one.
+    pub stiffness: Option<f64>,
+    /// The number of harmonics; zero if none are asked for.
+    pub harmonics: usize,
+    /// Where the friction work per area is asked for.
+    pub density: Option<Points>,
+    places: CyclePlaces,
+}
+
+impl CycleOptions {
+    /// The checked options; their faults are noted where `places` says.
+    pub fn check(self, places: CyclePlaces, faults: &mut Faults) -> Option<CycleTask> {
+        let CycleOptions { drive, stiffness, harmonics, density } = self;
+        drive.check_members(JsonPath::Pointer(places.drive), faults);
+        Limit::check(&range::MACHINE_STIFFNESS, &stiffness, JsonPath::Pointer(places.stiffness), faults);
+        Limit::check(&HARMONICS, &harmonics, JsonPath::Root.member("harmonics"), faults);
+        let at = JsonPath::Pointer(places.density);
+        let density = match density {
+            None => None,
+            Some(WorkDensity { points, radii }) => {
+                Some(StressRequest { points, radii, fields: None }.check(at, faults)?.points)
+            }
+        };
+        let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Points::length));
+        if count.saturating_mul(radii) > CYCLE_RADII {
+            faults.add(
+                at,
+                format_args!("{radii} radii at each of {count} amplitudes: allowed are {CYCLE_RADII} radii in all"),
+            );
+        }
+        Some(CycleTask { drive, stiffness, harmonics: harmonics.unwrap_or(0), density, places })
+    }
+}
+
+impl CycleTask {
+    /// The drives, one for each cycle.
+    pub fn drives(&self) -> impl ExactSizeIterator<Item = cycle::Drive> + '_ {
+        let drive = match self.drive {
+            CycleDrive::Displacement(_) => cycle::Drive::Displacement,
+            CycleDrive::Force(_) => cycle::Drive::Force,
+        };
+        self.drive.amplitudes().all().iter().copied().map(drive)
+    }
+
+    /// The JSON pointer to the amplitude of this index.
+    #[must_use]
+    pub fn place_of(&self, index: usize) -> String {
+        let (base, name) = (self.places.drive, self.drive.name());
+        match self.drive.amplitudes() {
+            Amplitudes::One(_) => format!("{base}/{name}"),
+            Amplitudes::Many(_) => format!("{base}/{name}/{index}"),
+        }
+    }
+
+    /// Whether the force is driven.
+    #[must_use]
+    pub fn is_force_driven(&self) -> bool {
+        matches!(self.drive, CycleDrive::Force(_))
+    }
+
+    /// How many radii there are for each cycle.
+    #[must_use]
+    pub fn radii(&self) -> usize {
+        self.density.as_ref().map_or(0, Points::length)
+    }
+}
+
+impl Document for CycleRequest {
+    type Checked = (ContactDefinition, Setup, CycleTask);
+
+    fn check(self) -> Result<Self::Checked, Rejection> {
+        let mut faults = Faults::default();
+        let CycleRequest { contact, drive, machine, harmonics, work_density } = self;
+        let setup = contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let stiffness = machine.map(|machine| machine.stiffness);
+        let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
+        let task = options.check(CyclePlaces::BODY, &mut faults);
+        faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))
+    }
+}

@@ -1,0 +1,92 @@
+//! Steady cycles of a contact at its present load, one for each amplitude.
+
+use stickslip_mechanics::cycle;
+use stickslip_mechanics::{Contact, Move, Setup, Tangential};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::reply::finite;
+use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
+
+use super::run::{Timer, accuracy, contact};
+use super::{Failure, present_warnings};
+use crate::admission::Stop;
+
+/// Radii between two checks of the flag: each time the contact is copied and turned.
+const RADII_PER_CHECK: usize = 512;
+
+const REASON: &str = "a steady cycle at constant load follows from the load curve alone";
+
+/// The contact of a definition, and its steady cycles.
+///
+/// # Errors
+/// As [`cycle`], and [`Failure::Refused`] for a preload that cannot be reached.
+pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
+    let timer = Timer::start();
+    let contact = contact(setup, "/contact")?;
+    let reply = cycle(&contact, task, timer, stop)?;
+    Ok((contact, reply))
+}
+
+/// The steady cycles of a contact at its present load, which has no history.
+///
+/// # Errors
+/// [`Failure::Refused`] for a force of μ F_N or more, [`Failure`] if the work was ended.
+pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> Result<CycleReply, Failure> {
+    let radii = task.density.as_ref().map(|points| points.radii(contact.contact_radius()));
+    let mut cycles = Vec::with_capacity(task.drives().len());
+    // The largest cycle shows the error of the forces.
+    let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+    for (index, drive) in task.drives().enumerate() {
+        stop.check()?;
+        let compliance = task.stiffness.map_or(0.0, f64::recip);
+        let found = cycle::SteadyCycle::driven(contact, drive, compliance)
+            .map_err(|error| Failure::Refused { pointer: task.place_of(index), error })?;
+        largest = largest.max(found.displacement_amplitude());
+        let mut row = row(&found, task.stiffness.is_some());
+        if task.harmonics > 0 {
+            let harmonics = found.harmonics(task.harmonics);
+            error = error.max(harmonics.error);
+            row.harmonics = Some(harmonics.harmonics.into_iter().map(harmonic).collect());
+        }
+        row.friction_work = radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?;
+        cycles.push(row);
+    }
+    let mut turned = contact.clone();
+    let step = Move { tangential: Some(Tangential::Displacement(largest)), ..Move::default() };
+    // A displacement within its range is always reached.
+    let estimated = turned.apply(&step).map_or(contact, |()| &turned);
+    let mut accuracy = accuracy(estimated, timer, REASON);
+    accuracy.force_error = accuracy.force_error.max(error);
+    Ok(CycleReply { contact: contact.summary().into(), cycles, accuracy, warnings: present_warnings(contact) })
+}
+
+fn row(cycle: &cycle::SteadyCycle<'_>, with_machine: bool) -> SteadyCycle {
+    SteadyCycle {
+        displacement_amplitude: cycle.displacement_amplitude(),
+        force_amplitude: cycle.force_amplitude(),
+        machine_amplitude: with_machine.then(|| cycle.machine_amplitude()),
+        dissipated_energy: cycle.dissipated_energy(),
+        max_elastic_energy: cycle.max_elastic_energy(),
+        secant_stiffness: cycle.secant_stiffness(),
+        tangent_stiffness: cycle.tangent_stiffness(),
+        loss_factor: cycle.loss_factor().and_then(finite),
+        sliding_ratio: cycle.sliding_ratio().and_then(finite),
+        stick_radius: cycle.stick_radius(),
+        regime: cycle.regime().into(),
+        harmonics: None,
+        friction_work: None,
+    }
+}
+
+fn harmonic(harmonic: cycle::Harmonic) -> Harmonic {
+    let cycle::Harmonic { order, in_phase, quadrature } = harmonic;
+    Harmonic { order, in_phase, quadrature }
+}
+
+fn friction_work(cycle: &cycle::SteadyCycle<'_>, radii: &[f64], stop: &Stop) -> Result<FrictionWork, Failure> {
+    let mut density = Vec::with_capacity(radii.len());
+    for some in radii.chunks(RADII_PER_CHECK) {
+        stop.check()?;
+        density.extend(cycle.friction_work(some).into_iter().map(finite));
+    }
+    Ok(FrictionWork { radius: radii.to_vec(), density })
+}
