@@ -34,6 +34,8 @@ const SEARCH_COST: u64 = 1_000_000;
 const CYCLE_COST: u64 = 2_000;
 /// The harmonics of one cycle: some ten panels of twenty nodes.
 const HARMONICS_COST: u64 = 20_000;
+/// One cycle under a load that oscillates, which is stepped.
+const STEPPED_CYCLE_COST: u64 = 5_000_000;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -269,7 +271,8 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
 #[must_use]
 pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
     let harmonics = if task.harmonics > 0 { HARMONICS_COST } else { 0 };
-    let each = CYCLE_COST + harmonics + task.radii() as u64 * RADIUS_COST;
+    let stepped = if task.normal.is_some() { STEPPED_CYCLE_COST } else { 0 };
+    let each = CYCLE_COST + stepped + harmonics + task.radii() as u64 * RADIUS_COST;
     on_profile(profile, each.saturating_mul(task.drives().len() as u64), false)
 }
 

@@ -1,19 +1,24 @@
 //! Steady cycles of a contact at its present load, one for each amplitude.
 
-use stickslip_mechanics::cycle;
-use stickslip_mechanics::{Contact, Move, Setup, Tangential};
+use std::f64::consts::TAU;
+
+use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
+use stickslip_mechanics::{Contact, Error, Move, Normal, Setup, Tangential};
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
+use super::Failure;
 use super::run::{Timer, accuracy, contact};
-use super::{Failure, present_warnings};
+use super::warnings::{excess_error, warnings_at};
 use crate::admission::Stop;
 
 /// Radii between two checks of the flag: each time the contact is copied and turned.
 const RADII_PER_CHECK: usize = 512;
 
 const REASON: &str = "a steady cycle at constant load follows from the load curve alone";
+const REASON_STEPPED: &str =
+    "a cycle under a load that oscillates is stepped with the exact slip history, to the tolerance";
 
 /// The contact of a definition, and its steady cycles.
 ///
@@ -37,8 +42,19 @@ pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> 
     let (mut largest, mut error) = (0.0_f64, 0.0_f64);
     for (index, drive) in task.drives().enumerate() {
         stop.check()?;
-        let compliance = task.stiffness.map_or(0.0, f64::recip);
-        let found = cycle::SteadyCycle::driven(contact, drive, compliance)
+        if let Some((load, tolerance)) = task.normal {
+            let swing = Oscillation { drive, load, compliance: compliance(task) };
+            let found = swing.steady(contact, tolerance, task.harmonics, &|| stop.check().is_ok());
+            let found = found.map_err(|error| match stop.check() {
+                Err(interrupted) => Failure::interrupted(interrupted, &task.place_of(index)),
+                Ok(()) => Failure::Refused { pointer: place_of_refused(&error, &load, task, index), error },
+            })?;
+            error = error.max(found.error);
+            largest = largest.max(found.displacement_amplitude);
+            cycles.push(stepped(found, task));
+            continue;
+        }
+        let found = cycle::SteadyCycle::driven(contact, drive, compliance(task))
             .map_err(|error| Failure::Refused { pointer: task.place_of(index), error })?;
         largest = largest.max(found.displacement_amplitude());
         let mut row = row(&found, task.stiffness.is_some());
@@ -50,13 +66,58 @@ pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> 
         row.friction_work = radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?;
         cycles.push(row);
     }
+    let (reason, missed) = match task.normal {
+        Some((_, tolerance)) => (REASON_STEPPED, excess_error(error, tolerance, 1)),
+        None => (REASON, None),
+    };
     let mut turned = contact.clone();
     let step = Move { tangential: Some(Tangential::Displacement(largest)), ..Move::default() };
     // A displacement within its range is always reached.
     let estimated = turned.apply(&step).map_or(contact, |()| &turned);
-    let mut accuracy = accuracy(estimated, timer, REASON);
+    let mut accuracy = accuracy(estimated, timer, reason);
     accuracy.force_error = accuracy.force_error.max(error);
-    Ok(CycleReply { contact: contact.summary().into(), cycles, accuracy, warnings: present_warnings(contact) })
+    let warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
+    Ok(CycleReply { contact: contact.summary().into(), cycles, accuracy, warnings })
+}
+
+/// Compliance of the machine, m/N.
+fn compliance(task: &CycleTask) -> f64 {
+    task.stiffness.map_or(0.0, f64::recip)
+}
+
+/// The member that a cycle under a load that oscillates is refused for: the drive, or the load.
+fn place_of_refused(error: &Error, load: &OscillatingLoad, task: &CycleTask, index: usize) -> String {
+    match (error, load.amplitude) {
+        (Error::ForceExceedsFriction { .. }, _) => task.place_of(index),
+        (_, Normal::NormalForce(_)) => "/normal/normal_force".to_owned(),
+        (_, Normal::Indentation(_)) => "/normal/indentation".to_owned(),
+    }
+}
+
+/// The row of a cycle under a load that oscillates.
+fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
+    let moves = cycle.displacement_amplitude > 0.0;
+    let stored = cycle.max_elastic_energy;
+    let loss = if stored > 0.0 { cycle.dissipated_energy / (TAU * stored) } else { f64::NAN };
+    SteadyCycle {
+        displacement_amplitude: cycle.displacement_amplitude,
+        force_amplitude: cycle.force_amplitude,
+        machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
+        dissipated_energy: cycle.dissipated_energy,
+        max_elastic_energy: stored,
+        secant_stiffness: if moves {
+            cycle.force_amplitude / cycle.displacement_amplitude
+        } else {
+            cycle.tangent_stiffness
+        },
+        tangent_stiffness: cycle.tangent_stiffness,
+        loss_factor: finite(if moves { loss } else { 0.0 }),
+        sliding_ratio: if moves { cycle.sliding_ratio.and_then(finite) } else { Some(0.0) },
+        stick_radius: cycle.stick_radius,
+        regime: cycle.regime.into(),
+        harmonics: (task.harmonics > 0).then(|| cycle.harmonics.into_iter().map(harmonic).collect()),
+        friction_work: None,
+    }
 }
 
 fn row(cycle: &cycle::SteadyCycle<'_>, with_machine: bool) -> SteadyCycle {

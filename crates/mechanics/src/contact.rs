@@ -139,6 +139,28 @@ impl Contact {
         }
     }
 
+    /// The virgin contact of the same bodies under another normal force, N.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] or [`Error::BeyondProfile`] for a force that the profile has no contact for.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let heavy = contact.pressed(32_000.0)?;
+    /// // Hertz: d goes with F_N^(2/3).
+    /// assert!((heavy.indentation() / 0.04 - 1.0).abs() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn pressed(&self, normal_force: f64) -> Result<Contact, Error> {
+        let normal_force = range::check_normal_force(normal_force)?;
+        let indentation = self.indentation_for(normal_force);
+        range::PRELOAD_INDENTATION.check(indentation.value())?;
+        self.check_indentation(indentation.value())?;
+        let history = SlipHistory::new(&self.profile, indentation);
+        let initial = summary_of(&self.profile, &self.elasticity, self.friction, history.edge(), normal_force);
+        Ok(Contact { history, normal_force, initial, ..self.virgin() })
+    }
+
     /// W = U/m, m.
     pub(super) fn scaled(&self, displacement: DoubleDouble) -> DoubleDouble {
         displacement * self.inverse_scale

@@ -105,7 +105,7 @@ impl Contact {
     }
 
     /// Whether the profile has a contact of this indentation, m.
-    fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
+    pub(super) fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
         range::INDENTATION.check(indentation)?;
         if indentation > 0.0 {
             range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.radius(indentation))?)?;

@@ -9,17 +9,22 @@ use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{
-    Setup, cycle,
-    range::{self, Range},
+    Normal, Setup,
+    cycle::{self, OscillatingLoad},
+    range::{self, Quantity, Range},
 };
 
 use super::check::{Faults, JsonPath};
 use super::definition::ContactDefinition;
-use super::limits::{CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, limits};
+use super::limits::{CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, Tolerance, limits};
 use super::parse::{Document, Rejection};
 use super::reply::{Accuracy, ContactSummary, Regime, Warning};
 use super::single_key::{not_null, single_key};
 use super::stress::{Points, StressRequest};
+
+/// What cycles under a load that oscillates are held to if the request does not say: steps cost, and what is left falls
+/// with a low power of them.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
 
 /// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing of it.
 #[skip_serializing_none]
@@ -40,10 +45,34 @@ pub struct CycleRequest {
     pub machine: Option<Machine>,
     /// Ask for the harmonics from the first to this one.
     pub harmonics: Option<usize>,
-    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000.
+    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that oscillates.
     pub work_density: Option<WorkDensity>,
+    /// The normal load oscillates too, about that of the contact.
+    pub normal: Option<OscillatingNormal>,
+    /// Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, a pure number.
+    pub tolerance: Option<f64>,
 }
-limits!(CycleRequest { harmonics: HARMONICS });
+limits!(CycleRequest { harmonics: HARMONICS, tolerance: CycleTolerance });
+
+/// A normal load that oscillates with the drive: exactly one of `normal_force` and `indentation`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OscillatingNormal {
+    /// Amplitude of the normal force, N; at most the normal force of the contact.
+    pub normal_force: Option<f64>,
+    /// Amplitude of the indentation, m.
+    pub indentation: Option<f64>,
+    /// By how much the load runs ahead of the drive, degrees.
+    #[serde(default)]
+    pub phase: f64,
+}
+limits!(OscillatingNormal {
+    normal_force: range::NORMAL_FORCE,
+    indentation: range::PRELOAD_INDENTATION,
+    phase: Range { quantity: Quantity::Phase, unit: "degrees", min: -360.0, max: 360.0 },
+});
 
 /// What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -165,6 +194,43 @@ pub struct FrictionWork {
     pub radius: Vec<f64>,
     /// Friction work per area, J/m²; `null` where it is infinite.
     pub density: Vec<Option<f64>>,
+}
+
+/// The range of a tolerance, with the default of cycles.
+struct CycleTolerance;
+
+impl Keywords for CycleTolerance {
+    fn keywords(&self) -> Value {
+        let mut keywords = Tolerance.keywords();
+        keywords["default"] = json!(DEFAULT_TOLERANCE);
+        keywords
+    }
+}
+
+impl Limit<f64> for CycleTolerance {
+    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        Tolerance.check(value, at, faults);
+    }
+}
+
+impl OscillatingNormal {
+    /// The checked load; its faults are noted at `at`.
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<OscillatingLoad> {
+        self.check_members(at, faults);
+        let amplitude = match (self.normal_force, self.indentation) {
+            (Some(force), None) => Normal::NormalForce(force),
+            (None, Some(depth)) => Normal::Indentation(depth),
+            (None, None) => {
+                faults.add(at, "give one of `normal_force` and `indentation`");
+                return None;
+            }
+            (Some(_), Some(_)) => {
+                faults.add(at, "`normal_force` conflicts with `indentation`: give one of them");
+                return None;
+            }
+        };
+        Some(OscillatingLoad { amplitude, phase: self.phase.to_radians() })
+    }
 }
 
 /// The limits of amplitudes.
@@ -293,6 +359,8 @@ pub struct CycleTask {
     pub harmonics: usize,
     /// Where the friction work per area is asked for.
     pub density: Option<Points>,
+    /// A load that oscillates, with the tolerance.
+    pub normal: Option<(OscillatingLoad, f64)>,
     places: CyclePlaces,
 }
 
@@ -317,7 +385,7 @@ impl CycleOptions {
                 format_args!("{radii} radii at each of {count} amplitudes: allowed are {CYCLE_RADII} radii in all"),
             );
         }
-        Some(CycleTask { drive, stiffness, harmonics: harmonics.unwrap_or(0), density, places })
+        Some(CycleTask { drive, stiffness, harmonics: harmonics.unwrap_or(0), density, normal: None, places })
     }
 }
 
@@ -359,11 +427,19 @@ impl Document for CycleRequest {
 
     fn check(self) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
-        let CycleRequest { contact, drive, machine, harmonics, work_density } = self;
+        let CycleRequest { contact, drive, machine, harmonics, work_density, normal, tolerance } = self;
         let setup = contact.check(JsonPath::Root.member("contact"), &mut faults);
         let stiffness = machine.map(|machine| machine.stiffness);
         let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
         let task = options.check(CyclePlaces::BODY, &mut faults);
+        let at = |name| JsonPath::Root.member(name);
+        Limit::check(&CycleTolerance, &tolerance, at("tolerance"), &mut faults);
+        let load = normal.and_then(|normal| normal.check(at("normal"), &mut faults));
+        if normal.is_some() && task.as_ref().is_some_and(|task| task.radii() > 0) {
+            faults.add(at("work_density"), "not under a load that oscillates: leave this or `normal` out");
+        }
+        let normal = load.map(|load| (load, tolerance.unwrap_or(DEFAULT_TOLERANCE)));
+        let task = task.map(|task| CycleTask { normal, ..task });
         faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))
     }
 }

@@ -39,7 +39,8 @@ pub mod sweep;
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{Fault, Faults, JsonPath};
 pub use cycle::{
-    Amplitudes, CycleDrive, CycleReply, CycleRequest, FrictionWork, Harmonic, Machine, SteadyCycle, WorkDensity,
+    Amplitudes, CycleDrive, CycleReply, CycleRequest, FrictionWork, Harmonic, Machine, OscillatingNormal, SteadyCycle,
+    WorkDensity,
 };
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};

@@ -257,8 +257,9 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
         AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, Path, PathRequest, Preload,
-        ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity,
+        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, OscillatingNormal, Path,
+        PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest,
+        SweepRequest, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -269,7 +270,7 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, OscillatingNormal, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
         Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity
     }
 }

@@ -4,6 +4,7 @@ use uuid::Uuid;
 
 use stickslip_mechanics::{Contact, Move, Regime, Tangential};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot};
+use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::{CycleReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply};
 
 /// Points of each branch of a steady loop.
@@ -83,11 +84,11 @@ pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
     }
 }
 
-/// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude. `contact` is at the load of
+/// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load. `contact` is at the load of
 /// the cycles and has no history.
 #[must_use]
-pub fn cycle(contact: &Contact, reply: &CycleReply) -> Plot {
-    if let [only] = &reply.cycles[..] {
+pub fn cycle(contact: &Contact, reply: &CycleReply, task: &CycleTask) -> Plot {
+    if let ([only], None) = (&reply.cycles[..], task.normal) {
         return steady_loop(contact, only);
     }
     let panel = |name, unit, colour, of: fn(&SteadyCycle) -> f64| {

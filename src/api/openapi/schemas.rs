@@ -77,6 +77,8 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
     let step = json!([have(&targets[..2]), have(&targets[2..]), none(&targets)]);
     let places = ["points", "radii"];
     let places = json!([have(&places), none(&places)]);
+    let normals = ["normal_force", "indentation"];
+    let normals = json!([have(&normals), none(&normals)]);
     schemas["StressRequest"]["properties"]["fields"]["minItems"] = json!(1);
     // Axes may put in what the base of a sweep leaves out.
     schemas["SweepRequest"]["properties"]["base"]["additionalProperties"] = json!(true);
@@ -92,6 +94,7 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
         ("MoveRequest", &step),
         ("StressRequest", &places),
         ("WorkDensity", &places),
+        ("OscillatingNormal", &normals),
         ("RelaxRequest", &aims),
         ("ProtocolRequest", &protocol),
     ] {

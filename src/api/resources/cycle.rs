@@ -186,5 +186,5 @@ pub async fn get_steady_cycle(
 
 /// The cycles of a contact in a format.
 fn written(format: Format, cycles: &CycleReply, contact: &Contact, task: &CycleTask) -> Result<Vec<u8>, Problem> {
-    format.write(cycles, || plots::cycle(contact, cycles), || tables::cycle(cycles, task))
+    format.write(cycles, || plots::cycle(contact, cycles, task), || tables::cycle(cycles, task))
 }

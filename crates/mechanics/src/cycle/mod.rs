@@ -9,11 +9,19 @@
 //! - the elastic energy is largest at the turning points, E = G* m^2 (depth^2 x* + int h^2 dx), x* = X(d*);
 //! - beyond gross slip the indenter slides the rest of the way, with 4 mu F_N (U0 - u_max) more work.
 //!
-//! A machine spring in series with the contact moves the ends of the branches alone.
+//! A machine spring in series with the contact moves the ends of the branches alone. Where the load oscillates too the
+//! cycle is stepped ([`Oscillation`]).
 
+mod best_load;
 mod harmonics;
+mod lap;
+mod oscillating;
+mod response;
 
+pub use best_load::{BestLoad, best_load};
 pub use harmonics::{Harmonic, Harmonics};
+pub use oscillating::{OscillatingCycle, OscillatingLoad, Oscillation};
+pub use response::{Resonator, Response};
 
 use super::curved_move::PathPoint;
 use super::double_double::DoubleDouble;
@@ -162,7 +170,7 @@ impl<'a> SteadyCycle<'a> {
             let missing = amplitude - own * depth - machine * load(&contact.profile, &ring);
             let step = missing / (own + machine * ring.inner.radius);
             depth = (depth + step).min(edge.level.value());
-            if !(step > 2.0 * f64::EPSILON * depth) {
+            if step.is_nan() || step <= 2.0 * f64::EPSILON * depth {
                 break;
             }
         }

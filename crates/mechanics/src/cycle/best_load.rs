@@ -1,0 +1,87 @@
+//! The normal force under which a given drive does most friction work.
+//!
+//! Without a load there is no friction, and under a large one little slip. At a given displacement the contact slides for
+//! a part of the way where the most work is done, or no further than that; a given force needs a load that holds it.
+//! The work may have several maxima, so that loads of some decades are compared before the best of them is refined.
+
+use super::{Drive, SteadyCycle};
+use crate::{Contact, Error};
+
+/// Loads that are compared first, evenly spaced in their logarithm, and how far below the onset of gross slip and above
+/// it they reach.
+const LOADS: usize = 256;
+const DECADES: f64 = 3.0;
+/// Steps of the refinement; each takes off two fifths of the bracket.
+const STEPS: usize = 60;
+
+/// A load and the work of a cycle under it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BestLoad {
+    /// Normal force, N.
+    pub normal_force: f64,
+    /// Friction work of a cycle, J.
+    pub dissipated_energy: f64,
+}
+
+/// The load under which a drive does most work on the bodies of `contact`, through a machine of this compliance, m/N;
+/// `None` where no load does any.
+///
+/// # Errors
+/// [`Error::BeyondProfile`] and [`Error::OutOfRange`] where the profile has no contact for the least of the loads.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// use stickslip_mechanics::cycle::{Drive, SteadyCycle, best_load};
+///
+/// let best = best_load(&contact, Drive::Displacement(0.00375), 0.0)?.unwrap();
+/// let heavier = contact.pressed(1.01 * best.normal_force)?;
+/// assert!(SteadyCycle::of(&heavier, 0.00375).dissipated_energy() < best.dissipated_energy);
+/// # Ok::<(), Error>(())
+/// ```
+pub fn best_load(contact: &Contact, drive: Drive, compliance: f64) -> Result<Option<BestLoad>, Error> {
+    if contact.friction <= 0.0 {
+        return Ok(None);
+    }
+    let work = |normal_force: f64| {
+        let pressed = contact.pressed(normal_force)?;
+        // A force that the load just holds is that of gross slip.
+        let cycle = SteadyCycle::driven(&pressed, drive, compliance)
+            .unwrap_or_else(|_| SteadyCycle::of(&pressed, pressed.gross_slip_displacement()));
+        Ok::<f64, Error>(cycle.dissipated_energy())
+    };
+    let (onset, least) = match drive {
+        Drive::Force(amplitude) => (amplitude.abs() / contact.friction, 0.0),
+        Drive::Displacement(amplitude) => (contact.normal_force_at(contact.scaled(amplitude.abs().into())), DECADES),
+    };
+    let load = |index: f64| onset * 10_f64.powf((least + DECADES) * index / LOADS as f64 - least);
+    let mut best = (0, 0.0);
+    for index in 0..=LOADS {
+        // Larger loads than the profile has a contact for are no loads.
+        match work(load(index as f64)) {
+            Ok(found) if found > best.1 => best = (index, found),
+            Ok(_) => {}
+            Err(error) if index == 0 => return Err(error),
+            Err(_) => break,
+        }
+    }
+    let mut refined = None;
+    let (mut low, mut high) = (best.0.saturating_sub(1) as f64, (best.0 + 1).min(LOADS) as f64);
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for _ in 0..STEPS {
+        let inner = [high - golden * (high - low), low + golden * (high - low)];
+        let found = inner.map(|index| work(load(index)).unwrap_or(0.0));
+        if found[0] < found[1] {
+            low = inner[0]
+        } else {
+            high = inner[1]
+        }
+        for (index, found) in inner.into_iter().zip(found) {
+            if found > best.1 {
+                best.1 = found;
+                refined = Some(index);
+            }
+        }
+    }
+    Ok((best.1 > 0.0)
+        .then(|| BestLoad { normal_force: load(refined.unwrap_or(best.0 as f64)), dissipated_energy: best.1 }))
+}

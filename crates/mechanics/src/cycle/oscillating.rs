@@ -1,0 +1,347 @@
+//! Steady cycles under a load that oscillates too: stepped with the exact memory until they close.
+//!
+//! The drive is S0 cos(t), the load N + dN cos(t + phase). Such a path is curved; here it is followed by pairs of exact
+//! straight moves, which end on the curve at equal steps of t. Where the displacement is given, the point between them
+//! is moved off the curve so that the pair has its integral of U over d, on which friction work and the displacement of
+//! newly touched levels depend (`curve_panel` says why), and steps are divided where slip begins or ends: what is left
+//! falls with the fourth power of the step. Driven by a force, or through a machine, the steps in which slip turns are
+//! not known, and it falls with the square. The steps are halved until two results agree.
+
+use std::f64::consts::TAU;
+
+use super::lap::Lap;
+use super::{Drive, Harmonic};
+use crate::curved_move::PathPoint;
+use crate::double_double::DoubleDouble;
+use crate::range::{self, Quantity, short};
+use crate::slip_history::SlipHistory;
+use crate::{Contact, Error, Normal, Regime};
+
+/// Steps of a cycle at first, and at most.
+const FEWEST: usize = 128;
+const MOST: usize = 1 << 14;
+/// Cycles after which it closes; the second one does unless the load comes near zero.
+const CYCLES: usize = 32;
+/// Two cycles are the same if their work and force agree to this part of mu F_N and of its work.
+const CLOSED: f64 = 1e-12;
+/// Halvings of a step down to where slip turns in it; closer than this part of it to an end, it turns there.
+const HALVINGS: usize = 50;
+const SAME_TURN: f64 = 1e-9;
+/// Steps of the search for the force that a machine and the contact share.
+const SHARES: usize = 100;
+
+/// An amplitude of the load, and by how much it runs ahead of the drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OscillatingLoad {
+    /// Amplitude of the normal force, N, or of the indentation, m.
+    pub amplitude: Normal,
+    /// The phase, rad.
+    pub phase: f64,
+}
+
+/// A steady cycle that was stepped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OscillatingCycle {
+    /// Half the range of the displacement of the indenter, m.
+    pub displacement_amplitude: f64,
+    /// Half the range of the tangential force, N.
+    pub force_amplitude: f64,
+    /// Half the range of the displacement at the machine, m.
+    pub machine_amplitude: f64,
+    /// Friction work of a cycle, J.
+    pub dissipated_energy: f64,
+    /// The largest elastic energy of the tangential deformation, J.
+    pub max_elastic_energy: f64,
+    /// 2 G* a where the drive is largest, N/m.
+    pub tangent_stiffness: f64,
+    /// Half the distance of the displacements at which the force changes its sign, over the amplitude; `None` if it does
+    /// not do so twice.
+    pub sliding_ratio: Option<f64>,
+    /// Radius of the part that never slips, m.
+    pub stick_radius: f64,
+    /// The most that slips at any time; separated if the bodies part.
+    pub regime: Regime,
+    /// As those of [`super::SteadyCycle::harmonics`], even ones too.
+    pub harmonics: Vec<Harmonic>,
+    /// Steps of the cycle.
+    pub steps: usize,
+    /// Error of the work over 4 mu F_N U0 and of the force over mu F_N, at the largest load: an estimate.
+    pub error: f64,
+}
+
+/// What is prescribed in a cycle, and what stands between it and the contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Oscillation {
+    /// What is driven.
+    pub drive: Drive,
+    /// What the load does meanwhile.
+    pub load: OscillatingLoad,
+    /// Compliance of the machine, m/N; zero for none.
+    pub compliance: f64,
+}
+
+impl Oscillation {
+    /// The steady cycle about the present load of a contact, to `tolerance`, with harmonics up to the order `count`.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if the normal force would fall below zero or the indentation leave its range,
+    /// [`Error::ForceExceedsFriction`] where friction does not hold a driven force, [`Error::Interrupted`] if
+    /// `keep_going` returned false: it is asked once a cycle.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// use stickslip_mechanics::cycle::{Drive, Oscillation, OscillatingLoad};
+    ///
+    /// let load = OscillatingLoad { amplitude: Normal::NormalForce(800.0), phase: 0.0 };
+    /// let swing = Oscillation { drive: Drive::Displacement(0.002), load, compliance: 0.0 };
+    /// let cycle = swing.steady(&contact, 1e-6, 0, &|| true)?;
+    /// assert!(cycle.dissipated_energy > 0.0 && cycle.error <= 1e-6);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn steady(
+        &self,
+        contact: &Contact,
+        tolerance: f64,
+        count: usize,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<OscillatingCycle, Error> {
+        let (mut steps, mut earlier) = (FEWEST, 0.0_f64);
+        let mut coarse = self.followed(contact, steps, count, keep_going)?;
+        loop {
+            steps *= 2;
+            let fine = self.followed(contact, steps, count, keep_going)?;
+            let unit = self.force_unit(contact);
+            let relative = |difference: f64, unit: f64| if unit > 0.0 { (difference / unit).abs() } else { 0.0 };
+            let work = fine.dissipated_energy - coarse.dissipated_energy;
+            let answer = fine.force_amplitude - coarse.force_amplitude;
+            let change = relative(work, 4.0 * unit * fine.displacement_amplitude).max(relative(answer, unit));
+            // Two results may agree by chance, three less easily.
+            let error = change.max(0.25 * earlier) + fine.error;
+            if error <= tolerance && earlier > 0.0 || steps >= MOST || change <= 0.0 {
+                return Ok(OscillatingCycle { error, ..fine });
+            }
+            earlier = change;
+            coarse = fine;
+        }
+    }
+
+    /// mu F_N at the largest load, N.
+    fn force_unit(&self, contact: &Contact) -> f64 {
+        contact.friction
+            * match self.load.amplitude {
+                Normal::NormalForce(amplitude) => contact.normal_force + amplitude.abs(),
+                Normal::Indentation(amplitude) => {
+                    contact.normal_force_at(contact.history.edge().level + DoubleDouble::from(amplitude.abs()))
+                }
+            }
+    }
+
+    /// The normal side of the path at an angle of the drive: indentation and normal force.
+    fn load_at(&self, contact: &Contact, angle: f64) -> (DoubleDouble, f64) {
+        let swing = (angle + self.load.phase).cos();
+        match self.load.amplitude {
+            Normal::NormalForce(amplitude) => {
+                let force = (contact.normal_force + amplitude * swing).max(0.0);
+                (contact.indentation_for(force), force)
+            }
+            Normal::Indentation(amplitude) => {
+                let level = contact.history.edge().level + DoubleDouble::from(amplitude * swing);
+                (level, contact.normal_force_at(level))
+            }
+        }
+    }
+
+    fn check(&self, contact: &Contact) -> Result<(), Error> {
+        match self.load.amplitude {
+            Normal::NormalForce(amplitude) => {
+                if amplitude.is_nan() || amplitude.abs() > contact.normal_force {
+                    let allowed = format!("up to the normal force, {} N", short(contact.normal_force));
+                    return Err(Error::OutOfRange { quantity: Quantity::NormalForce, value: amplitude, allowed });
+                }
+                let largest = range::check_normal_force(contact.normal_force + amplitude.abs())?;
+                contact.check_indentation(contact.indentation_for(largest).value())
+            }
+            Normal::Indentation(amplitude) => {
+                contact.check_indentation(contact.indentation() - amplitude.abs())?;
+                contact.check_indentation(contact.indentation() + amplitude.abs())
+            }
+        }
+    }
+
+    /// The cycle in so many steps, after as many cycles as it takes to close.
+    fn followed(
+        &self,
+        contact: &Contact,
+        steps: usize,
+        count: usize,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<OscillatingCycle, Error> {
+        self.check(contact)?;
+        let edge = contact.history.edge().level;
+        let history = SlipHistory::new(&contact.profile, edge);
+        let zero = DoubleDouble::ZERO;
+        let mut moving = Contact { history, displacement: zero, dissipated: zero, ..contact.clone() };
+        self.step_to(contact, &mut moving, 0.0, None)?;
+        let unit = self.force_unit(contact);
+        let mut before = self.lap(contact, &mut moving, (steps, count))?;
+        let mut off = f64::INFINITY;
+        for _ in 1..CYCLES {
+            if !keep_going() {
+                return Err(Error::Interrupted);
+            }
+            let lap = self.lap(contact, &mut moving, (steps, count))?;
+            let work = (lap.work - before.work).abs() / (4.0 * unit * lap.displacement.half()).max(f64::MIN_POSITIVE);
+            off = work.max((lap.end - before.end).abs() / unit.max(f64::MIN_POSITIVE));
+            before = lap;
+            if off <= CLOSED {
+                break;
+            }
+        }
+        Ok(before.finished(steps, off))
+    }
+
+    fn lap(&self, contact: &Contact, moving: &mut Contact, (steps, count): (usize, usize)) -> Result<Lap, Error> {
+        let start = moving.dissipated;
+        let mut lap = Lap::new(2.0 * contact.elasticity.g_star() * moving.contact_radius(), count);
+        let mut before = (moving.displacement.value(), moving.force());
+        for index in 1..=steps / 2 {
+            let angle = |step: usize| TAU * step as f64 / steps as f64;
+            let (from, to) = (angle(2 * index - 2), angle(2 * index));
+            let mut here = from;
+            for next in self.turns(contact, from, to).into_iter().chain([to]) {
+                let middle = 0.5 * (here + next);
+                self.step_to(contact, moving, middle, self.elbow(contact, [here, middle, next]))?;
+                self.step_to(contact, moving, next, None)?;
+                here = next;
+                let state = moving.state();
+                lap.include(&state, before, self.compliance);
+                before = (state.displacement, state.force);
+            }
+            lap.transform(if matches!(self.drive, Drive::Force(_)) { before.0 } else { before.1 }, to, steps / 2);
+        }
+        lap.work = (moving.dissipated - start).value();
+        lap.end = before.1;
+        Ok(lap)
+    }
+
+    /// The amplitude of the displacement where that is given, m.
+    fn displaced(&self) -> Option<f64> {
+        match self.drive {
+            Drive::Displacement(amplitude) if self.compliance <= 0.0 => Some(amplitude),
+            _ => None,
+        }
+    }
+
+    /// Change of the indentation per angle of the drive, m.
+    fn sinking(&self, contact: &Contact, angle: f64) -> f64 {
+        let swing = -(angle + self.load.phase).sin();
+        match self.load.amplitude {
+            Normal::Indentation(amplitude) => amplitude * swing,
+            Normal::NormalForce(amplitude) => {
+                let radius = contact.profile.radius(self.load_at(contact, angle).0.value());
+                amplitude * swing / (2.0 * contact.elasticity.e_star() * radius)
+            }
+        }
+    }
+
+    /// The angles inside a step at which the load turns or slip begins or ends: where d or, if the displacement is
+    /// given, W - d or W + d has an extremum.
+    fn turns(&self, contact: &Contact, from: f64, to: f64) -> Vec<f64> {
+        let signs: &[f64] = if self.displaced().is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
+        let scaled = self.displaced().map_or(0.0, |amplitude| contact.scaled(amplitude.into()).value());
+        let turn = |&sign: &f64| {
+            let rate = |angle: f64| -sign * scaled * angle.sin() - self.sinking(contact, angle);
+            let (mut low, mut high) = (from, to);
+            let rising = rate(low) > 0.0;
+            if rising == (rate(high) > 0.0) {
+                return None;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if (rate(middle) > 0.0) == rising { low = middle } else { high = middle }
+            }
+            let margin = SAME_TURN * (to - from);
+            (low > from + margin && high < to - margin).then_some(high)
+        };
+        let mut turns: Vec<f64> = signs.iter().filter_map(turn).collect();
+        turns.sort_by(f64::total_cmp);
+        turns
+    }
+
+    /// The displacement, m, between two straight moves with the integral of U over d of the curve; `None` where it is not
+    /// given, or where one of the two would slip otherwise than the curve.
+    fn elbow(&self, contact: &Contact, angles: [f64; 3]) -> Option<f64> {
+        let amplitude = self.displaced()?;
+        let moved = angles.map(|angle| amplitude * angle.cos());
+        let levels = angles.map(|angle| self.load_at(contact, angle).0);
+        let rates = angles.map(|angle| self.sinking(contact, angle));
+        // Simpson's rule.
+        let curve =
+            (moved[0] * rates[0] + 4.0 * moved[1] * rates[1] + moved[2] * rates[2]) * (angles[2] - angles[0]) / 6.0;
+        let [low, high] = [levels[1] - levels[0], levels[2] - levels[1]].map(DoubleDouble::value);
+        let elbow = (2.0 * curve - moved[0] * low - moved[2] * high) / (low + high);
+        let slips = |middle: f64| {
+            let ways = [(middle - moved[0], low), (moved[2] - middle, high)];
+            ways.map(|(advance, rise)| [advance > contact.scale() * rise, -advance > contact.scale() * rise])
+        };
+        let same = low * high > 0.0 && slips(moved[1]) == slips(elbow) && slips(elbow)[0] == slips(elbow)[1];
+        same.then_some(elbow)
+    }
+
+    /// Moves on to an angle of the drive, or to an elbow beside it.
+    fn step_to(&self, contact: &Contact, moving: &mut Contact, angle: f64, elbow: Option<f64>) -> Result<(), Error> {
+        let (indentation, normal_force) = self.load_at(contact, angle);
+        let limit = contact.friction * normal_force;
+        let displacement = match self.drive {
+            Drive::Displacement(amplitude) => {
+                let target = elbow.unwrap_or(amplitude * angle.cos());
+                if self.compliance > 0.0 && limit > 0.0 {
+                    self.shared(moving, (indentation, normal_force), target)
+                } else {
+                    DoubleDouble::from(target)
+                }
+            }
+            Drive::Force(amplitude) => {
+                let target = amplitude * angle.cos();
+                if target.abs() >= limit && target.abs() > 0.0 {
+                    return Err(Error::ForceExceedsFriction { target, limit, part: angle / TAU });
+                }
+                moving.unscaled(moving.position_for(indentation, normal_force, target))
+            }
+        };
+        moving.advance(&PathPoint { indentation, normal_force, displacement });
+        Ok(())
+    }
+
+    /// The displacement of the indenter where it and the machine take `target` together, m.
+    fn shared(&self, moving: &Contact, (indentation, normal_force): (DoubleDouble, f64), target: f64) -> DoubleDouble {
+        let limit = moving.friction * normal_force;
+        let at = |force: f64| moving.unscaled(moving.position_for(indentation, normal_force, force));
+        let missing = |force: f64| target - self.compliance * force - at(force).value();
+        // Just inside the limit; beyond it the contact slides.
+        let most = limit * (1.0 - f64::EPSILON);
+        let (mut low, mut high) = (-most, most);
+        let (mut at_low, mut at_high) = (missing(low), missing(high));
+        if at_high >= 0.0 || at_low <= 0.0 {
+            let force = if at_high >= 0.0 { limit } else { -limit };
+            return DoubleDouble::from(target - self.compliance * force);
+        }
+        // False position, with the halved weight of an end that stays.
+        for _ in 0..SHARES {
+            let middle = (low * at_high - high * at_low) / (at_high - at_low);
+            let found = missing(middle);
+            if found.abs() <= 0.0 || high - low <= 4.0 * f64::EPSILON * limit {
+                low = middle;
+                break;
+            }
+            if found > 0.0 {
+                (low, at_low) = (middle, found);
+                at_high *= 0.5;
+            } else {
+                (high, at_high) = (middle, found);
+                at_low *= 0.5;
+            }
+        }
+        at(low)
+    }
+}
