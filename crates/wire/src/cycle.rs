@@ -79,9 +79,9 @@ limits!(OscillatingNormal {
 #[serde(rename_all = "snake_case")]
 pub enum CycleDrive {
     /// Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
-    Displacement(#[schema(inline)] Amplitudes),
+    Displacement(#[schema(value_type = f64)] Amplitudes),
     /// Amplitude of the tangential force, N; below μ F_N.
-    Force(#[schema(inline)] Amplitudes),
+    Force(#[schema(value_type = f64)] Amplitudes),
 }
 single_key!(CycleDrive { "displacement" => Displacement, "force" => Force });
 limits!(enum CycleDrive {
@@ -91,7 +91,7 @@ limits!(enum CycleDrive {
 
 /// One amplitude, or a list of them.
 // Untagged when written. It is read by hand below, so that a fault in the list has its index.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Amplitudes {
     /// One.
@@ -238,11 +238,12 @@ struct Within(Range);
 
 impl Keywords for Within {
     fn keywords(&self) -> Value {
-        let mut list = Numbers(CYCLE_AMPLITUDES, self.0).keywords();
-        list["type"] = json!("array");
-        list["items"]["type"] = json!("number");
-        let one = json!({"type": "number", "minimum": self.0.min, "maximum": self.0.max});
-        json!({"oneOf": [one, list]})
+        // Some keywords are for a number, the others for a list: JSON Schema applies each to its own type.
+        let mut keywords = Numbers(CYCLE_AMPLITUDES, self.0).keywords();
+        keywords["type"] = json!(["number", "array"]);
+        keywords["items"]["type"] = json!("number");
+        (keywords["minimum"], keywords["maximum"]) = (json!(self.0.min), json!(self.0.max));
+        keywords
     }
 }
 
