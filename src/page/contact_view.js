@@ -5,6 +5,7 @@ import { copyButtons } from "./copy_as_code.js";
 import { figureList } from "./create_form.js";
 import { el, notice } from "./dom.js";
 import { moveControl } from "./move_controls.js";
+import { pathCard } from "./path_run.js";
 import { protocolCard } from "./protocol_run.js";
 import { stateText } from "./state_text.js";
 import { studyCards } from "./studies.js";
@@ -124,6 +125,7 @@ export function contactView(model, contact) {
     ),
     el("div", { class: "contact-view" }, side, el("div", { class: "plots" }, ...plots.all.map((plot) => plot.element))),
     protocolCard(model),
+    pathCard(model),
     studyCards(model),
   );
   return {

@@ -121,7 +121,7 @@ pub fn contact(setup: Setup, base: &str) -> Result<Contact, Failure> {
 pub(super) fn spring_foundation(setup: &Setup, plan: &Plan, count: usize) -> Result<Springs, Failure> {
     let start = contact(setup.clone(), "/contact")?;
     // Only what has a normal target reaches further, and the law of equal peaks has none.
-    let moves = moves(plan, start.gross_slip_displacement(), None).map(|step| step.step());
+    let moves = moves(plan, &start, None)?.map(|step| step.step());
     let springs =
         springs::largest_contact_radius(setup, moves).and_then(|reach| Springs::new(setup.clone(), count, reach));
     springs.map_err(refused_at("/contact", setup.preload))
@@ -151,27 +151,44 @@ pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol
     Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
 }
 
-/// The moves of a plan. `gross_slip` is the displacement of gross slip, m, of the contact that will follow them, and
-/// `protocol` the result of [`equal_peaks`] for it.
+/// The moves of a plan for this contact at their beginning; `protocol` is the result of [`equal_peaks`] for it.
+///
+/// # Errors
+/// [`Failure::Refused`] if the load would fall below zero.
 fn moves<'a>(
     plan: &'a Plan,
-    gross_slip: f64,
+    contact: &Contact,
     protocol: Option<&'a Protocol>,
-) -> Box<dyn Iterator<Item = Move> + Send + 'a> {
-    match plan {
+) -> Result<Box<dyn Iterator<Item = Move> + Send + 'a>, Failure> {
+    Ok(match plan {
         Plan::Moves(moves) => Box::new(moves.iter().copied()),
         Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
         Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
         Plan::FallingAmplitude(fall) => {
-            let amplitude = fall.amplitude.unwrap_or(gross_slip);
+            let amplitude = fall.amplitude.unwrap_or_else(|| contact.gross_slip_displacement());
             Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
         }
         Plan::EqualPeaks(_) => {
             let displacements = protocol.into_iter().flat_map(|protocol| &protocol.displacement);
             Box::new(displacements.copied().map(Move::displacement))
         }
+        Plan::Cycles(cycles) => {
+            let moves = cycles.moves(contact.indentation(), contact.normal_force());
+            Box::new(moves.map_err(|error| Failure::Refused { pointer: place(plan, 0, None, &error), error })?)
+        }
         Plan::Single(step) => Box::new(std::iter::once(*step)),
-    }
+    })
+}
+
+/// The pointer to what has led to the refusal of a move of a plan: the move, or the number at fault if the plan has one for it.
+fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Error) -> String {
+    let named = match (plan, error) {
+        (Plan::Cycles(_), mechanics::Error::ForceExceedsFriction { .. }) => Some(Quantity::Force),
+        (Plan::Cycles(_), mechanics::Error::BeyondProfile { .. }) => Some(Quantity::ContactRadius),
+        (Plan::Cycles(_), _) => quantity(error),
+        _ => quantity(error).filter(|quantity| step.is_some_and(|step| step.names(*quantity))),
+    };
+    plan.place_of(index, named)
 }
 
 /// Makes the moves of a plan one after the other, and shows each, and the contact after it, to `each`. `protocol` is what
@@ -187,14 +204,11 @@ pub fn follow<S: Solver>(
     stop: &Stop,
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
-    for (index, step) in moves(plan, solver.gross_slip_displacement(), protocol).enumerate() {
+    for (index, step) in moves(plan, solver.exact(), protocol)?.enumerate() {
         stop.check()?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
             Err(interrupted) => Failure::interrupted(interrupted, &plan.place_of(index, None)),
-            Ok(()) => {
-                let named = quantity(&error).filter(|quantity| step.names(*quantity));
-                Failure::Refused { pointer: plan.place_of(index, named), error }
-            }
+            Ok(()) => Failure::Refused { pointer: place(plan, index, Some(&step), &error), error },
         })?;
         let depth = solver.depth();
         if depth > limits::MEMORY_DEPTH {

@@ -10,8 +10,6 @@ pub trait Solver {
 
     /// The summary of the definition.
     fn summary(&self) -> ContactSummary;
-    /// Displacement of gross slip at the present normal load, m.
-    fn gross_slip_displacement(&self) -> f64;
     /// Makes a move, unless `go_on` ends it; a refused one changes nothing. The tolerance holds where no exact solution
     /// exists.
     ///
@@ -30,7 +28,7 @@ pub trait Solver {
     fn slip(&self, radius: f64) -> Option<f64>;
     /// Tangential displacement of the surface at a radius (m), m.
     fn surface_displacement(&self, radius: f64) -> f64;
-    /// The exact contact, from which the law of equal peaks is computed.
+    /// The exact contact, on which the moves of a path may depend; springs have it as it was before their first move.
     fn exact(&self) -> &Contact;
     /// Contact radius a, m.
     fn contact_radius(&self) -> f64;
@@ -49,10 +47,6 @@ impl Solver for Contact {
 
     fn summary(&self) -> ContactSummary {
         self.initial_summary()
-    }
-
-    fn gross_slip_displacement(&self) -> f64 {
-        self.gross_slip_displacement()
     }
 
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
@@ -113,10 +107,6 @@ impl Solver for Springs {
 
     fn summary(&self) -> ContactSummary {
         self.initial_summary()
-    }
-
-    fn gross_slip_displacement(&self) -> f64 {
-        self.initial_summary().gross_slip_displacement
     }
 
     fn apply(&mut self, step: &Move, _tolerance: f64, _go_on: &dyn Fn() -> bool) -> Result<(), Error> {

@@ -51,10 +51,6 @@ impl Solver for Counting<'_> {
         Solver::summary(&self.contact)
     }
 
-    fn gross_slip_displacement(&self) -> f64 {
-        self.contact.gross_slip_displacement()
-    }
-
     fn apply(&mut self, step: &Move, tolerance: f64, go_on: &dyn Fn() -> bool) -> Result<(), Error> {
         self.count(|calls| &mut calls.moves, 1);
         self.contact.apply_while(step, tolerance, go_on)

@@ -81,6 +81,9 @@ fn cases() -> Vec<Case> {
         "stress": {"points": 3}, "solver": {"springs": {"count": 10}}, "residual": true});
     let mut equal_peaks = simulate.clone();
     equal_peaks["path"] = json!({"equal_peaks": {"reversals": 3}});
+    let mut cycles = simulate.clone();
+    cycles["path"] = json!({"cycles": {"displacement": 1e-7, "count": 3, "points_per_cycle": 4, "mean": 1e-8,
+        "normal": {"normal_force": 1.0, "phase": 90.0}}});
     let accuracy = json!({"contact": contact, "path": simulate["path"], "stress": {"points": 3, "fields": ["shear"]},
         "solvers": ["exact", {"springs": {"count": 10}}, {"springs": {"count": 10}}]});
     let protocol = json!({"contact": contact, "reversals": 3, "robustness": {"samples": 3, "seed": 3}});
@@ -99,6 +102,7 @@ fn cases() -> Vec<Case> {
     vec![
         (faults::<SimulateRequest>, simulate.clone(), SIMULATE),
         (faults::<SimulateRequest>, equal_peaks, &["/path/equal_peaks/reversals", "/stress/points"]),
+        (faults::<SimulateRequest>, cycles, &["/path/cycles/count", "/path/cycles/points_per_cycle", "/stress/points"]),
         (faults::<AccuracyRequest>, accuracy, ACCURACY),
         (faults::<ProtocolRequest>, protocol, &["/reversals", "/robustness/samples", "/robustness/seed"]),
         (faults::<RelaxRequest>, json!({"reversals": 3}), &["/reversals"]),

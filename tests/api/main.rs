@@ -16,6 +16,7 @@ mod compression;
 mod contacts;
 mod contract;
 mod cycle;
+mod cycles_path;
 mod documents;
 mod events;
 mod exposure;

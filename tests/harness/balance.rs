@@ -23,6 +23,7 @@ pub fn check(request: &SimulateRequest, simulation: &Simulation, reply: &Simulat
             .iter()
             .all(|step| step.displacement.is_some() && step.indentation.is_none() && step.normal_force.is_none()),
         Path::Force(_) => false,
+        Path::Cycles(cycles) => cycles.force.is_none() && cycles.normal.is_none(),
         Path::Displacement(_) | Path::FallingAmplitude(_) | Path::EqualPeaks(_) => true,
     };
     if !displaced || reply.accuracy.solver == SolverKind::Springs || reply.contact.indentation <= 0.0 {

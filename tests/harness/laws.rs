@@ -3,7 +3,9 @@
 use serde_json::Value;
 use stickslip::simulation::Failure;
 use stickslip_wire::simulate::Simulation;
-use stickslip_wire::{Move, Path, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps};
+use stickslip_wire::{
+    Document as _, Move, Path, Plan, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps,
+};
 
 use super::{Refusal, balance, run};
 
@@ -194,12 +196,20 @@ fn listed(path: &Path) -> Option<Vec<Move>> {
         Path::Moves(moves) => Some(moves.clone()),
         Path::Displacement(targets) => Some(targets.iter().copied().map(Move::displacement).collect()),
         Path::Force(targets) => Some(targets.iter().copied().map(Move::force).collect()),
-        Path::FallingAmplitude(_) | Path::EqualPeaks(_) => None,
+        Path::FallingAmplitude(_) | Path::EqualPeaks(_) | Path::Cycles(_) => None,
     }
 }
 
 /// The same path as a list of moves.
 fn moves(request: &SimulateRequest, reply: &SimulateReply) -> Vec<Move> {
+    if let Path::Cycles(_) = request.path {
+        // Their targets may be forces, which the states have to the tolerance alone.
+        let Ok(Simulation { plan: Plan::Cycles(cycles), .. }) = request.clone().check() else {
+            panic!("the path of an answered request is sound");
+        };
+        let moves = cycles.moves(reply.contact.indentation, reply.contact.normal_force);
+        return moves.expect("the load presses").collect();
+    }
     let taken = || reply.steps.iter().map(|state| Move::displacement(state.displacement)).collect();
     listed(&request.path).unwrap_or_else(taken)
 }

@@ -40,6 +40,20 @@ pub enum RandomPath {
     Force(Vec<Target>),
     FallingAmplitude(usize, Option<Target>),
     EqualPeaks(usize, Option<f64>),
+    Cycles(RandomCycles),
+}
+
+/// A path of cycles.
+#[derive(Clone, Debug)]
+pub struct RandomCycles {
+    /// Whether the amplitude is a force, and what it is.
+    amplitude: (bool, Target),
+    mean: Option<Target>,
+    count: usize,
+    points: Option<usize>,
+    down: bool,
+    /// The same of the load, and its phase.
+    load: Option<(bool, Target, f64)>,
 }
 
 /// A whole request.
@@ -205,6 +219,17 @@ fn step() -> impl Strategy<Value = RandomMove> {
     })
 }
 
+fn cycles() -> impl Strategy<Value = RandomCycles> {
+    let amplitude = || prop_oneof![8 => (0.0..1.2_f64).prop_map(Target::Scaled), 1 => target()];
+    let points = prop::option::weighted(0.9, prop_oneof![8 => (2..6_usize).prop_map(|half| 2 * half), 1 => 0..9_usize]);
+    let phase = prop_oneof![3 => -360.0..360.0_f64, 2 => select(vec![0.0, 45.0, 90.0, -90.0, 180.0, 361.0])];
+    let load = prop::option::of((any::<bool>(), amplitude(), phase));
+    let mean = prop::option::of(prop_oneof![4 => (-0.5..0.5_f64).prop_map(Target::Scaled), 1 => target()]);
+    ((prop::bool::weighted(0.3), amplitude()), mean, 1..4_usize, points, any::<bool>(), load).prop_map(
+        |(amplitude, mean, count, points, down, load)| RandomCycles { amplitude, mean, count, points, down, load },
+    )
+}
+
 fn path() -> impl Strategy<Value = RandomPath> {
     prop_oneof![
         6 => prop::collection::vec(step(), 1..7).prop_map(RandomPath::Moves),
@@ -213,6 +238,7 @@ fn path() -> impl Strategy<Value = RandomPath> {
         2 => (1..30_usize, prop::option::of(target())).prop_map(|(count, size)| RandomPath::FallingAmplitude(count, size)),
         1 => (1..20_usize, prop::option::of(prop_oneof![4 => 0.0..1.0_f64, 1 => any_magnitude()]))
             .prop_map(|(count, cutoff)| RandomPath::EqualPeaks(count, cutoff)),
+        2 => cycles().prop_map(RandomPath::Cycles),
     ]
 }
 
@@ -308,6 +334,25 @@ impl RandomRequest {
                     equal["cutoff_radius"] = json!(part * radius);
                 }
                 json!({"equal_peaks": equal})
+            }
+            RandomPath::Cycles(RandomCycles { amplitude: (is_force, size), mean, count, points, down, load }) => {
+                let (name, unit) = if *is_force { ("force", force) } else { ("displacement", displacement) };
+                let mut cycles = json!({name: number(*size, unit), "count": count});
+                if let Some(mean) = mean {
+                    cycles["mean"] = json!(number(*mean, unit));
+                }
+                if let Some(points) = points {
+                    cycles["points_per_cycle"] = json!(points);
+                }
+                if *down {
+                    cycles["start"] = json!("down");
+                }
+                if let Some((is_force, size, phase)) = load {
+                    let (name, unit) =
+                        if *is_force { ("normal_force", normal_force) } else { ("indentation", indentation) };
+                    cycles["normal"] = json!({name: number(*size, unit), "phase": phase});
+                }
+                json!({"cycles": cycles})
             }
             RandomPath::Moves(steps) => {
                 let moves = steps.iter().map(|step| {

@@ -225,6 +225,33 @@ async fn a_protocol_run_reduces_the_stress_and_shows_how_much() {
 }
 
 #[tokio::test]
+async fn a_path_of_cycles_runs_from_the_page_and_says_its_work_or_its_fault() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.click("#run-path").await;
+    let status = "document.querySelector('#path-status').innerText";
+    browser.until(&format!("{status}.startsWith('Done')")).await;
+    // Five cycles with the two moves of each, and the first to a turn.
+    let now = server.client.contact(session.id).await.unwrap();
+    assert_eq!(now.sequence, 11);
+    let turn = now.state.displacement / session.contact.gross_slip_displacement;
+    assert!((turn - 0.5).abs() < 1e-3, "{turn}");
+
+    browser.write("#path", r#"{"cycles": {"displacement": 1e-7, "count": 0}}"#).await;
+    browser.click("#run-path").await;
+    browser.until(&format!("{status}.startsWith('/path/cycles/count')")).await;
+    browser.write("#path", "up and down").await;
+    browser.click("#run-path").await;
+    browser.until(&format!("{status}.includes('not JSON')")).await;
+    assert_eq!(server.client.contact(session.id).await.unwrap().sequence, 11);
+    // Chromium logs each refusal.
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
 async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     let server = Binary::start(&[]);
     let session = ball(&server).await;

@@ -3,9 +3,10 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use stickslip_mechanics::profile::{ExactSphere, Tabulated};
+use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle};
+use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Springs, Tangential};
+use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential};
 
 const REVERSALS: usize = 20;
 const RADII: usize = 200;
@@ -95,6 +96,43 @@ fn profiles(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// A thousand steady cycles with three harmonics, from a thousandth of gross slip to twice that, by shape; and a whole
+/// swing under an oscillating load.
+fn cycles(criterion: &mut Criterion) {
+    let radii: Vec<f64> = (0..1_000).map(|index| 3e-4 * f64::from(index) / 999.0).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r).collect();
+    let valid = "valid parameters";
+    let shapes = [
+        ("sphere", setup().profile),
+        ("cone", Profile::Cone(Cone::new(0.05).expect(valid))),
+        ("power 2.7", Profile::PowerLaw(PowerLaw::new(2.7, 1e4).expect(valid))),
+        ("exact sphere", Profile::ExactSphere(ExactSphere::new(0.01).expect(valid))),
+        ("truncated cone", Profile::TruncatedCone(TruncatedCone::new(0.05, 5e-5).expect(valid))),
+        ("rounded punch", Profile::RoundedPunch(RoundedPunch::new(5e-5, 0.01).expect(valid))),
+        ("table of 1000 points", Profile::Tabulated(Tabulated::new(&radii, &heights).expect(valid))),
+    ];
+    let mut group = criterion.benchmark_group("1000 cycles with three harmonics");
+    group.sample_size(10);
+    for (name, profile) in shapes {
+        let contact = Contact::new(Setup { profile, ..setup() }).expect("a valid contact");
+        let full = contact.gross_slip_displacement();
+        let each = |index: i32| {
+            let cycle = SteadyCycle::of(&contact, 2e-3 * f64::from(index) * full);
+            cycle.dissipated_energy() + cycle.harmonics(3).harmonics[2].in_phase
+        };
+        group.bench_function(name, |bencher| bencher.iter(|| (1..=1_000).map(each).sum::<f64>()));
+    }
+    let contact = virgin();
+    let load = OscillatingLoad { amplitude: Normal::NormalForce(2.0), phase: 0.5 };
+    let swing =
+        Oscillation { drive: Drive::Displacement(0.5 * contact.gross_slip_displacement()), load, compliance: 0.0 };
+    for tolerance in [1e-4, 1e-6, 1e-8] {
+        let name = format!("one under an oscillating load, to {tolerance:e}");
+        group.bench_function(name, |bencher| bencher.iter(|| swing.steady(&contact, tolerance, 3, &|| true)));
+    }
+    group.finish();
+}
+
 fn scenes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("20 reversals and 200 radii");
     group.sample_size(20);
@@ -135,5 +173,5 @@ fn stresses(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, moves, profiles, scenes, stresses);
+criterion_group!(benches, moves, profiles, cycles, scenes, stresses);
 criterion_main!(benches);

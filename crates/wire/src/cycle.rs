@@ -79,9 +79,11 @@ limits!(OscillatingNormal {
 #[serde(rename_all = "snake_case")]
 pub enum CycleDrive {
     /// Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
-    Displacement(#[schema(value_type = f64)] Amplitudes),
+    #[schema(value_type = f64)]
+    Displacement(Amplitudes),
     /// Amplitude of the tangential force, N; below μ F_N.
-    Force(#[schema(value_type = f64)] Amplitudes),
+    #[schema(value_type = f64)]
+    Force(Amplitudes),
 }
 single_key!(CycleDrive { "displacement" => Displacement, "force" => Force });
 limits!(enum CycleDrive {

@@ -46,7 +46,7 @@ pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, 
 pub use event::{EndEvent, EndReason, StateEvent};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
-pub use path::{EqualPeaks, FallingAmplitude, Move, Path, Plan};
+pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Path, Plan};
 pub use problem::{Code, ProblemDocument};
 pub use profile::{Profile, SphereProfile};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};

@@ -256,10 +256,10 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, OscillatingNormal, Path,
-        PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest,
-        SweepRequest, WorkDensity,
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective,
+        ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest,
+        NormalOscillation, OscillatingNormal, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
+        SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -269,8 +269,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, OscillatingNormal, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, ForkRequest, Machine, Material, Move, MoveRequest, NormalOscillation, OscillatingNormal, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
         Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity
     }
 }

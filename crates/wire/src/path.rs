@@ -1,5 +1,7 @@
 //! Moves, and paths of moves.
 
+mod cycles;
+
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
@@ -14,6 +16,8 @@ use stickslip_mechanics::{
 use super::check::{Faults, JsonPath};
 use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
 use super::single_key::{not_null, single_key};
+
+pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
 
 /// Reversals of an oscillation that dies away; each is one move, and one more ends the path at zero.
 const REVERSALS: RangeInclusive<usize> = 1..=99_999;
@@ -56,10 +60,12 @@ pub enum Path {
     /// Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the profile of the
     /// contact.
     EqualPeaks(EqualPeaks),
+    /// Equal cycles about a mean, under a constant load or one that oscillates too.
+    Cycles(CyclicPath),
 }
 single_key!(Path {
     "moves" => Moves, "displacement" => Displacement, "force" => Force, "falling_amplitude" => FallingAmplitude,
-    "equal_peaks" => EqualPeaks
+    "equal_peaks" => EqualPeaks, "cycles" => Cycles
 });
 limits!(enum Path {
     Moves "moves": Items(PATH_MOVES),
@@ -120,6 +126,8 @@ pub enum Plan {
     FallingAmplitude(FallingAmplitude),
     /// Equal peaks.
     EqualPeaks(EqualPeaks),
+    /// Equal cycles.
+    Cycles(Cycles),
     /// A single move that is the body itself.
     Single(Move),
 }
@@ -203,23 +211,25 @@ impl Path {
     #[must_use]
     pub fn check(self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
         faults.part(|faults| self.check_members(at, faults))?;
-        faults.part(|faults| match self {
+        let plan = faults.part(|faults| match self {
             Path::Moves(moves) => {
                 let at = at.member("moves");
                 moves.iter().enumerate().for_each(|(index, step)| step.check(at.index(index), faults));
-                Plan::Moves(moves)
+                Some(Plan::Moves(moves))
             }
-            Path::Displacement(targets) => Plan::Displacement(targets),
-            Path::Force(targets) => Plan::Force(targets),
+            Path::Displacement(targets) => Some(Plan::Displacement(targets)),
+            Path::Force(targets) => Some(Plan::Force(targets)),
             Path::FallingAmplitude(fall) => {
                 fall.check_members(at.member("falling_amplitude"), faults);
-                Plan::FallingAmplitude(fall)
+                Some(Plan::FallingAmplitude(fall))
             }
             Path::EqualPeaks(peaks) => {
                 peaks.check_members(at.member("equal_peaks"), faults);
-                Plan::EqualPeaks(peaks)
+                Some(Plan::EqualPeaks(peaks))
             }
-        })
+            Path::Cycles(cycles) => cycles.check(at.member("cycles"), faults).map(Plan::Cycles),
+        });
+        plan.flatten()
     }
 }
 
@@ -232,6 +242,7 @@ impl Plan {
             Plan::Displacement(targets) | Plan::Force(targets) => targets.len(),
             Plan::FallingAmplitude(fall) => fall.reversals.saturating_add(1),
             Plan::EqualPeaks(peaks) => peaks.reversals.saturating_add(1),
+            Plan::Cycles(cycles) => cycles.length(),
             Plan::Single(_) => 1,
         }
     }
@@ -241,8 +252,13 @@ impl Plan {
     pub fn curved(&self) -> usize {
         match self {
             Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
+            Plan::Cycles(cycles) if cycles.is_curved() => cycles.length(),
             Plan::Single(step) => usize::from(step.is_curved()),
-            Plan::Displacement(_) | Plan::Force(_) | Plan::FallingAmplitude(_) | Plan::EqualPeaks(_) => 0,
+            Plan::Displacement(_)
+            | Plan::Force(_)
+            | Plan::FallingAmplitude(_)
+            | Plan::EqualPeaks(_)
+            | Plan::Cycles(_) => 0,
         }
     }
 
@@ -257,6 +273,7 @@ impl Plan {
             Plan::FallingAmplitude(_) => "/path/falling_amplitude".to_owned(),
             Plan::EqualPeaks(_) if quantity == Some(Quantity::CutoffRadius) => format!("/path/equal_peaks{member}"),
             Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
+            Plan::Cycles(cycles) => format!("/path/cycles{}", cycles.place_of(quantity)),
             Plan::Single(_) => member,
         }
     }

@@ -89,6 +89,8 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
         "description": "One that names a contact."}}});
     let nowhere = json!({"not": {"anyOf": [have(&["contact"]), named]}});
     let protocol = json!([aims[0], aims[1], nowhere]);
+    let one_of = |names: &[&str]| json!([have(names), none(names)]);
+    let (cycles, oscillation) = (one_of(&targets[..2]), one_of(&targets[2..]));
     for (schema, wrong) in [
         ("Move", &step),
         ("MoveRequest", &step),
@@ -97,17 +99,20 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
         ("OscillatingNormal", &normals),
         ("RelaxRequest", &aims),
         ("ProtocolRequest", &protocol),
+        ("CyclicPath", &cycles),
+        ("NormalOscillation", &oscillation),
     ] {
         schemas[schema]["not"] = json!({"anyOf": wrong});
     }
 }
 
-/// Quantities that are either zero or not too small.
+/// Quantities that are either zero or not too small, and counts that are even.
 fn write_gaps(schemas: &mut Map<String, Value>) {
     let gap = |least: f64| json!({"exclusiveMinimum": 0, "exclusiveMaximum": least});
     for schema in ["ContactDefinition", "CreateRequest"] {
         schemas[schema]["properties"]["friction"]["not"] = gap(range::MIN_POSITIVE_FRICTION);
     }
+    schemas["CyclicPath"]["properties"]["points_per_cycle"]["multipleOf"] = json!(2);
     for choice in schemas["Preload"]["oneOf"].as_array_mut().into_iter().flatten() {
         if let Some(force) = choice["properties"].get_mut("normal_force") {
             force["not"] = gap(range::MIN_POSITIVE_NORMAL_FORCE);
