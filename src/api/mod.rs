@@ -35,7 +35,9 @@ use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use middleware::{access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
-use resources::{accuracy, contacts, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, page};
+use resources::{
+    accuracy, contacts, cycle, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, page,
+};
 use resources::{protocols, simulate, stress, sweep};
 
 pub use problem::Problem;
@@ -113,6 +115,7 @@ fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
         .routes(routes!(simulate::simulate_path))
         .routes(routes!(accuracy::compare_solvers))
         .routes(routes!(protocols::find_protocol))
+        .routes(routes!(cycle::compute_steady_cycle))
         .routes(routes!(sweep::run_sweep))
         .routes(routes!(jobs::get_job, jobs::cancel_job))
         .routes(routes!(jobs::get_job_result))
@@ -125,6 +128,7 @@ fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
         .routes(routes!(moves::follow_path))
         .routes(routes!(moves::relax_contact))
         .routes(routes!(stress::get_stress))
+        .routes(routes!(cycle::get_steady_cycle))
         .routes(routes!(history::get_history))
         .routes(routes!(hysteresis_loop::get_loop))
         .routes(routes!(cycles::get_cycles))

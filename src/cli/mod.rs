@@ -2,6 +2,7 @@
 
 mod backup;
 mod check;
+mod cycle;
 mod healthcheck;
 mod io;
 mod key;
@@ -55,6 +56,11 @@ enum Command {
     },
     /// Find a protocol that leaves little shear stress, and print the reply of POST /protocols.
     Protocol(Protocol),
+    /// Run the body of POST /cycle from a file and print the reply.
+    Cycle {
+        /// The file, or - for standard input.
+        file: PathBuf,
+    },
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -107,6 +113,7 @@ impl Command {
             Command::Config(_) => print(settings),
             Command::Simulate { file } => simulate(&file),
             Command::Protocol(protocol) => protocol.run(),
+            Command::Cycle { file } => cycle::cycle(&file),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),

@@ -8,9 +8,10 @@ use uuid::Uuid;
 use crate::admission::{Nanoseconds, Reservation};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
-use crate::simulation::{self, stresses};
+use crate::simulation::{self, Timer, stresses};
 use stickslip_mechanics::Contact;
-use stickslip_wire::{HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::{CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
 
 use super::loaded::table_points;
 use super::{SessionError, Sessions, written};
@@ -63,14 +64,7 @@ impl Sessions {
         write: impl FnOnce(&StressReply, &Contact, u64) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        // The lock is held for a copy alone, so that the session can move on meanwhile.
-        let (contact, sequence, held) = {
-            let mut guard = self.lock(id).await?;
-            let live = self.current(&mut guard).await?;
-            let bytes = live.contact.memory_bytes() + cost::bytes_of_stress(sampling.length());
-            let held = self.common.pool.reserve(bytes + more).await?;
-            (live.contact.clone(), live.session.sequence, held)
-        };
+        let (contact, sequence, held) = self.copy(id, cost::bytes_of_stress(sampling.length()) + more).await?;
         let looking = Work { depth: contact.memory_depth(), radii: sampling.length(), residual, ..Work::default() };
         let cost = looking.cost(contact.profile()).saturating_add(longer);
         let work = move || {
@@ -88,6 +82,38 @@ impl Sessions {
             Ok::<_, SessionError>(write(&reply, &contact, sequence))
         };
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
+    }
+
+    /// The reply that `write` makes of the steady cycles of a session at its present load, as [`Sessions::stress`].
+    ///
+    /// # Errors
+    /// As [`Sessions::stress`], and a force of μ F_N or more.
+    pub async fn cycle<T: Send + 'static>(
+        &self,
+        id: Uuid,
+        task: CycleTask,
+        (more, longer): (usize, Nanoseconds),
+        write: impl FnOnce(&CycleReply, &Contact, &CycleTask) -> T + Send + 'static,
+    ) -> Result<(u64, T, Reservation), SessionError> {
+        let (stop, _guard) = self.common.pool.deadline();
+        let (contact, sequence, held) = self.copy(id, cost::bytes_of_cycle(&task) + more).await?;
+        let cost = cost::of_cycle(contact.profile(), &task).saturating_add(longer);
+        let work = move || {
+            let contact = contact.without_history();
+            let solve = || simulation::cycle(&contact, &task, Timer::start(), &stop);
+            let reply = otlp::part!("solve").in_scope(solve)?;
+            Ok::<_, SessionError>(write(&reply, &contact, &task))
+        };
+        Ok((sequence, self.common.pool.run(cost, work).await??, held))
+    }
+
+    /// A copy of the contact with its sequence, and memory for it and for so many bytes more. The lock is held for the copy
+    /// alone, so that the session can move on meanwhile.
+    async fn copy(&self, id: Uuid, more: usize) -> Result<(Contact, u64, Reservation), SessionError> {
+        let mut guard = self.lock(id).await?;
+        let live = self.current(&mut guard).await?;
+        let held = self.common.pool.reserve(live.contact.memory_bytes() + more).await?;
+        Ok((live.contact.clone(), live.session.sequence, held))
     }
 
     /// A page of sessions, oldest first.

@@ -8,6 +8,7 @@
 
 use crate::admission::Nanoseconds;
 use stickslip_mechanics::Profile;
+use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::protocol::{Aim, ProtocolTask};
 use stickslip_wire::session::Advance;
 use stickslip_wire::simulate::Simulation;
@@ -29,6 +30,12 @@ const SPHERE_PIECE_COST: u64 = 2;
 const RADIUS_COST: u64 = 200;
 /// The search for extrema on a shape with knots, at the least.
 const SEARCH_COST: u64 = 1_000_000;
+/// One steady cycle with its row as JSON.
+const CYCLE_COST: u64 = 2_000;
+/// The harmonics of one cycle: some ten panels of twenty nodes.
+const HARMONICS_COST: u64 = 20_000;
+/// One cycle under a load that oscillates, which is stepped.
+const STEPPED_CYCLE_COST: u64 = 5_000_000;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -58,6 +65,12 @@ const POINT_BYTES: usize = 1_280;
 pub const WRITTEN_POINT_BYTES: usize = 128;
 /// One spring.
 const SPRING_BYTES: usize = 64;
+/// One steady cycle as numbers, and as JSON in a text that grows by doubling.
+const CYCLE_BYTES: usize = 1_536;
+/// One harmonic, likewise.
+const HARMONIC_BYTES: usize = 256;
+/// The friction work per area at one radius, likewise.
+const DENSITY_BYTES: usize = 128;
 /// A number as JSON, with its comma.
 const NUMBER_LENGTH: usize = 24;
 /// A state as JSON.
@@ -252,4 +265,32 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
         + 2 * bytes_of_stress(comparison.sampling.length())
         + bytes_of_shape(&comparison.definition.profile)
         + comparison.springs().max().unwrap_or(0) * SPRING_BYTES
+}
+
+/// The cost of steady cycles.
+#[must_use]
+pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
+    let harmonics = if task.harmonics > 0 { HARMONICS_COST } else { 0 };
+    let stepped = if task.normal.is_some() { STEPPED_CYCLE_COST } else { 0 };
+    // Some four hundred loads are compared, and the harmonics of a thousand amplitudes and of each root.
+    let searched = task.best_load.map_or(0, |study| 400 + study.points.unwrap_or(0) as u64) * CYCLE_COST;
+    let each = CYCLE_COST + stepped + harmonics + searched + task.radii() as u64 * RADIUS_COST;
+    let swept = task.response.as_ref().map_or(0, |asked| asked.frequencies.as_ref().map_or(200, Vec::len));
+    let response = if swept > 0 { HARMONICS_COST.saturating_mul(1_000 + 60 * swept as u64) } else { 0 };
+    on_profile(profile, each.saturating_mul(task.drives().len() as u64).saturating_add(response), false)
+}
+
+/// Bytes that steady cycles take, with their reply.
+#[must_use]
+pub fn bytes_of_cycle(task: &CycleTask) -> usize {
+    let curve = task.best_load.map_or(0, |study| study.points.unwrap_or(0));
+    let swept = task.response.as_ref().map_or(0, |asked| asked.frequencies.as_ref().map_or(200, Vec::len));
+    task.drives().len() * (CYCLE_BYTES + task.harmonics * HARMONIC_BYTES + (task.radii() + curve) * DENSITY_BYTES)
+        + swept * CYCLE_BYTES
+}
+
+/// Bytes of a row of a table of steady cycles in the longest of the formats.
+#[must_use]
+pub fn cycle_row(task: &CycleTask) -> usize {
+    STATE_LENGTH + 2 * task.harmonics * 2 * NUMBER_LENGTH
 }

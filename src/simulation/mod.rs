@@ -6,6 +6,8 @@
 
 mod compare_solvers;
 pub mod cost;
+mod cycle;
+mod cycle_studies;
 mod protocol;
 mod reply_template;
 mod run;
@@ -16,6 +18,7 @@ mod tests;
 mod warnings;
 
 pub use compare_solvers::compare_solvers;
+pub use cycle::{cycle, cycle_of};
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;

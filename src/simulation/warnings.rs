@@ -52,7 +52,13 @@ pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: 
     found
 }
 
-fn warnings_at(contact: &Contact, contact_radius: f64, indentation: f64, excess_error: Option<f64>) -> Vec<Warning> {
+/// The warnings for a contact at another radius, m, and indentation, m.
+pub(super) fn warnings_at(
+    contact: &Contact,
+    contact_radius: f64,
+    indentation: f64,
+    excess_error: Option<f64>,
+) -> Vec<Warning> {
     let (profile, elasticity) = (contact.profile(), contact.elasticity());
     let (e_star, noise) = (elasticity.e_star(), profile.noise(contact_radius));
     warnings(profile, &elasticity, &Observed { contact_radius, e_star, indentation, noise, excess_error })

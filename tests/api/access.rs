@@ -25,6 +25,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("GET", "/jobs/{id}/events", "", 200, &["read", "write"]),
     ("POST", "/simulate", "simulation", 200, &["read", "write"]),
     ("POST", "/protocols", "protocol", 200, &["read", "write"]),
+    ("POST", "/cycle", "cycle", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
@@ -35,6 +36,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/contacts/{id}/path", "path", 200, &["write"]),
     ("POST", "/contacts/{id}/relax", "relax", 200, &["write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
+    ("GET", "/contacts/{id}/cycle", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/loop", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/cycles", "", 200, &["read", "write"]),
@@ -51,6 +53,7 @@ fn body(name: &str) -> Option<Value> {
     match name {
         "simulation" => Some(json!({"contact": ball(), "path": {"force": [1.0]}})),
         "protocol" => Some(json!({"contact": ball(), "reversals": 2, "kind": "linear"})),
+        "cycle" => Some(json!({"contact": ball(), "drive": {"force": 1.0}})),
         "relax" => Some(json!({"reversals": 2})),
         "ball" => Some(ball()),
         "move" => Some(json!({"displacement": 1e-8})),
@@ -147,6 +150,12 @@ fn operations() -> BTreeSet<(String, String)> {
     paths.iter().flat_map(|(path, item)| methods(item).into_iter().map(|method| (method, path.clone()))).collect()
 }
 
+/// A path with the parameters that it cannot do without.
+fn with_query(method: &str, path: &str) -> String {
+    let path = path.replace("/stress", "/stress?points=3");
+    if method == "GET" { path.replace("/cycle", "/cycle?displacement=1e-8") } else { path }
+}
+
 #[tokio::test]
 async fn every_role_has_its_permissions_at_every_endpoint() {
     let described = operations();
@@ -170,7 +179,7 @@ async fn every_role_has_its_permissions_at_every_endpoint() {
                 Some(_) => std::slice::from_ref(who.as_ref().unwrap()),
             };
             let path = route.replace("{id}", &server.subject(route).await).replace("{code}", "forbidden");
-            let path = path.replace("/stress", "/stress?points=3");
+            let path = with_query(method, &path);
             let response = server.send(who, method, &path, body(body_name).as_ref(), &[]).await;
             let expected = match who {
                 _ if allowed.is_empty() || roles.iter().any(|role| allowed.contains(role)) => success,
@@ -190,7 +199,7 @@ async fn every_role_has_its_permissions_at_every_endpoint() {
         // HEAD is as GET.
         if method == "GET" && allowed == ["read", "write"] {
             let path = route.replace("{id}", &server.subject(route).await);
-            let path = path.replace("/stress", "/stress?points=3");
+            let path = with_query(method, &path);
             for (who, expected) in [(None, 401), (Some("metrics"), 403), (Some("read"), 200)] {
                 assert_eq!(server.send(who, "HEAD", &path, None, &[]).await.status().as_u16(), expected, "{path}");
             }
@@ -304,7 +313,7 @@ async fn what_belongs_to_another_tenant_does_not_exist() {
         for who in ["south", "nameless"] {
             for (method, route, body, headers) in attempts() {
                 let about = async |id: Uuid| {
-                    let path = route.replace("{id}", &id.to_string()).replace("/stress", "/stress?points=3");
+                    let path = with_query(method, &route.replace("{id}", &id.to_string()));
                     seen(server.send(Some(who), method, &path, body.as_ref(), &headers).await, id).await
                 };
                 let (theirs, missing) = (about(id).await, about(nobody).await);

@@ -175,6 +175,54 @@ async fn cycles_are_the_same_in_every_format() {
 }
 
 #[tokio::test]
+async fn steady_cycles_are_the_same_in_every_format() {
+    let (server, contact) = moved().await;
+    // Without a force there is no loss, and beyond gross slip more than one regime.
+    let path = format!("{contact}/cycle?displacement=0,1e-7,1e-6&machine_stiffness=2e7&harmonics=3");
+    let reply: Value = server.get(&path).await.json().await.unwrap();
+    let names = [
+        "displacement_amplitude",
+        "force_amplitude",
+        "machine_amplitude",
+        "dissipated_energy",
+        "max_elastic_energy",
+        "secant_stiffness",
+        "tangent_stiffness",
+        "loss_factor",
+        "sliding_ratio",
+        "stick_radius",
+        "regime",
+        "in_phase_1",
+        "quadrature_1",
+        "in_phase_2",
+        "quadrature_2",
+        "in_phase_3",
+        "quadrature_3",
+    ];
+    let value = |cycle: &Value, name: &str| match name.rsplit_once('_') {
+        Some((part @ ("in_phase" | "quadrature"), order)) => {
+            cycle["harmonics"][order.parse::<usize>().unwrap() - 1][part].clone()
+        }
+        _ => cycle[name].clone(),
+    };
+    let rows: Vec<Vec<Value>> = reply["cycles"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|cycle| names.iter().map(|name| value(cycle, name)).collect())
+        .collect();
+    assert_eq!(rows.len(), 3);
+    hold(&server, &path, &names, &rows).await;
+    for amplitudes in ["1e-7", "1e-7,2e-7"] {
+        let plot = server.get(&format!("{contact}/cycle?displacement={amplitudes}&format=svg")).await;
+        assert_eq!(header(&plot, "content-type"), "image/svg+xml");
+        let text = plot.text().await.unwrap();
+        assert_eq!(text.contains("loss factor"), amplitudes.contains(','), "{amplitudes}");
+        assert_eq!(text.contains("tangential force F"), !amplitudes.contains(','), "{amplitudes}");
+    }
+}
+
+#[tokio::test]
 async fn accept_chooses_and_the_query_outweighs_it() {
     let (server, contact) = moved().await;
     let path = format!("{contact}/{STRESS}");

@@ -15,6 +15,7 @@ mod bad_input;
 mod compression;
 mod contacts;
 mod contract;
+mod cycle;
 mod cycles;
 mod cycles_path;
 mod documents;

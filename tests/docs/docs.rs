@@ -14,7 +14,9 @@ fn page(name: &str) -> String {
 #[tokio::test(flavor = "multi_thread")]
 async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
-    for (name, blocks) in [("simulate.md", 3), ("contacts.md", 5), ("gallery.md", 1), ("errors.md", 1)] {
+    for (name, blocks) in
+        [("simulate.md", 3), ("cycles.md", 1), ("contacts.md", 5), ("gallery.md", 1), ("errors.md", 1)]
+    {
         let text = page(name);
         let found: Vec<&str> = text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
         assert_eq!(found.len(), blocks, "{name}");
@@ -31,9 +33,16 @@ async fn every_command_of_the_pages_runs_as_printed() {
 
 #[test]
 fn every_link_between_the_pages_leads_somewhere() {
-    for name in
-        ["simulate.md", "contacts.md", "dashboards.md", "limits.md", "gallery.md", "errors.md", "verification.md"]
-    {
+    for name in [
+        "simulate.md",
+        "cycles.md",
+        "contacts.md",
+        "dashboards.md",
+        "limits.md",
+        "gallery.md",
+        "errors.md",
+        "verification.md",
+    ] {
         let text = page(name);
         let targets = text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap());
         for target in targets.filter(|target| !target.starts_with("http")) {

@@ -115,6 +115,30 @@ impl Contact {
         }
     }
 
+    /// The same contact at its present normal load, as if it had never been moved.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.01))?;
+    /// let rested = contact.clone().without_history();
+    /// assert_eq!((rested.force(), rested.memory_depth()), (0.0, 1));
+    /// assert_eq!(rested.summary(), contact.summary());
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn without_history(self) -> Contact {
+        let (initial, edge) = (self.summary(), self.history.edge().level);
+        Contact {
+            history: SlipHistory::new(&self.profile, edge),
+            displacement: DoubleDouble::ZERO,
+            dissipated: DoubleDouble::ZERO,
+            initial,
+            path_error: 0.0,
+            path_kernel: 0.0,
+            ..self
+        }
+    }
+
     /// The virgin contact of the same bodies under another normal force, N.
     ///
     /// # Errors

@@ -52,6 +52,8 @@ quantities! {
     Indentation = "indentation", "Indentation.";
     Displacement = "displacement", "Tangential displacement of the indenter.";
     Force = "force", "Tangential force.";
+    MachineStiffness = "stiffness", "Stiffness of a machine in series with the contact.";
+    Phase = "phase", "Phase of the normal load of a cycle.";
     SpringCount = "count", "Number of springs of the foundation.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";

@@ -66,6 +66,8 @@ pub const INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m
 pub const DISPLACEMENT: Range = Range { quantity: Quantity::Displacement, unit: "m", min: -1e9, max: 1e9 };
 /// A tangential force.
 pub const FORCE: Range = Range { quantity: Quantity::Force, unit: "N", min: -1e20, max: 1e20 };
+/// The stiffness of a machine in series with the contact.
+pub const MACHINE_STIFFNESS: Range = Range { quantity: Quantity::MachineStiffness, unit: "N/m", min: 1e-9, max: 1e30 };
 /// How many springs the foundation may have.
 pub const SPRING_COUNT: Range = Range { quantity: Quantity::SpringCount, unit: "", min: 2.0, max: 1e6 };
 

@@ -10,10 +10,11 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use crate::{
-    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CyclePage, EndEvent, EndReason, ForkRequest,
-    HistoryPage, JobReply, LoopPage, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument,
-    ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply,
-    SimulateRequest, StateEvent, StressReply, StressRequest, SweepReply, SweepRequest,
+    AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
+    EndEvent, EndReason, ForkRequest, HistoryPage, JobReply, LoopPage, Machine, MoveReply, MoveRequest, NewSession,
+    PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage,
+    SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest, SweepReply, SweepRequest,
+    WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
@@ -111,6 +112,11 @@ impl Client {
         json(self.call(Method::POST, "/accuracy").json(request)).await
     }
 
+    /// `POST /cycle`.
+    pub async fn cycle(&self, request: &CycleRequest) -> Result<CycleReply, Error> {
+        json(self.call(Method::POST, "/cycle").json(request)).await
+    }
+
     /// `POST /contacts`.
     pub async fn create(&self, request: &CreateRequest, options: &Options) -> Result<NewSession, Error> {
         self.post("/contacts", request, options).await
@@ -158,6 +164,23 @@ impl Client {
         let call = self.call(Method::GET, &format!("/contacts/{id}/stress"));
         let call = call.query(&[("points", request.points)]).query(&[("radii", radii), ("fields", fields)]);
         json(call.query(&[("residual", residual)])).await
+    }
+
+    /// `GET /contacts/{id}/cycle`: the steady cycles of the contact at its present load.
+    pub async fn contact_cycle(
+        &self,
+        id: Uuid,
+        drive: &CycleDrive,
+        machine: Option<Machine>,
+        harmonics: Option<usize>,
+        density: &WorkDensity,
+    ) -> Result<CycleReply, Error> {
+        let exact = |values: &[f64]| listed(values.iter().map(|value| format!("{value:e}")));
+        let stiffness = machine.map(|machine| format!("{:e}", machine.stiffness));
+        let call = self.call(Method::GET, &format!("/contacts/{id}/cycle"));
+        let call = call.query(&[(drive.name(), exact(drive.amplitudes().all()))]);
+        let call = call.query(&[("machine_stiffness", stiffness), ("radii", density.radii.as_deref().map(exact))]);
+        json(call.query(&[("harmonics", harmonics), ("points", density.points)])).await
     }
 
     /// `GET /contacts/{id}/history`: a page, beyond the `next` of the page before.

@@ -16,6 +16,7 @@
 pub mod accuracy;
 pub mod check;
 pub mod client;
+pub mod closed_cycle;
 pub mod cycle;
 pub mod definition;
 pub mod event;
@@ -38,7 +39,11 @@ pub mod sweep;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
 pub use check::{Fault, Faults, JsonPath};
-pub use cycle::{Cycle, CyclePage};
+pub use closed_cycle::{Cycle, CyclePage};
+pub use cycle::{
+    Amplitudes, BestLoad, BestLoadStudy, CycleDrive, CycleReply, CycleRequest, FrequencyResponse, FrictionWork,
+    Harmonic, LoadCurve, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
+};
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};

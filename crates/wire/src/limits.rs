@@ -19,6 +19,18 @@ pub const PROTOCOL_REVERSALS: RangeInclusive<usize> = 1..=200;
 pub const STRESS_POINTS: RangeInclusive<usize> = 2..=10_000;
 /// Points of a hysteresis loop per move.
 pub const LOOP_POINTS: RangeInclusive<usize> = 1..=100;
+/// Amplitudes of the steady cycles of one request.
+pub const CYCLE_AMPLITUDES: RangeInclusive<usize> = 1..=10_000;
+/// Amplitudes times radii at which the friction work per area is asked for.
+pub const CYCLE_RADII: usize = 200_000;
+/// Amplitudes for which the best load is sought.
+pub const BEST_LOADS: RangeInclusive<usize> = 1..=100;
+/// Loads of the curve about it.
+pub const CURVE_POINTS: RangeInclusive<usize> = 2..=1_000;
+/// Frequencies of the response of a mass.
+pub const FREQUENCIES: RangeInclusive<usize> = 1..=1_000;
+/// Harmonics of a steady cycle.
+pub const HARMONICS: RangeInclusive<usize> = 1..=31;
 /// Cycles in a reply.
 pub const CYCLES: RangeInclusive<usize> = 1..=1_000;
 /// Radii at which the search for extrema evaluates the spring foundation.
@@ -219,7 +231,7 @@ macro_rules! limits {
         impl $document {
             /// Notes which of its own members are out of their limits.
             #[allow(dead_code, reason = "a document that is taken apart on the way checks its members one by one")]
-            fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
+            pub(super) fn check_members(&self, at: $crate::check::JsonPath<'_>, faults: &mut $crate::check::Faults) {
                 $($crate::limits::Limit::check(&$limit, &self.$member, at.member(stringify!($member)), faults);)*
             }
         }
@@ -252,9 +264,10 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CyclicPath, Effective, ElasticBody, EqualPeaks,
-        FallingAmplitude, ForkRequest, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload,
-        ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SweepRequest,
+        AccuracyRequest, Axis, BestLoadStudy, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath,
+        Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine, Material, Move,
+        MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest,
+        Span, Springs, StressRequest, SweepRequest, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -264,8 +277,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, ContactDefinition, CreateRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude,
-        ForkRequest, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
-        Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest
+        AccuracyRequest, Axis, BestLoadStudy, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity
     }
 }

@@ -182,15 +182,21 @@ impl From<mechanics::State> for State {
             normal_force: state.normal_force,
             contact_radius: state.contact_radius,
             stick_radius: state.stick_radius,
-            regime: match state.regime {
-                mechanics::Regime::Stick => Regime::Stick,
-                mechanics::Regime::PartialSlip => Regime::PartialSlip,
-                mechanics::Regime::GrossSlip => Regime::GrossSlip,
-                mechanics::Regime::Separated => Regime::Separated,
-            },
+            regime: state.regime.into(),
             dissipated_energy: state.dissipated_energy,
             elastic_energy: state.elastic_energy,
             memory_depth: state.memory_depth,
+        }
+    }
+}
+
+impl From<mechanics::Regime> for Regime {
+    fn from(regime: mechanics::Regime) -> Regime {
+        match regime {
+            mechanics::Regime::Stick => Regime::Stick,
+            mechanics::Regime::PartialSlip => Regime::PartialSlip,
+            mechanics::Regime::GrossSlip => Regime::GrossSlip,
+            mechanics::Regime::Separated => Regime::Separated,
         }
     }
 }

@@ -2,9 +2,13 @@
 
 use uuid::Uuid;
 
-use stickslip_mechanics::{Contact, Regime};
+use stickslip_mechanics::{Contact, Move, Regime, Tangential};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot};
-use stickslip_wire::{Cycle, CyclePage, HistoryPage, LoopPage, State, StressReply};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::{Cycle, CyclePage, CycleReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply};
+
+/// Points of each branch of a steady loop.
+const BRANCH_POINTS: usize = 200;
 
 /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
 #[must_use]
@@ -101,6 +105,51 @@ pub fn cycles(id: Uuid, page: &CyclePage) -> Plot {
             panel("friction work", "J", Colour::Red, |cycle| cycle.dissipated_energy),
             panel("secant stiffness", "N/m", Colour::Blue, |cycle| cycle.secant_stiffness.unwrap_or(f64::NAN)),
         ],
+        bands: Vec::new(),
+    }
+}
+
+/// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load. `contact` is at the load of
+/// the cycles and has no history.
+#[must_use]
+pub fn cycle(contact: &Contact, reply: &CycleReply, task: &CycleTask) -> Plot {
+    if let ([only], None) = (&reply.cycles[..], task.normal) {
+        return steady_loop(contact, only);
+    }
+    let panel = |name, unit, colour, of: fn(&SteadyCycle) -> f64| {
+        let mut points: Vec<_> = reply.cycles.iter().map(|cycle| (cycle.displacement_amplitude, of(cycle))).collect();
+        points.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Panel { y: Axis { name, unit }, curves: vec![Curve { name: "", points, colour, silent: true }] }
+    };
+    Plot {
+        title: "Steady cycles".to_owned(),
+        x: Axis { name: "displacement amplitude U₀", unit: Some("m") },
+        panels: vec![
+            panel("loss factor", None, Colour::Red, |cycle| cycle.loss_factor.unwrap_or(f64::NAN)),
+            panel("secant stiffness", Some("N/m"), Colour::Blue, |cycle| cycle.secant_stiffness),
+        ],
+        bands: Vec::new(),
+    }
+}
+
+/// The loop of a steady cycle, followed from its upper end.
+fn steady_loop(contact: &Contact, cycle: &SteadyCycle) -> Plot {
+    let mut contact = contact.clone();
+    let mut at = |share: f64| {
+        let displacement = share * cycle.displacement_amplitude;
+        let step = Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
+        (displacement, contact.apply(&step).map_or(f64::NAN, |()| contact.force()))
+    };
+    let down = (0..=BRANCH_POINTS).map(|index| 1.0 - 2.0 * index as f64 / BRANCH_POINTS as f64);
+    let up = down.clone().map(|share| -share);
+    let points = down.chain(up).map(&mut at).collect();
+    Plot {
+        title: format!("Steady cycle of {:.4e} J", cycle.dissipated_energy),
+        x: Axis { name: "displacement U", unit: Some("m") },
+        panels: vec![Panel {
+            y: Axis { name: "tangential force F", unit: Some("N") },
+            curves: vec![Curve { name: "", points, colour: Colour::Blue, silent: true }],
+        }],
         bands: Vec::new(),
     }
 }

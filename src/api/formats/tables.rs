@@ -1,12 +1,15 @@
-//! The tables of a contact's stress, history, loop and cycles, and of a sweep.
+//! The tables of a contact's stress, history and loop, and of a sweep.
 
 use std::sync::Arc;
 
 use serde_json::Number;
 
 use crate::simulation::SweepResult;
+use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::sweep::{CheckedSweep, indices};
-use stickslip_wire::{Cycle, CyclePage, Field, HistoryPage, LoopPage, State, StressReply};
+use stickslip_wire::{
+    Cycle, CyclePage, CycleReply, Field, Harmonic, HistoryPage, LoopPage, State, SteadyCycle, StressReply,
+};
 
 use super::table::{Cells, Column, Table};
 
@@ -83,6 +86,40 @@ pub fn cycles(page: &CyclePage) -> Table<'_> {
         value("sliding_ratio", "1", |cycle| cycle.sliding_ratio.unwrap_or(f64::NAN)),
     ];
     flat(items.len(), columns)
+}
+
+/// Steady cycles: a row for each amplitude.
+#[must_use]
+pub fn cycle<'a>(reply: &'a CycleReply, task: &CycleTask) -> Table<'a> {
+    let cycles = &reply.cycles;
+    let column = |name, unit, of: fn(&SteadyCycle) -> f64| Column::floats(name, unit, move |row| of(&cycles[row]));
+    let maybe = |number: Option<f64>| number.unwrap_or(f64::NAN);
+    let mut columns = vec![
+        column("displacement_amplitude", "m", |cycle| cycle.displacement_amplitude),
+        column("force_amplitude", "N", |cycle| cycle.force_amplitude),
+        column("dissipated_energy", "J", |cycle| cycle.dissipated_energy),
+        column("max_elastic_energy", "J", |cycle| cycle.max_elastic_energy),
+        column("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
+        column("tangent_stiffness", "N/m", |cycle| cycle.tangent_stiffness),
+        Column::floats("loss_factor", "1", move |row| maybe(cycles[row].loss_factor)),
+        Column::floats("sliding_ratio", "1", move |row| maybe(cycles[row].sliding_ratio)),
+        column("stick_radius", "m", |cycle| cycle.stick_radius),
+        Column::new("regime", Some(""), Cells::Words(Box::new(|row| cycles[row].regime.name()))),
+    ];
+    if task.stiffness.is_some() {
+        let amplitude = Column::floats("machine_amplitude", "m", move |row| maybe(cycles[row].machine_amplitude));
+        columns.insert(2, amplitude);
+    }
+    let unit = if task.is_force_driven() { "m" } else { "N" };
+    for index in 0..task.harmonics {
+        let part = |of: fn(&Harmonic) -> f64| {
+            move |row: usize| maybe(cycles[row].harmonics.as_deref().and_then(|all| all.get(index)).map(of))
+        };
+        let order = index + 1;
+        columns.push(Column::floats(&format!("in_phase_{order}"), unit, part(|harmonic| harmonic.in_phase)));
+        columns.push(Column::floats(&format!("quadrature_{order}"), unit, part(|harmonic| harmonic.quadrature)));
+    }
+    flat(cycles.len(), columns)
 }
 
 /// The table of a sweep: a row for each point, with the values of its axes and its outputs.

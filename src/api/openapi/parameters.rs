@@ -45,20 +45,29 @@ fn write_parameter(parameter: &mut Value) {
             schema["maxLength"] = json!(KEY_LENGTH);
             schema["pattern"] = json!("^[!-~]+$");
         }
-        "radii" => {
-            let (least, most) = (range::CONTACT_RADIUS.min, range::CONTACT_RADIUS.max);
-            *schema = json!({"type": "array", "items": {"type": "number", "minimum": least, "maximum": most},
-                "minItems": QUERY_RADII.start(), "maxItems": QUERY_RADII.end()});
+        "radii" => *schema = numbers(range::CONTACT_RADIUS.min, range::CONTACT_RADIUS.max),
+        "displacement" => *schema = numbers(0.0, range::DISPLACEMENT.max),
+        "force" => *schema = numbers(0.0, range::FORCE.max),
+        "machine_stiffness" => {
+            schema["minimum"] = json!(range::MACHINE_STIFFNESS.min);
+            schema["maximum"] = json!(range::MACHINE_STIFFNESS.max);
         }
+        "harmonics" => set_range(schema, &limits::HARMONICS),
         "fields" => {
             *schema = json!({"type": "array", "items": {"$ref": "#/components/schemas/Field"}, "minItems": 1});
         }
         _ => {}
     }
-    if matches!(name.as_str(), "radii" | "fields") {
+    if matches!(name.as_str(), "radii" | "displacement" | "force" | "fields") {
         parameter["style"] = json!("form");
         parameter["explode"] = json!(false);
     }
+}
+
+/// A list of numbers in a query.
+fn numbers(least: f64, most: f64) -> Value {
+    json!({"type": "array", "items": {"type": "number", "minimum": least, "maximum": most},
+        "minItems": QUERY_RADII.start(), "maxItems": QUERY_RADII.end()})
 }
 
 fn set_range(schema: &mut Value, range: &std::ops::RangeInclusive<usize>) {

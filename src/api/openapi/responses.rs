@@ -19,11 +19,16 @@ pub fn write(document: &mut Value) {
         match (method, path) {
             (
                 "get",
-                "/contacts/{id}/stress" | "/contacts/{id}/history" | "/contacts/{id}/loop" | "/contacts/{id}/cycles",
+                "/contacts/{id}/stress"
+                | "/contacts/{id}/history"
+                | "/contacts/{id}/loop"
+                | "/contacts/{id}/cycles"
+                | "/contacts/{id}/cycle",
             ) => {
                 write_formats(operation, &Format::ALL);
                 write_conditional(operation, true);
             }
+            ("post", "/cycle") => write_formats(operation, &Format::ALL),
             ("get", "/contacts/{id}") => write_conditional(operation, false),
             ("post", "/sweep") | ("get", "/jobs/{id}/result") => write_formats(operation, &Format::TABLES),
             ("get", "/contacts/{id}/events") => write_events(operation),

@@ -93,6 +93,7 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
         ("Move", &step),
         ("MoveRequest", &step),
         ("StressRequest", &places),
+        ("WorkDensity", &places),
         ("RelaxRequest", &aims),
         ("ProtocolRequest", &protocol),
         ("CyclicPath", &cycles),

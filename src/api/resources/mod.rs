@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod contacts;
+pub mod cycle;
 pub mod cycles;
 pub mod events;
 pub mod history;

@@ -8,7 +8,9 @@ use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
 
 use stickslip_mechanics::{
-    Error, range,
+    Error, Normal,
+    cycle::OscillatingLoad,
+    range,
     range::{Quantity, Range},
 };
 
@@ -73,8 +75,7 @@ pub enum FirstTurn {
     Down,
 }
 
-/// An oscillation of the load: its value at the beginning of the path + amplitude cos(2π t + phase), with the t of the cycles, from
-/// 0 to n. Exactly one of `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact; those
+/// An oscillation of the load: its value at the beginning + amplitude cos(2π t + phase), with the t of the cycles. Exactly one of `normal_force` and `indentation`, the amplitude. Moves in displacement and indentation are exact; those
 /// with a force are followed to the tolerance.
 #[skip_serializing_none]
 #[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
@@ -82,7 +83,7 @@ pub enum FirstTurn {
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"indentation": 1e-8, "phase": 90.0}))]
 pub struct NormalOscillation {
-    /// Amplitude of the normal force, N, at most the normal force at the beginning of the path.
+    /// Amplitude of the normal force, N, at most the normal force at the beginning.
     pub normal_force: Option<f64>,
     /// Amplitude of the indentation, m. Below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64>,
@@ -159,6 +160,13 @@ impl NormalOscillation {
         let normal = [(Quantity::Indentation, self.indentation), (Quantity::NormalForce, self.normal_force)];
         let (normal, amplitude) = one_amplitude(normal, at, faults)?;
         Some(Load { normal, amplitude, phase: self.phase.unwrap_or(0.0) / 360.0 })
+    }
+
+    /// The same for the mechanics.
+    pub(crate) fn swing(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<OscillatingLoad> {
+        let Load { normal, amplitude, phase } = self.check(at, faults)?;
+        let kind = if normal == Quantity::Indentation { Normal::Indentation } else { Normal::NormalForce };
+        Some(OscillatingLoad { amplitude: kind(amplitude), phase: phase * TAU })
     }
 }
 

@@ -1,0 +1,377 @@
+//! The body of `POST /cycle`, the parameters of `GET /contacts/{id}/cycle`, and their reply.
+
+mod reply;
+mod studies;
+
+pub use reply::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
+pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
+
+use std::fmt;
+
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Value, json};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::{
+    Setup,
+    cycle::{self, OscillatingLoad},
+    range::{self, Range},
+};
+
+use crate::check::{Faults, JsonPath};
+use crate::definition::ContactDefinition;
+use crate::limits::{
+    BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, Tolerance, limits,
+};
+use crate::parse::{Document, Rejection};
+use crate::path::NormalOscillation;
+use crate::single_key::{not_null, single_key};
+use crate::stress::{Points, StressRequest};
+
+/// What cycles under a load that oscillates are held to if the request does not say: steps cost, and what is left falls
+/// with a low power of them.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
+
+/// A contact that is moved back and forth for so long that every cycle is as the one before; the server keeps nothing of it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "contact": ContactDefinition::example(),
+    "drive": {"displacement": [5e-8, 1e-7, 2e-7]},
+    "harmonics": 3
+}))]
+pub struct CycleRequest {
+    /// The contact.
+    pub contact: ContactDefinition,
+    /// What is prescribed as a cosine, and its amplitudes.
+    pub drive: CycleDrive,
+    /// A machine in series with the contact: a displacement amplitude is then that of the machine.
+    pub machine: Option<Machine>,
+    /// Ask for the harmonics from the first to this one.
+    pub harmonics: Option<usize>,
+    /// Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not under a load that oscillates.
+    pub work_density: Option<WorkDensity>,
+    /// The normal load oscillates too, about that of the contact.
+    pub normal: Option<NormalOscillation>,
+    /// Tolerance of cycles under a load that oscillates, relative to μ F_N and to the work of that force, a pure number.
+    pub tolerance: Option<f64>,
+    /// Ask for the oscillations of a mass that hangs on the contact and is driven by a force.
+    pub frequency_response: Option<FrequencyResponse>,
+    /// Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes.
+    pub best_load: Option<BestLoadStudy>,
+}
+limits!(CycleRequest { harmonics: HARMONICS, tolerance: CycleTolerance });
+
+/// What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CycleDrive {
+    /// Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
+    #[schema(value_type = f64)]
+    Displacement(Amplitudes),
+    /// Amplitude of the tangential force, N; below μ F_N.
+    #[schema(value_type = f64)]
+    Force(Amplitudes),
+}
+single_key!(CycleDrive { "displacement" => Displacement, "force" => Force });
+limits!(enum CycleDrive {
+    Displacement "displacement": Within(Range { min: 0.0, ..range::DISPLACEMENT }),
+    Force "force": Within(Range { min: 0.0, ..range::FORCE }),
+});
+
+/// One amplitude, or a list of them.
+// Untagged when written. It is read by hand below, so that a fault in the list has its index.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Amplitudes {
+    /// One.
+    One(f64),
+    /// A list.
+    Many(Vec<f64>),
+}
+
+/// A machine in series with the contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// Its stiffness, N/m.
+    pub stiffness: f64,
+}
+limits!(Machine { stiffness: range::MACHINE_STIFFNESS });
+
+/// Where the friction work per area is asked for: exactly one of `points` and `radii`.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WorkDensity {
+    /// Number of radii, evenly spaced from the centre to the edge of the contact, both included.
+    pub points: Option<usize>,
+    /// Radii, m; outside the contact there is no work.
+    pub radii: Option<Vec<f64>>,
+}
+limits!(WorkDensity and StressRequest);
+
+/// The range of a tolerance, with the default of cycles.
+struct CycleTolerance;
+
+impl Keywords for CycleTolerance {
+    fn keywords(&self) -> Value {
+        let mut keywords = Tolerance.keywords();
+        keywords["default"] = json!(DEFAULT_TOLERANCE);
+        keywords
+    }
+}
+
+impl Limit<f64> for CycleTolerance {
+    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        Tolerance.check(value, at, faults);
+    }
+}
+
+/// The limits of amplitudes.
+struct Within(Range);
+
+impl Keywords for Within {
+    fn keywords(&self) -> Value {
+        // Some keywords are for a number, the others for a list: JSON Schema applies each to its own type.
+        let mut keywords = Numbers(CYCLE_AMPLITUDES, self.0).keywords();
+        keywords["type"] = json!(["number", "array"]);
+        keywords["items"]["type"] = json!("number");
+        (keywords["minimum"], keywords["maximum"]) = (json!(self.0.min), json!(self.0.max));
+        keywords
+    }
+}
+
+impl Limit<Amplitudes> for Within {
+    fn check(&self, value: &Amplitudes, at: JsonPath<'_>, faults: &mut Faults) {
+        match value {
+            Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),
+            Amplitudes::Many(amplitudes) => Numbers(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Amplitudes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(AmplitudesVisitor)
+    }
+}
+
+struct AmplitudesVisitor;
+
+impl<'de> Visitor<'de> for AmplitudesVisitor {
+    type Value = Amplitudes;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or an array of numbers")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Amplitudes, E> {
+        Ok(Amplitudes::One(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Amplitudes, E> {
+        Ok(Amplitudes::One(value as f64))
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Amplitudes, E> {
+        Ok(Amplitudes::One(value as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Amplitudes, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = elements.next_element()? {
+            values.push(value);
+        }
+        Ok(Amplitudes::Many(values))
+    }
+}
+
+impl Amplitudes {
+    /// The amplitudes.
+    #[must_use]
+    pub fn all(&self) -> &[f64] {
+        match self {
+            Amplitudes::One(amplitude) => std::slice::from_ref(amplitude),
+            Amplitudes::Many(amplitudes) => amplitudes,
+        }
+    }
+}
+
+impl CycleDrive {
+    /// Its amplitudes.
+    #[must_use]
+    pub fn amplitudes(&self) -> &Amplitudes {
+        match self {
+            CycleDrive::Displacement(amplitudes) | CycleDrive::Force(amplitudes) => amplitudes,
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            CycleDrive::Displacement(_) => "displacement",
+            CycleDrive::Force(_) => "force",
+        }
+    }
+}
+
+/// What is asked of a contact, before the check.
+pub struct CycleOptions {
+    /// The drive.
+    pub drive: CycleDrive,
+    /// The stiffness of the machine, N/m, if there is one.
+    pub stiffness: Option<f64>,
+    /// The number of harmonics, if they are asked for.
+    pub harmonics: Option<usize>,
+    /// Where the friction work per area is asked for.
+    pub density: Option<WorkDensity>,
+}
+
+/// Where the options are in a request, as JSON pointers.
+#[derive(Clone, Copy, Debug)]
+pub struct CyclePlaces {
+    drive: &'static str,
+    stiffness: &'static str,
+    density: &'static str,
+}
+
+impl CyclePlaces {
+    /// In the body of `POST /cycle`.
+    pub const BODY: CyclePlaces =
+        CyclePlaces { drive: "/drive", stiffness: "/machine/stiffness", density: "/work_density" };
+    /// In a query.
+    pub const QUERY: CyclePlaces = CyclePlaces { drive: "", stiffness: "/machine_stiffness", density: "" };
+}
+
+/// Checked options.
+#[derive(Clone, Debug)]
+pub struct CycleTask {
+    drive: CycleDrive,
+    /// The stiffness of the machine, N/m, if there is one.
+    pub stiffness: Option<f64>,
+    /// The number of harmonics; zero if none are asked for.
+    pub harmonics: usize,
+    /// Where the friction work per area is asked for.
+    pub density: Option<Points>,
+    /// A load that oscillates, with the tolerance.
+    pub normal: Option<(OscillatingLoad, f64)>,
+    /// A mass on the contact.
+    pub response: Option<FrequencyResponse>,
+    /// The best load of each amplitude.
+    pub best_load: Option<BestLoadStudy>,
+    places: CyclePlaces,
+}
+
+impl CycleOptions {
+    /// The checked options; their faults are noted where `places` says.
+    pub fn check(self, places: CyclePlaces, faults: &mut Faults) -> Option<CycleTask> {
+        let CycleOptions { drive, stiffness, harmonics, density } = self;
+        drive.check_members(JsonPath::Pointer(places.drive), faults);
+        Limit::check(&range::MACHINE_STIFFNESS, &stiffness, JsonPath::Pointer(places.stiffness), faults);
+        Limit::check(&HARMONICS, &harmonics, JsonPath::Root.member("harmonics"), faults);
+        let at = JsonPath::Pointer(places.density);
+        let density = match density {
+            None => None,
+            Some(WorkDensity { points, radii }) => {
+                Some(StressRequest { points, radii, fields: None }.check(at, faults)?.points)
+            }
+        };
+        let (count, radii) = (drive.amplitudes().all().len(), density.as_ref().map_or(0, Points::length));
+        if count.saturating_mul(radii) > CYCLE_RADII {
+            faults.add(
+                at,
+                format_args!("{radii} radii at each of {count} amplitudes: allowed are {CYCLE_RADII} radii in all"),
+            );
+        }
+        Some(CycleTask {
+            drive,
+            stiffness,
+            harmonics: harmonics.unwrap_or(0),
+            density,
+            normal: None,
+            response: None,
+            best_load: None,
+            places,
+        })
+    }
+}
+
+impl CycleTask {
+    /// The drives, one for each cycle.
+    pub fn drives(&self) -> impl ExactSizeIterator<Item = cycle::Drive> + '_ {
+        let drive = match self.drive {
+            CycleDrive::Displacement(_) => cycle::Drive::Displacement,
+            CycleDrive::Force(_) => cycle::Drive::Force,
+        };
+        self.drive.amplitudes().all().iter().copied().map(drive)
+    }
+
+    /// The JSON pointer to the amplitude of this index.
+    #[must_use]
+    pub fn place_of(&self, index: usize) -> String {
+        let (base, name) = (self.places.drive, self.drive.name());
+        match self.drive.amplitudes() {
+            Amplitudes::One(_) => format!("{base}/{name}"),
+            Amplitudes::Many(_) => format!("{base}/{name}/{index}"),
+        }
+    }
+
+    /// Whether the force is driven.
+    #[must_use]
+    pub fn is_force_driven(&self) -> bool {
+        matches!(self.drive, CycleDrive::Force(_))
+    }
+
+    /// How many radii there are for each cycle.
+    #[must_use]
+    pub fn radii(&self) -> usize {
+        self.density.as_ref().map_or(0, Points::length)
+    }
+}
+
+impl Document for CycleRequest {
+    type Checked = (ContactDefinition, Setup, CycleTask);
+
+    fn check(self) -> Result<Self::Checked, Rejection> {
+        let mut faults = Faults::default();
+        let CycleRequest { contact, drive, machine, harmonics, work_density, normal, tolerance, .. } = self;
+        let (response, best_load) = (self.frequency_response, self.best_load);
+        let setup = contact.check(JsonPath::Root.member("contact"), &mut faults);
+        let stiffness = machine.map(|machine| machine.stiffness);
+        let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
+        let task = options.check(CyclePlaces::BODY, &mut faults);
+        let at = |name| JsonPath::Root.member(name);
+        Limit::check(&CycleTolerance, &tolerance, at("tolerance"), &mut faults);
+        let load = normal.and_then(|normal| normal.swing(at("normal"), &mut faults));
+        if let Some(response) = &response {
+            response.check_members(at("frequency_response"), &mut faults);
+        }
+        if let Some(best) = &best_load {
+            best.check_members(at("best_load"), &mut faults);
+            if task.as_ref().is_some_and(|task| task.drives().len() > *BEST_LOADS.end()) {
+                faults.add(at("best_load"), format_args!("too many amplitudes: allowed are {}", BEST_LOADS.end()));
+            }
+        }
+        let constant = [
+            ("work_density", task.as_ref().is_some_and(|task| task.radii() > 0)),
+            ("frequency_response", response.is_some()),
+            ("best_load", best_load.is_some()),
+        ];
+        for (name, _) in constant.into_iter().filter(|(_, asked)| *asked && normal.is_some()) {
+            faults.add(at(name), "not under a load that oscillates: leave this or `normal` out");
+        }
+        if response.is_some() && stiffness.is_some() {
+            faults.add(at("frequency_response"), "the mass hangs on the contact alone: leave this or `machine` out");
+        }
+        let normal = load.map(|load| (load, tolerance.unwrap_or(DEFAULT_TOLERANCE)));
+        let task = task.map(|task| CycleTask { normal, response, best_load, ..task });
+        faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))
+    }
+}

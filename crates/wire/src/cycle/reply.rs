@@ -1,0 +1,89 @@
+//! The reply of `POST /cycle` and `GET /contacts/{id}/cycle`.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::{BestLoad, Resonance};
+use crate::reply::{Accuracy, ContactSummary, Regime, Warning};
+
+/// Steady cycles, one for each amplitude.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CycleReply {
+    /// The contact at its load.
+    pub contact: ContactSummary,
+    /// The cycles, in the order of the amplitudes.
+    pub cycles: Vec<SteadyCycle>,
+    /// The oscillations of a mass on the contact, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub frequency_response: Option<Resonance>,
+    /// Solver, errors and time. `force_error` is that of the harmonics too, relative to the amplitude of the answer.
+    pub accuracy: Accuracy,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+
+/// One steady cycle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SteadyCycle {
+    /// Amplitude of the displacement of the indenter, m.
+    pub displacement_amplitude: f64,
+    /// Amplitude of the tangential force, N.
+    pub force_amplitude: f64,
+    /// Amplitude of the displacement at the machine, m; with `machine` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub machine_amplitude: Option<f64>,
+    /// Friction work of a cycle, J.
+    pub dissipated_energy: f64,
+    /// The largest elastic energy of the tangential deformation in a cycle, J.
+    pub max_elastic_energy: f64,
+    /// Force amplitude over displacement amplitude of the indenter, N/m; at the amplitude zero the tangent stiffness.
+    pub secant_stiffness: f64,
+    /// Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction.
+    pub tangent_stiffness: f64,
+    /// Dissipated energy over 2π times the largest elastic energy, a pure number; `null` where the indenter slides and
+    /// nothing is stored, as without friction and without load.
+    pub loss_factor: Option<f64>,
+    /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where it moves and there is no
+    /// force, as without friction and without load.
+    pub sliding_ratio: Option<f64>,
+    /// Radius of the part that never slips, m; zero in gross slip.
+    pub stick_radius: f64,
+    /// How much of the contact slips.
+    pub regime: Regime,
+    /// The harmonics, if asked for: of the force, N, where the displacement is driven, and of the displacement of the
+    /// indenter, m, where the force is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub harmonics: Option<Vec<Harmonic>>,
+    /// The friction work per area, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub friction_work: Option<FrictionWork>,
+    /// The load under which this amplitude does most friction work, if asked for and if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub best_load: Option<BestLoad>,
+}
+
+/// One harmonic of the answer to a drive that is a cosine.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Harmonic {
+    /// 1 for the fundamental. Even ones vanish at constant load.
+    pub order: usize,
+    /// Amplitude of the cosine, in the unit of the answer.
+    pub in_phase: f64,
+    /// Amplitude of the sine, in the unit of the answer: at the fundamental at most zero for a force, at least zero for a
+    /// displacement.
+    pub quadrature: f64,
+}
+
+/// Friction work of a cycle per area, along the radius.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FrictionWork {
+    /// Radii, m.
+    pub radius: Vec<f64>,
+    /// Friction work per area, J/m²; `null` where it is infinite.
+    pub density: Vec<Option<f64>>,
+}

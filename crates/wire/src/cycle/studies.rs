@@ -1,0 +1,87 @@
+//! What steady cycles are asked for beside themselves: a mass on the contact, and the load that damps most.
+
+use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::range::{self, Quantity, Range};
+
+use crate::limits::{CURVE_POINTS, FREQUENCIES, Numbers, limits};
+use crate::single_key::not_null;
+
+/// A mass that hangs on the contact alone, and a force on it that is a cosine of the time.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"mass": 0.1, "drive_force": 0.5}))]
+pub struct FrequencyResponse {
+    /// The mass, kg.
+    pub mass: f64,
+    /// Amplitude of the force on it, N.
+    pub drive_force: f64,
+    /// Frequencies, Hz; left out, 200 from 0.3 to 1.5 of that of small oscillations.
+    pub frequencies: Option<Vec<f64>>,
+}
+limits!(FrequencyResponse {
+    mass: Range { quantity: Quantity::Number, unit: "kg", min: 1e-15, max: 1e15 },
+    drive_force: Range { min: 1e-15, max: 1e15, ..range::FORCE },
+    frequencies: Numbers(FREQUENCIES, Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 }),
+});
+
+/// A search for the load that damps most.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"points": 50}))]
+pub struct BestLoadStudy {
+    /// Ask for the work at so many loads too, evenly spaced up to three times the best.
+    pub points: Option<usize>,
+}
+limits!(BestLoadStudy { points: CURVE_POINTS });
+
+/// Steady oscillations of a mass on the contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Resonance {
+    /// Frequency of small oscillations, Hz.
+    pub natural_frequency: f64,
+    /// All oscillations that harmonic balance finds, up to three at a frequency: by frequency, the smallest amplitude first.
+    pub points: Vec<ResonancePoint>,
+}
+
+/// One steady oscillation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResonancePoint {
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Amplitude of the displacement, m.
+    pub amplitude: f64,
+    /// By how much the displacement lags behind the force, degrees.
+    pub phase: f64,
+    /// Third harmonic of the contact's force over the first, a pure number: what harmonic balance leaves out.
+    pub third_harmonic: f64,
+}
+
+/// The load under which a drive does most friction work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct BestLoad {
+    /// Normal force, N.
+    pub normal_force: f64,
+    /// Friction work of a cycle under it, J.
+    pub dissipated_energy: f64,
+    /// The work at other loads, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub curve: Option<LoadCurve>,
+}
+
+/// Friction work over the load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LoadCurve {
+    /// Normal forces, N.
+    pub normal_force: Vec<f64>,
+    /// Friction work of a cycle, J; `null` under loads that do not hold the driven force, or that the profile has no
+    /// contact for.
+    pub dissipated_energy: Vec<Option<f64>>,
+}

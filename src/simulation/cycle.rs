@@ -1,0 +1,161 @@
+//! Steady cycles of a contact at its present load, one for each amplitude.
+
+use std::f64::consts::TAU;
+
+use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
+use stickslip_mechanics::{Contact, Error, Move, Normal, Setup, Tangential};
+use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::reply::finite;
+use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
+
+use super::Failure;
+use super::cycle_studies::{best_load, resonance};
+use super::run::{Timer, accuracy, contact};
+use super::warnings::{excess_error, warnings_at};
+use crate::admission::Stop;
+
+/// Radii between two checks of the flag: each time the contact is copied and turned.
+const RADII_PER_CHECK: usize = 512;
+
+const REASON: &str = "a steady cycle at constant load follows from the load curve alone";
+const REASON_STEPPED: &str =
+    "a cycle under a load that oscillates is stepped with the exact slip history, to the tolerance";
+
+/// The contact of a definition, and its steady cycles.
+///
+/// # Errors
+/// As [`cycle`], and [`Failure::Refused`] for a preload that cannot be reached.
+pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
+    let timer = Timer::start();
+    let contact = contact(setup, "/contact")?;
+    let reply = cycle(&contact, task, timer, stop)?;
+    Ok((contact, reply))
+}
+
+/// The steady cycles of a contact at its present load, which has no history.
+///
+/// # Errors
+/// [`Failure::Refused`] for a force of μ F_N or more, [`Failure`] if the work was ended.
+pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> Result<CycleReply, Failure> {
+    let radii = task.density.as_ref().map(|points| points.radii(contact.contact_radius()));
+    let mut cycles = Vec::with_capacity(task.drives().len());
+    // The largest cycle shows the error of the forces.
+    let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+    for (index, drive) in task.drives().enumerate() {
+        stop.check()?;
+        if let Some((load, tolerance)) = task.normal {
+            let swing = Oscillation { drive, load, compliance: compliance(task) };
+            let found = swing.steady(contact, tolerance, task.harmonics, &|| stop.check().is_ok());
+            let found = found.map_err(|error| match stop.check() {
+                Err(interrupted) => Failure::interrupted(interrupted, &task.place_of(index)),
+                Ok(()) => Failure::Refused { pointer: place_of_refused(&error, &load, task, index), error },
+            })?;
+            error = error.max(found.error);
+            largest = largest.max(found.displacement_amplitude);
+            cycles.push(stepped(found, task));
+            continue;
+        }
+        let found = cycle::SteadyCycle::driven(contact, drive, compliance(task))
+            .map_err(|error| Failure::Refused { pointer: task.place_of(index), error })?;
+        largest = largest.max(found.displacement_amplitude());
+        let mut row = row(&found, task.stiffness.is_some());
+        if task.harmonics > 0 {
+            let harmonics = found.harmonics(task.harmonics);
+            error = error.max(harmonics.error);
+            row.harmonics = Some(harmonics.harmonics.into_iter().map(harmonic).collect());
+        }
+        row.best_load = task
+            .best_load
+            .and_then(|study| best_load(contact, (drive, compliance(task)), study, stop).transpose())
+            .transpose()?;
+        row.friction_work = radii.as_deref().map(|radii| friction_work(&found, radii, stop)).transpose()?;
+        cycles.push(row);
+    }
+    let (reason, missed) = match task.normal {
+        Some((_, tolerance)) => (REASON_STEPPED, excess_error(error, tolerance, 1)),
+        None => (REASON, None),
+    };
+    let mut turned = contact.clone();
+    let step = Move { tangential: Some(Tangential::Displacement(largest)), ..Move::default() };
+    // A displacement within its range is always reached.
+    let estimated = turned.apply(&step).map_or(contact, |()| &turned);
+    let mut accuracy = accuracy(estimated, timer, reason);
+    accuracy.force_error = accuracy.force_error.max(error);
+    let warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
+    let frequency_response = task.response.as_ref().map(|asked| resonance(contact, asked, stop)).transpose()?;
+    Ok(CycleReply { contact: contact.summary().into(), cycles, frequency_response, accuracy, warnings })
+}
+
+/// Compliance of the machine, m/N.
+fn compliance(task: &CycleTask) -> f64 {
+    task.stiffness.map_or(0.0, f64::recip)
+}
+
+/// The member that a cycle under a load that oscillates is refused for: the drive, or the load.
+fn place_of_refused(error: &Error, load: &OscillatingLoad, task: &CycleTask, index: usize) -> String {
+    match (error, load.amplitude) {
+        (Error::ForceExceedsFriction { .. }, _) => task.place_of(index),
+        (_, Normal::NormalForce(_)) => "/normal/normal_force".to_owned(),
+        (_, Normal::Indentation(_)) => "/normal/indentation".to_owned(),
+    }
+}
+
+/// The row of a cycle under a load that oscillates.
+fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
+    let moves = cycle.displacement_amplitude > 0.0;
+    let stored = cycle.max_elastic_energy;
+    let loss = if stored > 0.0 { cycle.dissipated_energy / (TAU * stored) } else { f64::NAN };
+    SteadyCycle {
+        displacement_amplitude: cycle.displacement_amplitude,
+        force_amplitude: cycle.force_amplitude,
+        machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
+        dissipated_energy: cycle.dissipated_energy,
+        max_elastic_energy: stored,
+        secant_stiffness: if moves {
+            cycle.force_amplitude / cycle.displacement_amplitude
+        } else {
+            cycle.tangent_stiffness
+        },
+        tangent_stiffness: cycle.tangent_stiffness,
+        loss_factor: finite(if moves { loss } else { 0.0 }),
+        sliding_ratio: if moves { cycle.sliding_ratio.and_then(finite) } else { Some(0.0) },
+        stick_radius: cycle.stick_radius,
+        regime: cycle.regime.into(),
+        harmonics: (task.harmonics > 0).then(|| cycle.harmonics.into_iter().map(harmonic).collect()),
+        friction_work: None,
+        best_load: None,
+    }
+}
+
+fn row(cycle: &cycle::SteadyCycle<'_>, with_machine: bool) -> SteadyCycle {
+    SteadyCycle {
+        displacement_amplitude: cycle.displacement_amplitude(),
+        force_amplitude: cycle.force_amplitude(),
+        machine_amplitude: with_machine.then(|| cycle.machine_amplitude()),
+        dissipated_energy: cycle.dissipated_energy(),
+        max_elastic_energy: cycle.max_elastic_energy(),
+        secant_stiffness: cycle.secant_stiffness(),
+        tangent_stiffness: cycle.tangent_stiffness(),
+        loss_factor: cycle.loss_factor().and_then(finite),
+        sliding_ratio: cycle.sliding_ratio().and_then(finite),
+        stick_radius: cycle.stick_radius(),
+        regime: cycle.regime().into(),
+        harmonics: None,
+        friction_work: None,
+        best_load: None,
+    }
+}
+
+fn harmonic(harmonic: cycle::Harmonic) -> Harmonic {
+    let cycle::Harmonic { order, in_phase, quadrature } = harmonic;
+    Harmonic { order, in_phase, quadrature }
+}
+
+fn friction_work(cycle: &cycle::SteadyCycle<'_>, radii: &[f64], stop: &Stop) -> Result<FrictionWork, Failure> {
+    let mut density = Vec::with_capacity(radii.len());
+    for some in radii.chunks(RADII_PER_CHECK) {
+        stop.check()?;
+        density.extend(cycle.friction_work(some).into_iter().map(finite));
+    }
+    Ok(FrictionWork { radius: radii.to_vec(), density })
+}

@@ -1,0 +1,58 @@
+//! What is asked for beside steady cycles: the load that damps most, and the response of a mass.
+
+use stickslip_mechanics::Contact;
+use stickslip_mechanics::cycle::{Drive, Resonator, SteadyCycle, best_load as best_of};
+use stickslip_wire::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
+
+use super::Failure;
+use crate::admission::Stop;
+
+/// Frequencies where none are named, and the first and the last of them over that of small oscillations.
+const FREQUENCIES: usize = 200;
+const SWEPT: [f64; 2] = [0.3, 1.5];
+/// The largest load of a curve over the best.
+const CURVE_END: f64 = 3.0;
+
+/// The load under which a drive, through a machine of this compliance, m/N, does most friction work; `None` if no load
+/// does any, or the profile has no contact for any that could.
+pub fn best_load(
+    contact: &Contact,
+    (drive, compliance): (Drive, f64),
+    study: BestLoadStudy,
+    stop: &Stop,
+) -> Result<Option<BestLoad>, Failure> {
+    stop.check()?;
+    let Ok(Some(best)) = best_of(contact, drive, compliance) else { return Ok(None) };
+    let curve = study.points.map(|points| {
+        let normal_force: Vec<f64> =
+            (1..=points).map(|index| CURVE_END * best.normal_force * index as f64 / points as f64).collect();
+        let work = |&load: &f64| {
+            let pressed = contact.pressed(load).ok()?;
+            SteadyCycle::driven(&pressed, drive, compliance).ok().map(|cycle| cycle.dissipated_energy())
+        };
+        LoadCurve { dissipated_energy: normal_force.iter().map(work).collect(), normal_force }
+    });
+    Ok(Some(BestLoad { normal_force: best.normal_force, dissipated_energy: best.dissipated_energy, curve }))
+}
+
+/// The oscillations of a mass on the contact.
+pub fn resonance(contact: &Contact, asked: &FrequencyResponse, stop: &Stop) -> Result<Resonance, Failure> {
+    let body = Resonator { mass: asked.mass, drive_force: asked.drive_force };
+    let natural_frequency = body.natural_frequency(contact);
+    let frequencies = asked.frequencies.clone().unwrap_or_else(|| {
+        let [from, to] = SWEPT.map(|share| share * natural_frequency);
+        let at = |index: usize| from + (to - from) * index as f64 / (FREQUENCIES - 1) as f64;
+        (0..FREQUENCIES).map(at).filter(|frequency| *frequency > 0.0).collect()
+    });
+    let Some(found) = body.respond(contact, &frequencies, &|| stop.check().is_ok()) else {
+        stop.check()?;
+        return Err(Failure::Stopped);
+    };
+    let point = |found: stickslip_mechanics::cycle::Response| ResonancePoint {
+        frequency: found.frequency,
+        amplitude: found.amplitude,
+        phase: found.phase.to_degrees(),
+        third_harmonic: found.third_harmonic,
+    };
+    Ok(Resonance { natural_frequency, points: found.into_iter().map(point).collect() })
+}
