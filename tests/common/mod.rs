@@ -115,10 +115,15 @@ pub struct Binary {
 }
 
 impl Binary {
-    /// Starts it on a free port, and waits until it listens. The log goes to standard error.
+    /// Starts it on a free port over a store in memory, and waits until it listens. The log goes to standard error.
     pub fn start(arguments: &[&str]) -> Binary {
+        Binary::over("memory:", arguments)
+    }
+
+    /// The same over another store.
+    pub fn over(store: &str, arguments: &[&str]) -> Binary {
         let mut child = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")))
-            .args(["--listen", "127.0.0.1:0", "--store", "memory:"])
+            .args(["--listen", "127.0.0.1:0", "--store", store])
             .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
