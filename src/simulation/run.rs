@@ -145,9 +145,9 @@ fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Fail
 /// [`Failure::Refused`] for a cut-off radius that the contact does not allow.
 pub fn equal_peaks<S: Solver>(plan: &Plan, solver: &S) -> Result<Option<Protocol>, Failure> {
     let Plan::EqualPeaks(peaks) = plan else { return Ok(None) };
-    let protocol::EqualPeaks { displacements, cutoff_radius } =
-        protocol::equal_peaks(solver.exact(), peaks.reversals, peaks.cutoff_radius)
-            .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })?;
+    let protocol::EqualPeaks { displacements, cutoff_radius } = solver
+        .equal_peaks(peaks.reversals, peaks.cutoff_radius)
+        .map_err(|error| Failure::Refused { pointer: plan.place_of(0, quantity(&error)), error })?;
     Ok(Some(Protocol { displacement: displacements, cutoff_radius }))
 }
 

@@ -1,5 +1,6 @@
 //! The interface that the exact solver and the spring foundation share.
 
+use stickslip_mechanics::protocol::{self, EqualPeaks};
 use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, Springs, State};
 use stickslip_wire::SolverKind;
 
@@ -30,6 +31,10 @@ pub trait Solver {
     fn surface_displacement(&self, radius: f64) -> f64;
     /// The exact contact, on which the moves of a path may depend; springs have it as it was before their first move.
     fn exact(&self) -> &Contact;
+    /// The path of equal peaks for the exact contact; an error for a cut-off radius that it does not allow.
+    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
+        protocol::equal_peaks(self.exact(), reversals, cutoff_radius)
+    }
     /// Contact radius a, m.
     fn contact_radius(&self) -> f64;
     /// The extrema of the shear stress, if `go_on` has not ended the search for them.

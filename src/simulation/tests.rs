@@ -5,6 +5,7 @@
 use std::cell::Cell;
 
 use serde_json::{Value, json};
+use stickslip_mechanics::protocol::{EqualPeaks, equal_peaks};
 use stickslip_mechanics::{Contact, ContactSummary, Error, ErrorEstimate, Move, Residual, State};
 use stickslip_wire::{SimulateReply, SimulateRequest, SolverKind, read};
 
@@ -86,8 +87,12 @@ impl Solver for Counting<'_> {
     }
 
     fn exact(&self) -> &Contact {
-        self.count(|calls| &mut calls.laws, 1);
         &self.contact
+    }
+
+    fn equal_peaks(&self, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
+        self.count(|calls| &mut calls.laws, 1);
+        equal_peaks(&self.contact, reversals, cutoff_radius)
     }
 
     fn contact_radius(&self) -> f64 {
