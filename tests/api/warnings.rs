@@ -109,13 +109,20 @@ async fn each_warning_has_its_cause_and_its_page() {
         ),
         (json!({"profile": measured(1e-9)}), &["noisy_table"]),
         (
-            json!({"path": {"moves": [{"displacement": 5e-7, "normal_force": 30.0}]}, "tolerance": 1e-14}),
+            json!({
+                "profile": {"type": "cone", "slope": 0.01},
+                "preload": {"normal_force": 0.0},
+                "path": {"moves": [{"displacement": 2e-7, "normal_force": 10.0}]},
+                "tolerance": 1e-14
+            }),
             &["tolerance_not_met"],
         ),
         // What the last move wipes out is still in the states before it.
         (
             json!({
-                "path": {"moves": [{"displacement": 5e-7, "normal_force": 30.0}, {"displacement": 1e-5}]},
+                "profile": {"type": "cone", "slope": 0.01},
+                "preload": {"normal_force": 0.0},
+                "path": {"moves": [{"displacement": 2e-7, "normal_force": 10.0}, {"displacement": 1e-5}]},
                 "tolerance": 1e-14
             }),
             &["tolerance_not_met"],
@@ -165,12 +172,12 @@ async fn a_session_warns_when_a_move_gives_it_cause() {
         ),
         ("path", json!({"path": {"displacement": [1e-7, 0.0]}}), None),
         ("move", json!({"force": 1.0, "normal_force": 20.0, "tolerance": 1e-10}), None),
-        (
-            "move",
-            json!({"displacement": 5e-7, "normal_force": 30.0, "tolerance": 1e-14}),
-            Some(vec!["tolerance_not_met"]),
-        ),
     ] {
         assert_eq!(codes_if_present(&send(&place(last), body.clone()).await), expected, "{body}");
     }
+    let cone = with(&json!({"profile": {"type": "cone", "slope": 0.01}, "preload": {"normal_force": 0.0}}));
+    let made = send("/contacts", cone["contact"].clone()).await;
+    let place = format!("/contacts/{}/move", made["id"].as_str().unwrap());
+    let hard = json!({"displacement": 2e-7, "normal_force": 10.0, "tolerance": 1e-14});
+    assert_eq!(codes_if_present(&send(&place, hard).await), Some(vec!["tolerance_not_met"]));
 }

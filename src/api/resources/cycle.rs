@@ -101,7 +101,7 @@ impl QueryParams for Wanted {
             (Some(all), None) => CycleDrive::Displacement(amplitudes(all)),
             (None, Some(all)) => CycleDrive::Force(amplitudes(all)),
             (None, None) => {
-                query.faults.add(JsonPath::Root.member("displacement"), "missing: give `displacement` or `force`");
+                query.faults.add(JsonPath::Root.member("displacement"), "give `displacement` or `force`");
                 return None;
             }
             (Some(_), Some(_)) => {
