@@ -24,7 +24,7 @@ const REASON_STEPPED: &str =
 /// The contact of a definition, and its steady cycles.
 ///
 /// # Errors
-/// As [`cycle`], and [`Failure::Refused`] for a preload that cannot be reached.
+/// As [`cycle()`], and [`Failure::Refused`] for a preload that cannot be reached.
 pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
     let timer = Timer::start();
     let contact = contact(setup, "/contact")?;
