@@ -24,6 +24,7 @@ use stickslip_wire::{self as wire, SimulateRequest};
 
 use backup::Backup;
 use check::Check;
+use cycle::Cycle;
 use healthcheck::Healthcheck;
 use io::{json, print, problem, read};
 use key::Key;
@@ -56,11 +57,8 @@ enum Command {
     },
     /// Find a protocol that leaves little shear stress, and print the reply of POST /protocols.
     Protocol(Protocol),
-    /// Run the body of POST /cycle from a file and print the reply.
-    Cycle {
-        /// The file, or - for standard input.
-        file: PathBuf,
-    },
+    /// Run the body of POST /cycle from a file and print the reply, or a fretting map.
+    Cycle(Cycle),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -113,7 +111,7 @@ impl Command {
             Command::Config(_) => print(settings),
             Command::Simulate { file } => simulate(&file),
             Command::Protocol(protocol) => protocol.run(),
-            Command::Cycle { file } => cycle::cycle(&file),
+            Command::Cycle(cycle) => cycle.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),

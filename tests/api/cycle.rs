@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use crate::common;
 
-use common::{Server, ball, problem, run};
-use reqwest::{Method, Response};
+use common::{Server, ball, good, number, of, problem, run};
+use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip_wire::{Amplitudes, CycleDrive, CycleRequest, Machine, WorkDensity};
 
@@ -23,23 +23,6 @@ fn unit_sphere() -> Value {
         "friction": FRICTION,
         "preload": {"indentation": 1.0}
     })
-}
-
-fn of(contact: &Value, rest: &Value) -> Value {
-    let mut body = json!({"contact": contact});
-    body.as_object_mut().unwrap().extend(rest.as_object().unwrap().clone());
-    body
-}
-
-async fn good(response: Response) -> Value {
-    let status = response.status();
-    let text = response.text().await.unwrap();
-    assert!(status.is_success(), "{status} {text}");
-    serde_json::from_str(&text).unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {
@@ -253,6 +236,32 @@ async fn the_client_and_the_command_line_say_what_the_service_says() {
     let machine = Some(Machine { stiffness: 1e7 });
     let live = server.client.contact_cycle(id, &drive, machine, Some(3), &WorkDensity::default()).await.unwrap();
     assert_eq!(timeless(json!(live)), reply);
+}
+
+#[tokio::test]
+async fn a_map_has_the_cycles_of_each_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cycle.json");
+    let asked = of(&ball(), &json!({"drive": {"displacement": [1e-8, 1e-7, 1e-6]}}));
+    std::fs::write(&file, asked.to_string()).unwrap();
+    let printed = run(&["cycle", file.to_str().unwrap(), "--map", "1:100:3"]);
+    let text = String::from_utf8(printed.stdout).unwrap();
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!((lines.len(), lines[0][0], lines[0][5]), (10, "normal_force", "dissipated_energy"));
+    let server = Server::start().await;
+    for (rows, load) in lines[1..].chunks(3).zip([1.0, 10.0, 100.0]) {
+        let mut pressed = ball();
+        pressed["preload"] = json!({"normal_force": load});
+        let reply = good(server.post("/cycle", &of(&pressed, &json!({"drive": asked["drive"]}))).await).await;
+        for (row, cycle) in rows.iter().zip(reply["cycles"].as_array().unwrap()) {
+            close(row[0].parse().unwrap(), load, 1e-14);
+            assert_eq!(row[3], cycle["regime"].as_str().unwrap());
+            close(row[5].parse().unwrap(), number(&cycle["dissipated_energy"]), 1e-9);
+        }
+    }
+    for wrong in ["1:100", "0:1:3", "2:1:3", "1:2:1", "1:2:1001", "a:b:c"] {
+        assert!(!run(&["cycle", file.to_str().unwrap(), "--map", wrong]).status.success(), "{wrong}");
+    }
 }
 
 #[tokio::test]

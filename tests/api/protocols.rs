@@ -2,8 +2,8 @@
 
 use crate::common;
 
-use common::{Server, ball, problem, run};
-use reqwest::{Method, Response};
+use common::{Server, ball, good, number, of, problem, run};
+use reqwest::Method;
 use serde_json::{Value, json};
 
 fn table() -> Value {
@@ -13,23 +13,6 @@ fn table() -> Value {
     contact["profile"] = json!({"type": "tabulated", "r": radii, "z": heights});
     contact["preload"] = json!({"contact_radius": 1e-4});
     contact
-}
-
-fn of(contact: &Value, rest: &Value) -> Value {
-    let mut body = json!({"contact": contact});
-    body.as_object_mut().unwrap().extend(rest.as_object().unwrap().clone());
-    body
-}
-
-async fn good(response: Response) -> Value {
-    let status = response.status();
-    let text = response.text().await.unwrap();
-    assert!(status.is_success(), "{status} {text}");
-    serde_json::from_str(&text).unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 /// A stored contact with a history of moves back and forth at different indentations.

@@ -167,6 +167,25 @@ pub fn ball() -> Value {
     })
 }
 
+/// A body: a contact, and members beside it.
+pub fn of(contact: &Value, rest: &Value) -> Value {
+    let mut body = json!({"contact": contact});
+    body.as_object_mut().unwrap().extend(rest.as_object().unwrap().clone());
+    body
+}
+
+/// The document of a reply that is no refusal.
+pub async fn good(response: Response) -> Value {
+    let status = response.status();
+    let text = response.text().await.unwrap();
+    assert!(status.is_success(), "{status} {text}");
+    serde_json::from_str(&text).unwrap()
+}
+
+pub fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
 /// The same as a typed request.
 pub fn create() -> CreateRequest {
     serde_json::from_value(ball()).unwrap()
