@@ -48,6 +48,7 @@
 //! | `curve_panel` | which two chords have the integral of a curve? |
 //! | [`cycle`] | what does it do in a steady cycle? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
+//! | [`subsurface`] | what is the stress in the bodies below the contact? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
 //! | `packed` | how is a contact stored as bytes? |
@@ -78,6 +79,7 @@ mod shear_stress;
 mod slip_history;
 pub mod springs;
 mod state;
+pub mod subsurface;
 mod surface_displacement;
 #[cfg(test)]
 mod tests;
@@ -99,3 +101,4 @@ pub use profile::{Profile, Sphere};
 pub use shear_stress::{Peak, Residual};
 pub use springs::Springs;
 pub use state::{Move, Normal, Regime, Setup, State, Tangential};
+pub use subsurface::Stress;

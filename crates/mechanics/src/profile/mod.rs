@@ -216,6 +216,11 @@ impl Profile {
         })
     }
 
+    /// The levels of a ring that lie on a vertical edge, m.
+    pub(super) fn edge_depth(&self, ring: &Ring) -> f64 {
+        each!(self, shape => shape.span(ring).edge)
+    }
+
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share of a
     /// stress. For a smooth profile this is K(r, x_outer) - K(r, max(r, x_inner)), K(r, c) = int_r^c g'(x)/sqrt(x^2 - r^2) dx.
     /// Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.

@@ -6,13 +6,11 @@ use proptest::prelude::*;
 use stickslip_mechanics::cycle::{
     Drive, OscillatingCycle, OscillatingLoad, Oscillation, Resonator, SteadyCycle, best_load,
 };
-use stickslip_mechanics::profile::{
-    Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
-};
+use stickslip_mechanics::profile::PowerLaw;
 use stickslip_mechanics::{Contact, Elasticity, Normal, Preload, Profile, Regime, Setup, Sphere};
 
 use crate::support::quadrature::integral;
-use crate::support::{config, displace};
+use crate::support::{config, displace, shapes};
 
 const E_STAR: f64 = 1e11;
 const G_STAR: f64 = 8e10;
@@ -27,28 +25,6 @@ fn contact(profile: Profile, depth: f64) -> Contact {
 /// g = x^2 at d = 1: the sphere of radius one.
 fn unit_sphere() -> Contact {
     contact(Profile::Sphere(Sphere::new(1.0).unwrap()), 1.0)
-}
-
-fn shapes() -> Vec<(Profile, f64)> {
-    let radii: Vec<f64> = (0..=40).map(|index| f64::from(index) * 3e-5).collect();
-    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 * (1.0 + 500.0 * r)).collect();
-    let power = |n, c| Profile::PowerLaw(PowerLaw::new(n, c).unwrap());
-    let sphere = || Profile::Sphere(Sphere::new(0.01).unwrap());
-    vec![
-        (sphere(), 3e-6),
-        (Profile::ExactSphere(ExactSphere::new(0.01).unwrap()), 1e-4),
-        (Profile::Cone(Cone::new(0.05).unwrap()), 1e-5),
-        (power(1.5, 1.0), 3e-6),
-        (power(4.0, 1e6), 3e-6),
-        (power(2.7, 1e3), 3e-6),
-        (Profile::TruncatedCone(TruncatedCone::new(0.05, 1e-4).unwrap()), 1e-5),
-        (Profile::TruncatedSphere(TruncatedSphere::new(0.01, 1e-4).unwrap()), 3e-6),
-        (Profile::RoundedPunch(RoundedPunch::new(1e-4, 0.01).unwrap()), 3e-6),
-        (Profile::RoundedCone(RoundedCone::new(0.05, 1e-4).unwrap()), 1e-5),
-        (Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).unwrap()), 3e-6),
-        (Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()), 3e-6),
-        (Profile::FlatPunch(FlatPunch::new(1e-3).unwrap()), 1e-6),
-    ]
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {

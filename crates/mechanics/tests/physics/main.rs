@@ -27,6 +27,7 @@ mod slip_history;
 mod springs;
 mod springs_estimate;
 mod steep_powers;
+mod subsurface;
 mod sums_of_tables;
 mod support;
 mod tables;

@@ -11,7 +11,9 @@ pub mod reference;
 use std::cell::Cell;
 
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestCaseError, TestRng, TestRunner};
-use stickslip_mechanics::profile::PowerLaw;
+use stickslip_mechanics::profile::{
+    Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
+};
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
 /// A sphere pressed against a plane, by the numbers that define it.
@@ -98,6 +100,29 @@ pub fn sphere(radius: f64) -> Profile {
 /// 0.1 r^exponent.
 pub fn power(exponent: f64) -> Profile {
     Profile::PowerLaw(PowerLaw::new(exponent, 0.1).unwrap())
+}
+
+/// One profile of each family with an ordinary indentation, m.
+pub fn shapes() -> Vec<(Profile, f64)> {
+    let radii: Vec<f64> = (0..=40).map(|index| f64::from(index) * 3e-5).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02 * (1.0 + 500.0 * r)).collect();
+    let power = |n, c| Profile::PowerLaw(PowerLaw::new(n, c).unwrap());
+    let sphere = || Profile::Sphere(Sphere::new(0.01).unwrap());
+    vec![
+        (sphere(), 3e-6),
+        (Profile::ExactSphere(ExactSphere::new(0.01).unwrap()), 1e-4),
+        (Profile::Cone(Cone::new(0.05).unwrap()), 1e-5),
+        (power(1.5, 1.0), 3e-6),
+        (power(4.0, 1e6), 3e-6),
+        (power(2.7, 1e3), 3e-6),
+        (Profile::TruncatedCone(TruncatedCone::new(0.05, 1e-4).unwrap()), 1e-5),
+        (Profile::TruncatedSphere(TruncatedSphere::new(0.01, 1e-4).unwrap()), 3e-6),
+        (Profile::RoundedPunch(RoundedPunch::new(1e-4, 0.01).unwrap()), 3e-6),
+        (Profile::RoundedCone(RoundedCone::new(0.05, 1e-4).unwrap()), 1e-5),
+        (Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).unwrap()), 3e-6),
+        (Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()), 3e-6),
+        (Profile::FlatPunch(FlatPunch::new(1e-3).unwrap()), 1e-6),
+    ]
 }
 
 /// Moves a contact to one displacement, m, after the other.

@@ -1,0 +1,245 @@
+//! The slopes of both load distributions over the radius, in panels that a Gauss rule integrates to round-off, and
+//! gathered in a tree so that a distant point sees many panels as one.
+//!
+//! The stress at a point is a sum of smooth functions of t against dy = g'(t) dt, with a branch point at t = r + i z. Panels
+//! are halved where the rule misses the rise of g, which is known, and again near the branch point: never is
+//! one longer than its distance from there. A panel touches the branch point only at the surface; there t - r = s^2 takes the root away.
+//! Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all below it: what
+//! they leave is 8^-16.
+
+use crate::profile::{Profile, Ring};
+
+/// Points of a panel, on 0..1, and weights: Gauss and Legendre's rule of twelve.
+const GAUSS: [(f64, f64); 12] = [
+    (0.009_219_682_876_640_375, 0.023_587_668_193_255_914),
+    (0.047_941_371_814_762_57, 0.053_469_662_997_659_21),
+    (0.115_048_662_902_847_65, 0.080_039_164_271_673_11),
+    (0.206_341_022_856_691_3, 0.101_583_713_361_532_96),
+    (0.316_084_250_500_909_9, 0.116_746_268_269_177_4),
+    (0.437_383_295_744_265_54, 0.124_573_522_906_701_39),
+    (0.562_616_704_255_734_5, 0.124_573_522_906_701_39),
+    (0.683_915_749_499_090_1, 0.116_746_268_269_177_4),
+    (0.793_658_977_143_308_7, 0.101_583_713_361_532_96),
+    (0.884_951_337_097_152_4, 0.080_039_164_271_673_11),
+    (0.952_058_628_185_237_4, 0.053_469_662_997_659_21),
+    (0.990_780_317_123_359_6, 0.023_587_668_193_255_914),
+];
+/// Points that stand for all panels of a node.
+const CHEBYSHEV: usize = 16;
+/// Halvings of a panel at a kink of the profile: what is left of it is too short to matter.
+const DEPTH: usize = 44;
+/// Panels at most; a profile that needs more has its error in its g.
+const PANELS: usize = 50_000;
+
+/// Slopes at one radius: over the contact radius, that of the pressure in m, that of the shear in m of w.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source {
+    pub(super) t: f64,
+    pub(super) normal: f64,
+    pub(super) tangential: f64,
+}
+
+/// A stretch of radii over which g is analytic and the shear has one slope, or many of them.
+#[derive(Clone, Debug)]
+struct Node {
+    low: f64,
+    high: f64,
+    /// -dw/dy; only of a panel.
+    share: f64,
+    /// Whether g goes like the root of t - low at the lower end.
+    rooted: bool,
+    /// Empty where the panels below have fewer points.
+    sources: Vec<Source>,
+    below: Option<Box<[Node; 2]>>,
+}
+
+/// Both distributions of a contact.
+#[derive(Clone, Debug)]
+pub(super) struct Mesh {
+    root: Option<Node>,
+    /// Levels at a vertical edge.
+    edge: Option<Source>,
+}
+
+/// Gauss's rule over a panel, in the root of t - low if `rooted`.
+fn rule(low: f64, high: f64, rooted: bool) -> impl Iterator<Item = (f64, f64)> {
+    let length = high - low;
+    GAUSS.iter().map(move |&(at, weight)| {
+        if rooted { (low + length * at * at, 2.0 * length * at * weight) } else { (low + length * at, length * weight) }
+    })
+}
+
+/// Distance of a stretch from the branch point.
+fn distance(low: f64, high: f64, r: f64, z: f64) -> f64 {
+    (low - r).max(r - high).max(0.0).hypot(z)
+}
+
+impl Mesh {
+    /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m.
+    pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], radius: f64) -> Mesh {
+        let mut panels = Vec::new();
+        let mut edge = Source { t: 1.0, normal: 0.0, tangential: 0.0 };
+        for (ring, share) in rings {
+            let above = profile.edge_depth(ring);
+            edge = Source { normal: edge.normal + above, tangential: edge.tangential + above * share, ..edge };
+            let (inner, outer) = (ring.inner.radius, ring.outer.radius);
+            let knots = profile.knots_below(outer);
+            let first = knots.partition_point(|&knot| knot <= inner);
+            let mut high = outer;
+            for low in knots[first..].iter().rev().copied().chain([inner]) {
+                if low < high {
+                    resolve(profile, radius, (low / radius, high / radius), *share, DEPTH, &mut panels);
+                    high = low;
+                }
+            }
+        }
+        panels.reverse();
+        Mesh { root: gather(panels), edge: Some(edge).filter(|edge| edge.normal > 0.0) }
+    }
+
+    /// Calls `visit(t - r, source)` for all that acts at the distance r from the axis and the depth z, over the contact radius.
+    pub(super) fn visit(
+        &self,
+        profile: &Profile,
+        radius: f64,
+        (r, z): (f64, f64),
+        mut visit: impl FnMut(f64, &Source),
+    ) {
+        if let Some(root) = &self.root {
+            root.visit(r, z, &mut visit, &mut |panel, visit| near(profile, radius, panel, (r, z), visit));
+        }
+        if let Some(edge) = &self.edge {
+            visit(edge.t - r, edge);
+        }
+    }
+}
+
+/// Appends the panels of a stretch, from the outer end inward.
+fn resolve(profile: &Profile, radius: f64, (low, high): (f64, f64), share: f64, depth: usize, panels: &mut Vec<Node>) {
+    let top = profile.level(radius * high);
+    let rise = top - profile.level(radius * low);
+    let middle = 0.5 * (low + high);
+    let last = depth == 0 || panels.len() >= PANELS || middle <= low || middle >= high;
+    for rooted in [false, true] {
+        let mut sources = sources(profile, radius, (low, high), rooted, share);
+        let sum: f64 = sources.iter().map(|source| source.normal).sum();
+        // Rounding of the level, and of the radii where g is steep.
+        let steepest = profile.slope(radius * sources[0].t).max(profile.slope(radius * sources[11].t));
+        let noise = 4.0 * f64::EPSILON * (profile.cancellation(radius * high) * top + radius * high * steepest);
+        if last && rise > 0.0 && sum > 0.0 {
+            // Too short for more than the right sum.
+            for source in &mut sources {
+                source.normal *= rise / sum;
+                source.tangential *= rise / sum;
+            }
+        }
+        if last || (sum - rise).abs() <= 1e-13 * rise + noise {
+            panels.push(Node { low, high, share, rooted, sources, below: None });
+            return;
+        }
+    }
+    resolve(profile, radius, (middle, high), share, depth - 1, panels);
+    resolve(profile, radius, (low, middle), share, depth - 1, panels);
+}
+
+fn sources(profile: &Profile, radius: f64, (low, high): (f64, f64), rooted: bool, share: f64) -> Vec<Source> {
+    rule(low, high, rooted)
+        .map(|(t, weight)| {
+            let normal = radius * weight * profile.slope(radius * t);
+            Source { t, normal, tangential: normal * share }
+        })
+        .collect()
+}
+
+/// The tree over panels in order of their radii.
+fn gather(mut panels: Vec<Node>) -> Option<Node> {
+    if panels.len() <= 1 {
+        return panels.pop();
+    }
+    let outer = panels.split_off(panels.len() / 2);
+    let (inner, outer) = (gather(panels)?, gather(outer)?);
+    let (low, high) = (inner.low, outer.high);
+    let mut all = Vec::new();
+    inner.each_source(&mut |source| all.push(*source));
+    outer.each_source(&mut |source| all.push(*source));
+    let sources = if all.len() > CHEBYSHEV { condense(low, high, &all) } else { Vec::new() };
+    Some(Node { low, high, share: 0.0, rooted: false, sources, below: Some(Box::new([inner, outer])) })
+}
+
+/// The sources at Chebyshev's points that act like `all` on every polynomial of less than the 16th degree.
+fn condense(low: f64, high: f64, all: &[Source]) -> Vec<Source> {
+    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / CHEBYSHEV as f64;
+    let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let mut points: Vec<Source> =
+        (0..CHEBYSHEV).map(|i| Source { t: centre + half * angle(i).cos(), normal: 0.0, tangential: 0.0 }).collect();
+    let mut shares = [0.0; CHEBYSHEV];
+    for source in all {
+        // The barycentric form of Lagrange's interpolation.
+        let mut sum = 0.0;
+        for (i, point) in points.iter().enumerate() {
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let gap = source.t - point.t;
+            shares[i] = sign * angle(i).sin() / if gap == 0.0 { f64::MIN_POSITIVE } else { gap };
+            sum += shares[i];
+        }
+        for (point, share) in points.iter_mut().zip(shares) {
+            point.normal += source.normal * (share / sum);
+            point.tangential += source.tangential * (share / sum);
+        }
+    }
+    points
+}
+
+impl Node {
+    /// What stands for the node where it is far.
+    fn each_source(&self, visit: &mut impl FnMut(&Source)) {
+        if self.sources.is_empty() {
+            for node in self.below.iter().flat_map(|below| below.iter()) {
+                node.each_source(visit);
+            }
+        } else {
+            self.sources.iter().for_each(visit);
+        }
+    }
+
+    /// Visits what is far as condensed, and gives each panel that is near to `near`.
+    fn visit<V: FnMut(f64, &Source)>(&self, r: f64, z: f64, visit: &mut V, near: &mut impl FnMut(&Node, &mut V)) {
+        let away = distance(self.low, self.high, r, z);
+        match &self.below {
+            Some(_) if !self.sources.is_empty() && away >= 2.0 * (self.high - self.low) => {
+                self.sources.iter().for_each(|source| visit(source.t - r, source));
+            }
+            Some(below) => below.iter().for_each(|node| node.visit(r, z, visit, near)),
+            None if away >= self.high - self.low => {
+                self.sources.iter().for_each(|source| visit(source.t - r, source));
+            }
+            None => near(self, visit),
+        }
+    }
+}
+
+/// Visits the sources of a panel too long for its distance from the branch point, in ever shorter parts.
+fn near(profile: &Profile, radius: f64, panel: &Node, (r, z): (f64, f64), visit: &mut impl FnMut(f64, &Source)) {
+    let mut source = |offset: f64, weight: f64| {
+        let t = r + offset;
+        let normal = radius * weight * profile.slope(radius * t);
+        visit(offset, &Source { t, normal, tangential: normal * panel.share });
+    };
+    // Ends as offsets from r, which keep their digits near it.
+    let mut parts = vec![(panel.low - r, panel.high - r, panel.rooted)];
+    while let Some((low, high, rooted)) = parts.pop() {
+        let length = high - low;
+        let touches = z <= 0.0 && (low == 0.0 || (high == 0.0 && !rooted)) && (length <= r || r <= 0.0);
+        if distance(low, high, 0.0, z) >= length {
+            rule(low, high, rooted).for_each(|(offset, weight)| source(offset, weight));
+        } else if low < 0.0 && high > 0.0 {
+            parts.extend([(low, 0.0, rooted), (0.0, high, false)]);
+        } else if touches {
+            let side = if low == 0.0 { 1.0 } else { -1.0 };
+            rule(0.0, length, true).for_each(|(offset, weight)| source(side * offset, weight));
+        } else {
+            let middle = 0.5 * (low + high);
+            parts.extend([(low, middle, rooted), (middle, high, false)]);
+        }
+    }
+}
