@@ -52,6 +52,8 @@ quantities! {
     Indentation = "indentation", "Indentation.";
     Displacement = "displacement", "Tangential displacement of the indenter.";
     Force = "force", "Tangential force.";
+    Place = "place", "Coordinate of a place below the surface.";
+    BulkStress = "bulk stress", "Component of a uniform stress.";
     MachineStiffness = "stiffness", "Stiffness of a machine in series with the contact.";
     Phase = "phase", "Phase of the normal load of a cycle.";
     SpringCount = "count", "Number of springs of the foundation.";

@@ -66,6 +66,10 @@ pub const INDENTATION: Range = Range { quantity: Quantity::Indentation, unit: "m
 pub const DISPLACEMENT: Range = Range { quantity: Quantity::Displacement, unit: "m", min: -1e9, max: 1e9 };
 /// A tangential force.
 pub const FORCE: Range = Range { quantity: Quantity::Force, unit: "N", min: -1e20, max: 1e20 };
+/// A coordinate of a place below the surface.
+pub const PLACE: Range = Range { quantity: Quantity::Place, unit: "m", min: -1e9, max: 1e9 };
+/// A component of a uniform stress.
+pub const BULK_STRESS: Range = Range { quantity: Quantity::BulkStress, unit: "Pa", min: -1e20, max: 1e20 };
 /// The stiffness of a machine in series with the contact.
 pub const MACHINE_STIFFNESS: Range = Range { quantity: Quantity::MachineStiffness, unit: "N/m", min: 1e-9, max: 1e30 };
 /// How many springs the foundation may have.

@@ -35,6 +35,7 @@ pub mod session;
 pub mod simulate;
 mod single_key;
 pub mod stress;
+pub mod subsurface;
 pub mod sweep;
 
 pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Reference};
@@ -59,4 +60,8 @@ pub use session::{
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
+pub use subsurface::{
+    BodyName, Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
+    SubsurfaceSurface,
+};
 pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};

@@ -33,6 +33,8 @@ pub const FREQUENCIES: RangeInclusive<usize> = 1..=1_000;
 pub const HARMONICS: RangeInclusive<usize> = 1..=31;
 /// Cycles in a reply.
 pub const CYCLES: RangeInclusive<usize> = 1..=1_000;
+/// Places below the surface in one request.
+pub const SUBSURFACE_POINTS: RangeInclusive<usize> = 1..=1_000_000;
 /// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
@@ -80,6 +82,12 @@ pub struct Items(pub RangeInclusive<usize>);
 
 /// The number of elements of an array of numbers, and the range of each.
 pub struct Numbers(pub RangeInclusive<usize>, pub Range);
+
+/// Three numbers, each within the range.
+pub struct Triple(pub Range);
+
+/// The number of elements of an array of such triples.
+pub struct Triples(pub RangeInclusive<usize>, pub Range);
 
 /// A whole number whose range the mechanics gives.
 pub struct Whole(pub Range);
@@ -167,6 +175,32 @@ impl Limit<Vec<f64>> for Numbers {
     fn check(&self, value: &Vec<f64>, at: JsonPath<'_>, faults: &mut Faults) {
         if faults.length(at, value.len(), &self.0) {
             value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.1));
+        }
+    }
+}
+
+impl Keywords for Triple {
+    fn keywords(&self) -> Value {
+        json!({"minItems": 3, "maxItems": 3, "items": self.0.keywords()})
+    }
+}
+
+impl Limit<[f64; 3]> for Triple {
+    fn check(&self, value: &[f64; 3], at: JsonPath<'_>, faults: &mut Faults) {
+        value.iter().enumerate().for_each(|(index, value)| faults.number(at.index(index), *value, &self.0));
+    }
+}
+
+impl Keywords for Triples {
+    fn keywords(&self) -> Value {
+        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": Triple(self.1).keywords()})
+    }
+}
+
+impl Limit<Vec<[f64; 3]>> for Triples {
+    fn check(&self, value: &Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) {
+        if faults.length(at, value.len(), &self.0) {
+            value.iter().enumerate().for_each(|(index, value)| Triple(self.1).check(value, at.index(index), faults));
         }
     }
 }
@@ -264,10 +298,11 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, BestLoadStudy, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath,
         Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine, Material, Move,
         MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest,
-        Span, Springs, StressRequest, SweepRequest, WorkDensity,
+        Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SweepRequest,
+        WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -277,8 +312,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
         EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
-        Robustness, SimulateRequest, Span, Springs, StressRequest, SweepRequest, WorkDensity
+        Robustness, SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SweepRequest, WorkDensity
     }
 }

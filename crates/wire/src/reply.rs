@@ -118,6 +118,10 @@ pub struct Accuracy {
     pub force_error: f64,
     /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean).
     pub stress_error: f64,
+    /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), if it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub subsurface_error: Option<f64>,
     /// Time spent computing, s.
     pub compute_time: f64,
 }

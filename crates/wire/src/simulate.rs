@@ -14,6 +14,7 @@ use super::path::{Path, Plan};
 use super::reply::{Accuracy, ContactSummary, Protocol, Residual, State, Warning};
 use super::single_key::{not_null, single_key};
 use super::stress::{Sampling, Stress, StressRequest};
+use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
 
 /// A contact and the path that it follows; the server keeps nothing of it. Only what is asked for is computed.
 #[skip_serializing_none]
@@ -36,6 +37,8 @@ pub struct SimulateRequest {
     /// Ask for the extrema of the shear stress at the end of the path.
     #[serde(default)]
     pub residual: bool,
+    /// Ask for the stress below the surface at the end of the path; by the exact solver.
+    pub subsurface: Option<SubsurfaceRequest>,
     /// Which states to return.
     #[serde(default)]
     pub steps: Steps,
@@ -92,6 +95,8 @@ pub struct SimulateReply {
     pub stress: Option<Stress>,
     /// The extrema of the shear stress at the end, if asked for.
     pub residual: Option<Residual>,
+    /// The stress below the surface at the end, if asked for.
+    pub subsurface: Option<Subsurface>,
     /// The path, if it follows the law of equal peaks.
     pub protocol: Option<Protocol>,
     /// Solver, errors and time.
@@ -113,6 +118,8 @@ pub struct Simulation {
     pub stress: Option<Sampling>,
     /// Whether the extrema are requested.
     pub residual: bool,
+    /// The requested stress below the surface.
+    pub subsurface: Option<SubsurfaceTask>,
     /// Which states are requested.
     pub steps: Steps,
     /// The requested solver.
@@ -129,6 +136,11 @@ impl Document for SimulateRequest {
         let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
+        let at = JsonPath::Root.member("subsurface");
+        let subsurface = self.subsurface.and_then(|asked| asked.check(&self.contact, at, &mut faults));
+        if subsurface.is_some() && matches!(self.solver, Some(Solver::Springs(_))) {
+            faults.add(at, "springs have no stress below the surface: leave this or `solver` out");
+        }
         let tolerance = Tolerance::of(self.tolerance, &mut faults);
         if let Some(solver) = &self.solver {
             let search = if self.residual { SPRING_SEARCH } else { 0 };
@@ -139,7 +151,7 @@ impl Document for SimulateRequest {
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
         let simulation =
-            |(setup, plan)| Simulation { definition, setup, plan, stress, residual, steps, solver, tolerance };
+            |(setup, plan)| Simulation { definition, setup, plan, stress, residual, subsurface, steps, solver, tolerance };
         faults.done(setup.zip(plan).map(simulation))
     }
 }
