@@ -1,0 +1,250 @@
+//! Stress below the surface: what is asked for, and the answer.
+
+mod places;
+
+pub use places::{Direction, Places, Steps, SubsurfaceLine, SubsurfacePlane, SubsurfaceSurface};
+
+use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
+
+use crate::check::{Faults, JsonPath};
+use crate::definition::{Body, ContactDefinition, Material};
+use crate::limits::{SUBSURFACE_POINTS, Triples, limits};
+use crate::single_key::not_null;
+
+/// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile, z into
+/// the body asked for, the origin on the axis of the contact. Exactly one of `points`, `line`, `plane` and `surface` says where.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "body": "first", "plane": {"normal": "y", "offset": 0.0, "x": [-2e-4, 2e-4, 41], "z": [0.0, 2e-4, 21]},
+    "fields": ["von_mises"]
+}))]
+pub struct SubsurfaceRequest {
+    /// Which body.
+    pub body: BodyName,
+    /// Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+    pub poisson_ratio: Option<f64>,
+    /// A list of x, y, z, m, with z of at least zero.
+    pub points: Option<Vec<[f64; 3]>>,
+    /// A straight line.
+    pub line: Option<SubsurfaceLine>,
+    /// A grid in a plane.
+    pub plane: Option<SubsurfacePlane>,
+    /// A grid on the surface.
+    pub surface: Option<SubsurfaceSurface>,
+    /// Which fields are computed; left out, `tensor`.
+    pub fields: Option<Vec<SubsurfaceField>>,
+    /// A uniform stress of the body that is added, Pa. It does not move the stick zone in this model.
+    pub bulk: Option<Bulk>,
+}
+limits!(SubsurfaceRequest { poisson_ratio: range::POISSON_RATIO, points: Triples(SUBSURFACE_POINTS, range::PLACE) });
+
+/// One of the two bodies in contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyName {
+    /// The one with the profile, which moves along x: its surface feels −τ.
+    First,
+    /// The plane one: its surface feels +τ.
+    Second,
+}
+
+/// A quantity below the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SubsurfaceField {
+    /// The six components `xx`, `yy`, `zz`, `xy`, `yz`, `xz`, Pa.
+    Tensor,
+    /// The principal stresses `principal_1` to `principal_3`, falling, Pa.
+    Principal,
+    /// Von Mises's equivalent stress `von_mises`, Pa.
+    VonMises,
+    /// The largest shear stress `max_shear` on any plane, Pa.
+    MaxShear,
+    /// The mean normal stress `hydrostatic`, Pa.
+    Hydrostatic,
+}
+
+/// A uniform stress, Pa, tension positive; a component left out is zero.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bulk {
+    /// Normal stress along x.
+    pub xx: Option<f64>,
+    /// Normal stress along y.
+    pub yy: Option<f64>,
+    /// Normal stress along z.
+    pub zz: Option<f64>,
+    /// Shear stress in the plane of x and y.
+    pub xy: Option<f64>,
+    /// Shear stress in the plane of y and z.
+    pub yz: Option<f64>,
+    /// Shear stress in the plane of x and z.
+    pub xz: Option<f64>,
+}
+limits!(Bulk {
+    xx: range::BULK_STRESS,
+    yy: range::BULK_STRESS,
+    zz: range::BULK_STRESS,
+    xy: range::BULK_STRESS,
+    yz: range::BULK_STRESS,
+    xz: range::BULK_STRESS,
+});
+
+/// Stresses below the surface, in columns; an array that was not asked for is left out, and `null` is where a stress is
+/// infinite.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Subsurface {
+    /// Place along the motion of the first body, m.
+    pub x: Vec<f64>,
+    /// Place across it, m.
+    pub y: Vec<f64>,
+    /// Depth, m.
+    pub z: Vec<f64>,
+    /// Normal stress along x, Pa.
+    pub xx: Option<Vec<Option<f64>>>,
+    /// Normal stress along y, Pa.
+    pub yy: Option<Vec<Option<f64>>>,
+    /// Normal stress along z, Pa.
+    pub zz: Option<Vec<Option<f64>>>,
+    /// Shear stress in the plane of x and y, Pa.
+    pub xy: Option<Vec<Option<f64>>>,
+    /// Shear stress in the plane of y and z, Pa.
+    pub yz: Option<Vec<Option<f64>>>,
+    /// Shear stress in the plane of x and z, Pa.
+    pub xz: Option<Vec<Option<f64>>>,
+    /// Largest principal stress, Pa.
+    pub principal_1: Option<Vec<Option<f64>>>,
+    /// Middle principal stress, Pa.
+    pub principal_2: Option<Vec<Option<f64>>>,
+    /// Smallest principal stress, Pa.
+    pub principal_3: Option<Vec<Option<f64>>>,
+    /// Von Mises's equivalent stress, Pa.
+    pub von_mises: Option<Vec<Option<f64>>>,
+    /// Largest shear stress on any plane, Pa.
+    pub max_shear: Option<Vec<Option<f64>>>,
+    /// Mean normal stress, Pa.
+    pub hydrostatic: Option<Vec<Option<f64>>>,
+}
+
+/// The names of the columns of values, in order, with their units.
+pub const COLUMNS: [&str; 12] = [
+    "xx", "yy", "zz", "xy", "yz", "xz", "principal_1", "principal_2", "principal_3", "von_mises", "max_shear",
+    "hydrostatic",
+];
+
+impl Subsurface {
+    /// The columns that there are, by the order of [`COLUMNS`].
+    #[must_use]
+    pub fn columns(&self) -> [&Option<Vec<Option<f64>>>; 12] {
+        let Subsurface { xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, .. } = self;
+        [xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, &self.hydrostatic]
+    }
+}
+
+/// A checked request.
+#[derive(Clone, Debug)]
+pub struct SubsurfaceTask {
+    /// Which body.
+    pub side: Side,
+    /// Its Poisson's ratio.
+    pub poisson_ratio: f64,
+    /// Where.
+    pub places: Places,
+    /// Which fields.
+    pub fields: Vec<SubsurfaceField>,
+    /// What is added, Pa.
+    pub bulk: Option<mechanics::Stress>,
+}
+
+impl SubsurfaceTask {
+    /// Whether a field is asked for.
+    #[must_use]
+    pub fn wants(&self, field: SubsurfaceField) -> bool {
+        self.fields.contains(&field)
+    }
+}
+
+impl SubsurfaceRequest {
+    /// The checked request for a contact of this definition; its faults are noted at `at`.
+    pub fn check(
+        self,
+        contact: &ContactDefinition,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> Option<SubsurfaceTask> {
+        self.check_members(at, faults);
+        let poisson_ratio = faults.part(|faults| self.poisson(contact, at, faults)).flatten();
+        let fields = self.fields.unwrap_or_else(|| vec![SubsurfaceField::Tensor]);
+        if fields.is_empty() {
+            let names = "name at least one of `tensor`, `principal`, `von_mises`, `max_shear`, `hydrostatic`";
+            faults.add(at.member("fields"), format_args!("empty: {names}"));
+        }
+        let bulk = self.bulk.map(|bulk| {
+            bulk.check_members(at.member("bulk"), faults);
+            bulk.stress()
+        });
+        let given = [self.points.is_some(), self.line.is_some(), self.plane.is_some(), self.surface.is_some()];
+        let places = match (self.points, self.line, self.plane, self.surface) {
+            (Some(points), None, None, None) => Places::points(points, at.member("points"), faults),
+            (None, Some(line), None, None) => Places::line(line, at.member("line"), faults),
+            (None, None, Some(plane), None) => Places::plane(&plane, at.member("plane"), faults),
+            (None, None, None, Some(surface)) => Places::surface(&surface, at.member("surface"), faults),
+            _ => {
+                let many = given.into_iter().filter(|given| *given).count() > 1;
+                let detail = if many { "more than one place: give" } else { "give" };
+                faults.add(at, format_args!("{detail} one of `points`, `line`, `plane` and `surface`"));
+                None
+            }
+        };
+        let side = match self.body {
+            BodyName::First => Side::First,
+            BodyName::Second => Side::Second,
+        };
+        Some(SubsurfaceTask { side, poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
+    }
+
+    /// Poisson's ratio of the body, from the material or from the request.
+    fn poisson(&self, contact: &ContactDefinition, at: JsonPath<'_>, faults: &mut Faults) -> Option<f64> {
+        let index = usize::from(self.body == BodyName::Second);
+        let known = match &contact.material {
+            Material::Effective(_) => None,
+            Material::Bodies(bodies) => match bodies.get(index)? {
+                Body::Rigid(_) => {
+                    faults.add(at.member("body"), "this body is rigid, and has no stress that its motion would give");
+                    return None;
+                }
+                Body::Elastic(body) => Some(body.poisson_ratio),
+            },
+        };
+        match (known, self.poisson_ratio) {
+            (Some(known), Some(given)) if known != given => {
+                let detail = format_args!("{given:?} contradicts the {known:?} of this body: leave this out");
+                faults.add(at.member("poisson_ratio"), detail);
+                None
+            }
+            (None, None) => {
+                let detail = "give the body's `poisson_ratio`: reduced moduli do not tell it";
+                faults.add(at.member("poisson_ratio"), detail);
+                None
+            }
+            (known, given) => known.or(given),
+        }
+    }
+}
+
+impl Bulk {
+    fn stress(&self) -> mechanics::Stress {
+        let Bulk { xx, yy, zz, xy, yz, xz } = *self;
+        mechanics::Stress::from_components([xx, yy, zz, xy, yz, xz].map(|component| component.unwrap_or(0.0)))
+    }
+}

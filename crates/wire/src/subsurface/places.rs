@@ -1,0 +1,234 @@
+//! The places below the surface at which stresses are asked for.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::range::{self, Range};
+
+use crate::check::{Faults, JsonPath};
+use crate::limits::{Limit, SUBSURFACE_POINTS, Triple, limits};
+
+/// A depth.
+const DEPTH: Range = Range { min: 0.0, ..range::PLACE };
+
+/// Points on a straight line, both ends included.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SubsurfaceLine {
+    /// Where it begins: x, y, z, m.
+    pub from: [f64; 3],
+    /// Where it ends: x, y, z, m.
+    pub to: [f64; 3],
+    /// Number of points.
+    pub count: usize,
+}
+limits!(SubsurfaceLine { from: Triple(range::PLACE), to: Triple(range::PLACE), count: LINE });
+/// Points of a line: two ends at least.
+const LINE: std::ops::RangeInclusive<usize> = 2..=*SUBSURFACE_POINTS.end();
+
+/// A grid in a plane of constant x, y or z. Each of the other two coordinates is `[from, to, count]`, m, both ends included.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SubsurfacePlane {
+    /// The coordinate that is constant.
+    pub normal: Direction,
+    /// Its value, m.
+    pub offset: f64,
+    /// x from, to and number; left out where `normal` is x.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "crate::single_key::not_null")]
+    #[schema(nullable = false)]
+    pub x: Option<[f64; 3]>,
+    /// y from, to and number; left out where `normal` is y.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "crate::single_key::not_null")]
+    #[schema(nullable = false)]
+    pub y: Option<[f64; 3]>,
+    /// z from, to and number; left out where `normal` is z.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "crate::single_key::not_null")]
+    #[schema(nullable = false)]
+    pub z: Option<[f64; 3]>,
+}
+
+limits!(SubsurfacePlane {
+    offset: range::PLACE,
+    x: Triple(range::PLACE),
+    y: Triple(range::PLACE),
+    z: Triple(range::PLACE),
+});
+
+/// A grid on the surface, z = 0. Each coordinate is `[from, to, count]`, m, both ends included.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SubsurfaceSurface {
+    /// x from, to and number.
+    pub x: [f64; 3],
+    /// y from, to and number.
+    pub y: [f64; 3],
+}
+
+limits!(SubsurfaceSurface { x: Triple(range::PLACE), y: Triple(range::PLACE) });
+
+/// An axis: x along the motion of the first body, z into the body asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// Along the motion.
+    X,
+    /// Across it.
+    Y,
+    /// Into the body.
+    Z,
+}
+
+/// Checked places, in the order of the reply.
+#[derive(Clone, Debug)]
+pub enum Places {
+    /// A list of x, y, z, m.
+    Points(Vec<[f64; 3]>),
+    /// A grid of the values along three axes, one of which may be a single one; the last axis changes fastest.
+    Grid([Steps; 3]),
+    /// A straight line.
+    Line(SubsurfaceLine),
+}
+
+/// Evenly spaced values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    from: f64,
+    to: f64,
+    /// How many.
+    pub count: usize,
+}
+
+impl Steps {
+    /// The value of this index, m.
+    #[must_use]
+    pub fn at(&self, index: usize) -> f64 {
+        if index == 0 { self.from } else { self.from + (self.to - self.from) * (index as f64 / (self.count - 1) as f64) }
+    }
+
+    fn single(value: f64) -> Steps {
+        Steps { from: value, to: value, count: 1 }
+    }
+
+    /// `[from, to, count]`, if it is sound.
+    fn read([from, to, count]: [f64; 3], at: JsonPath<'_>, faults: &mut Faults) -> Option<Steps> {
+        faults.part(|faults| {
+            if from >= to {
+                faults.add(at.index(1), format_args!("{to:?} is not above {from:?}: a grid has an extent"));
+            }
+            let most = *SUBSURFACE_POINTS.end() as f64;
+            if !(count >= 2.0 && count <= most && count.fract() == 0.0) {
+                faults.add(at.index(2), format_args!("{count:?} is no number of points: allowed is 2 to {most}"));
+            }
+            Steps { from, to, count: count as usize }
+        })
+    }
+}
+
+impl Places {
+    /// A list of points, whose coordinates have been checked but for the depths.
+    pub(super) fn points(points: Vec<[f64; 3]>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+        faults
+            .part(|faults| {
+                for (index, point) in points.iter().enumerate() {
+                    check_depth(point, at.index(index), faults);
+                }
+            })
+            .map(|()| Places::Points(points))
+    }
+
+    pub(super) fn line(line: SubsurfaceLine, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+        faults
+            .part(|faults| {
+                line.check_members(at, faults);
+                check_depth(&line.from, at.member("from"), faults);
+                check_depth(&line.to, at.member("to"), faults);
+                if line.from == line.to {
+                    faults.add(at.member("to"), "the line ends where it begins");
+                }
+            })
+            .map(|()| Places::Line(line))
+    }
+
+    pub(super) fn plane(plane: &SubsurfacePlane, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+        let steps = faults.part(|faults| {
+            plane.check_members(at, faults);
+            let all = [(Direction::X, "x", plane.x), (Direction::Y, "y", plane.y), (Direction::Z, "z", plane.z)];
+            let steps = all.map(|(direction, name, given)| {
+                let place = at.member(name);
+                match (direction == plane.normal, given) {
+                    (true, None) => {
+                        if direction == Direction::Z {
+                            Limit::check(&DEPTH, &plane.offset, at.member("offset"), faults);
+                        }
+                        Some(Steps::single(plane.offset))
+                    }
+                    (true, Some(_)) => {
+                        faults.add(place, "is constant, and given by `offset`: leave this out");
+                        None
+                    }
+                    (false, None) => {
+                        faults.add(place, "give `[from, to, count]`");
+                        None
+                    }
+                    (false, Some(given)) => {
+                        if direction == Direction::Z && given[0] < 0.0 {
+                            faults.number(place.index(0), given[0], &DEPTH);
+                        }
+                        Steps::read(given, place, faults)
+                    }
+                }
+            });
+            match steps {
+                [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+                _ => None,
+            }
+        });
+        Places::grid(steps.flatten()?, at, faults)
+    }
+
+    pub(super) fn surface(surface: &SubsurfaceSurface, at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+        surface.check_members(at, faults);
+        let x = Steps::read(surface.x, at.member("x"), faults);
+        let y = Steps::read(surface.y, at.member("y"), faults);
+        Places::grid([x?, y?, Steps::single(0.0)], at, faults)
+    }
+
+    fn grid(steps: [Steps; 3], at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
+        let count = steps.iter().fold(1_usize, |count, steps| count.saturating_mul(steps.count));
+        faults.length(at, count, &SUBSURFACE_POINTS).then_some(Places::Grid(steps))
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match self {
+            Places::Points(points) => points.len(),
+            Places::Grid(steps) => steps.iter().map(|steps| steps.count).product(),
+            Places::Line(line) => line.count,
+        }
+    }
+
+    /// The place of this index: x, y, z, m.
+    #[must_use]
+    pub fn at(&self, index: usize) -> [f64; 3] {
+        match self {
+            Places::Points(points) => points[index],
+            Places::Grid([x, y, z]) => {
+                let (rest, last) = (index / z.count, index % z.count);
+                [x.at(rest / y.count), y.at(rest % y.count), z.at(last)]
+            }
+            Places::Line(line) => {
+                let share = index as f64 / (line.count - 1) as f64;
+                std::array::from_fn(|axis| line.from[axis] + (line.to[axis] - line.from[axis]) * share)
+            }
+        }
+    }
+}
+
+/// Notes a point above the surface.
+fn check_depth(&[_, _, z]: &[f64; 3], at: JsonPath<'_>, faults: &mut Faults) {
+    if (range::PLACE.min..0.0).contains(&z) {
+        faults.number(at.index(2), z, &DEPTH);
+    }
+}
