@@ -38,7 +38,7 @@ use resources::meta::OpenApiText;
 use resources::{
     accuracy, contacts, cycle, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, page,
 };
-use resources::{protocols, simulate, stress, sweep};
+use resources::{protocols, simulate, stress, subsurface, sweep};
 
 pub use problem::Problem;
 pub use state::{Access, App};
@@ -128,6 +128,7 @@ fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
         .routes(routes!(moves::follow_path))
         .routes(routes!(moves::relax_contact))
         .routes(routes!(stress::get_stress))
+        .routes(routes!(subsurface::compute_subsurface_stress))
         .routes(routes!(cycle::get_steady_cycle))
         .routes(routes!(history::get_history))
         .routes(routes!(hysteresis_loop::get_loop))

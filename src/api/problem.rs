@@ -158,6 +158,7 @@ impl From<SessionError> for Problem {
             SessionError::TooManyStreams => Problem::new(Code::Overloaded, detail),
             SessionError::Store(StoreError::KeyReused) => Problem::new(Code::IdempotencyKeyReused, detail),
             SessionError::Failure(failure) => failure.into(),
+            SessionError::Rejected(rejection) => rejection.into(),
             SessionError::Pool(error) => error.into(),
             SessionError::Expired(_) => Problem::new(Code::ContactExpired, detail),
             SessionError::Store(StoreError::Full(_)) => {

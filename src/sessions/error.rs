@@ -5,6 +5,7 @@ use uuid::Uuid;
 use crate::admission::PoolError;
 use crate::simulation;
 use crate::store::StoreError;
+use stickslip_wire::Rejection;
 
 /// Why an operation on a session failed. Nothing has changed then.
 #[derive(Debug, thiserror::Error)]
@@ -46,6 +47,9 @@ pub enum SessionError {
     /// The mechanics has no answer, or the client no longer waits for it.
     #[error(transparent)]
     Failure(#[from] simulation::Failure),
+    /// The request does not fit the definition of the contact.
+    #[error(transparent)]
+    Rejected(#[from] Rejection),
     /// No solver is free, or one failed.
     #[error(transparent)]
     Pool(#[from] PoolError),

@@ -11,7 +11,11 @@ use crate::simulation::cost::{self, Work};
 use crate::simulation::{self, Timer, stresses};
 use stickslip_mechanics::Contact;
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::{CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply};
+use stickslip_wire::subsurface::SubsurfaceTask;
+use stickslip_wire::{
+    CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply, SubsurfaceReply,
+    SubsurfaceRequest,
+};
 
 use super::loaded::table_points;
 use super::{SessionError, Sessions, written};
@@ -103,6 +107,35 @@ impl Sessions {
             let solve = || simulation::cycle(&contact, &task, Timer::start(), &stop);
             let reply = otlp::part!("solve").in_scope(solve)?;
             Ok::<_, SessionError>(write(&reply, &contact, &task))
+        };
+        Ok((sequence, self.common.pool.run(cost, work).await??, held))
+    }
+
+    /// The reply that `write` makes of the stress below the surface of a session, as [`Sessions::stress`]; for each place it takes
+    /// `more` bytes.
+    ///
+    /// # Errors
+    /// As [`Sessions::stress`], and a request that does not fit the definition.
+    pub async fn subsurface<T: Send + 'static>(
+        &self,
+        id: Uuid,
+        request: SubsurfaceRequest,
+        (more, longer): (impl Fn(usize) -> usize, Nanoseconds),
+        write: impl FnOnce(&SubsurfaceReply, &SubsurfaceTask) -> T + Send + 'static,
+    ) -> Result<(u64, T, Reservation), SessionError> {
+        let (stop, _guard) = self.common.pool.deadline();
+        let definition = {
+            let mut guard = self.lock(id).await?;
+            Arc::clone(&self.current(&mut guard).await?.session.definition)
+        };
+        let task = request.of_contact(&definition)?;
+        let bytes = cost::bytes_of_subsurface(&task) + more(task.places.count());
+        let (contact, sequence, held) = self.copy(id, bytes).await?;
+        let cost = cost::of_subsurface(contact.profile(), &task, contact.memory_depth()).saturating_add(longer);
+        let work = move || {
+            let solve = || simulation::subsurface_reply(&contact, &task, &stop);
+            let reply = otlp::part!("solve").in_scope(solve)?;
+            Ok::<_, SessionError>(write(&reply, &task))
         };
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
     }

@@ -12,6 +12,7 @@ use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::protocol::{Aim, ProtocolTask};
 use stickslip_wire::session::Advance;
 use stickslip_wire::simulate::Simulation;
+use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{self as wire, Comparison, Plan, Solver, Steps, limits};
 
 /// A body longer than this (bytes) is parsed on the pool: it may hold a table, and a point of that costs some 50
@@ -36,6 +37,12 @@ const CYCLE_COST: u64 = 2_000;
 const HARMONICS_COST: u64 = 20_000;
 /// One cycle under a load that oscillates, which is stepped.
 const STEPPED_CYCLE_COST: u64 = 5_000_000;
+/// One kink of the slip history of a sphere in the stress at one place below the surface.
+const KINK_COST: u64 = 100;
+/// The stress at one place below the surface of another profile.
+const PLACE_COST: u64 = 20_000;
+/// One number of a reply, written as JSON.
+const NUMBER_COST: u64 = 60;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -179,6 +186,7 @@ pub fn bytes_of_simulation(simulation: &Simulation) -> usize {
     bytes_of_moves(&simulation.plan, simulation.steps)
         + bytes_of_stress(radii)
         + bytes_of_shape(&simulation.definition.profile)
+        + simulation.subsurface.as_ref().map_or(0, bytes_of_subsurface)
         + springs
 }
 
@@ -187,7 +195,8 @@ pub fn bytes_of_simulation(simulation: &Simulation) -> usize {
 pub fn length_of_simulation(simulation: &Simulation) -> usize {
     let states = if simulation.steps == Steps::All { simulation.plan.length() } else { 1 };
     let numbers = simulation.stress.as_ref().map_or(0, |stress| stress.length() * (1 + stress.fields.count()));
-    REPLY_LENGTH + states * STATE_LENGTH + numbers * NUMBER_LENGTH
+    let below = simulation.subsurface.as_ref().map_or(0, |task| task.places.count() * task.columns());
+    REPLY_LENGTH + states * STATE_LENGTH + (numbers + below) * NUMBER_LENGTH
 }
 
 /// Bytes that moves of a session take, with their records and the reply; rather too many than too few.
@@ -233,6 +242,8 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let curved = simulation.plan.curved();
     let exact = Work { moves, curved, depth: 0, radii, residual: simulation.residual }.cost(&simulation.setup.profile);
+    let below = |task| of_subsurface(&simulation.setup.profile, task, moves);
+    let exact = exact.saturating_add(simulation.subsurface.as_ref().map_or(0, below));
     match simulation.solver {
         None | Some(Solver::Exact) => exact,
         Some(Solver::Springs(springs)) => {
@@ -265,6 +276,22 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
         + 2 * bytes_of_stress(comparison.sampling.length())
         + bytes_of_shape(&comparison.definition.profile)
         + comparison.springs().max().unwrap_or(0) * SPRING_BYTES
+}
+
+/// The cost of stresses below the surface, with a slip history of this many pieces.
+#[must_use]
+pub fn of_subsurface(profile: &Profile, task: &SubsurfaceTask, depth: usize) -> Nanoseconds {
+    let each = match profile {
+        Profile::Sphere(_) => KINK_COST.saturating_mul(depth as u64 + 1),
+        _ => PLACE_COST,
+    };
+    (task.places.count() as u64).saturating_mul(each + 15 * NUMBER_COST)
+}
+
+/// Bytes that they take, with their reply.
+#[must_use]
+pub fn bytes_of_subsurface(task: &SubsurfaceTask) -> usize {
+    task.places.count() * task.columns() * (size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
 }
 
 /// The cost of steady cycles.

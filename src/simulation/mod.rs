@@ -12,6 +12,7 @@ mod protocol;
 mod reply_template;
 mod run;
 mod solver;
+mod subsurface;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ pub use cycle::{cycle, cycle_of};
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
+pub use subsurface::{subsurface, subsurface_reply};
 pub use sweep::{Sweep, SweepError, SweepResult, Workers};
 pub use warnings::{excess_error, new_warnings, present_warnings};
 

@@ -19,12 +19,15 @@ pub(super) fn reply_template(simulation: &Simulation) -> SimulateReply {
         steps: vec![STATE; steps],
         stress: simulation.stress.as_ref().map(stress),
         residual: simulation.residual.then_some(residual),
+        // No output of a sweep.
+        subsurface: None,
         protocol,
         accuracy: Accuracy {
             solver: SolverKind::Exact,
             reason: String::new(),
             force_error: 0.0,
             stress_error: 0.0,
+            subsurface_error: None,
             compute_time: 0.0,
         },
         warnings: Vec::new(),

@@ -13,7 +13,8 @@ use stickslip_wire::{
 
 use super::{
     Failure, Solver, cost, quantity,
-    warnings::{Observed, excess_error, warnings},
+    subsurface::subsurface,
+    warnings::{Observed, bulk_warning, excess_error, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
@@ -82,10 +83,13 @@ pub(super) fn run<S: Solver>(
     }
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
+    let below = simulation.subsurface.as_ref().zip(solver.in_depth());
+    let below = below.map(|(task, contact)| subsurface(contact, task, stop)).transpose()?;
+    let (subsurface, subsurface_error) = below.unzip();
     let mut estimate = solver.accuracy();
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
-    let accuracy = accuracy_of::<S>(&estimate, timer, reason);
+    let accuracy = Accuracy { subsurface_error, ..accuracy_of::<S>(&estimate, timer, reason) };
     let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
@@ -99,8 +103,12 @@ pub(super) fn run<S: Solver>(
         steps,
         stress,
         residual,
+        subsurface,
         protocol,
-        warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &observed),
+        warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &observed)
+            .into_iter()
+            .chain(simulation.subsurface.as_ref().and_then(bulk_warning))
+            .collect(),
         accuracy,
     })
 }
@@ -277,6 +285,7 @@ fn accuracy_of<S: Solver>(estimate: &ErrorEstimate, timer: Timer, reason: &str) 
         reason: reason.to_owned(),
         force_error: estimate.force_error,
         stress_error: estimate.stress_error,
+        subsurface_error: None,
         compute_time: timer.0.elapsed().as_secs_f64(),
     }
 }

@@ -45,6 +45,8 @@ pub trait Solver {
     fn accuracy(&self) -> ErrorEstimate;
     /// Error that curved moves have left in the force, relative to μ F_N.
     fn path_error(&self) -> f64;
+    /// The contact whose stress below the surface is known.
+    fn in_depth(&self) -> Option<&Contact>;
 }
 
 impl Solver for Contact {
@@ -104,6 +106,10 @@ impl Solver for Contact {
 
     fn path_error(&self) -> f64 {
         self.path_error()
+    }
+
+    fn in_depth(&self) -> Option<&Contact> {
+        Some(self)
     }
 }
 
@@ -166,5 +172,9 @@ impl Solver for Springs {
     fn path_error(&self) -> f64 {
         // No move of theirs is curved.
         0.0
+    }
+
+    fn in_depth(&self) -> Option<&Contact> {
+        None
     }
 }

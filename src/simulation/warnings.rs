@@ -2,6 +2,7 @@
 
 use stickslip_mechanics::{Contact, Elasticity, Profile};
 use stickslip_wire::Warning;
+use stickslip_wire::subsurface::SubsurfaceTask;
 
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
 /// below it.
@@ -69,6 +70,14 @@ pub(super) fn warnings_at(
 pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     // The tolerance is for a move, and the errors of several add up.
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
+}
+
+/// The warning for a bulk stress.
+pub(super) fn bulk_warning(task: &SubsurfaceTask) -> Option<Warning> {
+    task.bulk.map(|_| Warning {
+        code: "bulk_shift_neglected".to_owned(),
+        message: "a bulk stress also shifts the stick zone, which is neglected: it is only added".to_owned(),
+    })
 }
 
 /// The warnings for a pair of bodies and a run.

@@ -13,8 +13,8 @@ use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
     EndEvent, EndReason, ForkRequest, HistoryPage, JobReply, LoopPage, Machine, MoveReply, MoveRequest, NewSession,
     PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage,
-    SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest, SweepReply, SweepRequest,
-    WorkDensity,
+    SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest, SubsurfaceReply,
+    SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
@@ -164,6 +164,11 @@ impl Client {
         let call = self.call(Method::GET, &format!("/contacts/{id}/stress"));
         let call = call.query(&[("points", request.points)]).query(&[("radii", radii), ("fields", fields)]);
         json(call.query(&[("residual", residual)])).await
+    }
+
+    /// `POST /contacts/{id}/subsurface`.
+    pub async fn subsurface(&self, id: Uuid, request: &SubsurfaceRequest) -> Result<SubsurfaceReply, Error> {
+        json(self.call(Method::POST, &format!("/contacts/{id}/subsurface")).json(request)).await
     }
 
     /// `GET /contacts/{id}/cycle`: the steady cycles of the contact at its present load.

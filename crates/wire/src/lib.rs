@@ -61,7 +61,7 @@ pub use session::{
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};
 pub use subsurface::{
-    BodyName, Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
-    SubsurfaceSurface,
+    BodyName, Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply,
+    SubsurfaceRequest, SubsurfaceSurface,
 };
 pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};

@@ -298,11 +298,11 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath,
-        Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine, Material, Move,
-        MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest,
-        Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SweepRequest,
-        WorkDensity,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest,
+        CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine,
+        Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
+        SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
+        SubsurfaceSurface, SweepRequest, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {

@@ -137,7 +137,7 @@ impl Document for SimulateRequest {
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.and_then(|stress| stress.check(JsonPath::Root.member("stress"), &mut faults));
         let at = JsonPath::Root.member("subsurface");
-        let subsurface = self.subsurface.and_then(|asked| asked.check(&self.contact, at, &mut faults));
+        let subsurface = self.subsurface.and_then(|asked| asked.at(&self.contact, at, &mut faults));
         if subsurface.is_some() && matches!(self.solver, Some(Solver::Springs(_))) {
             faults.add(at, "springs have no stress below the surface: leave this or `solver` out");
         }
@@ -150,8 +150,17 @@ impl Document for SimulateRequest {
             solver.check(JsonPath::Root.member("solver"), passes, &mut faults);
         }
         let (definition, residual, steps, solver) = (self.contact, self.residual, self.steps, self.solver);
-        let simulation =
-            |(setup, plan)| Simulation { definition, setup, plan, stress, residual, subsurface, steps, solver, tolerance };
+        let simulation = |(setup, plan)| Simulation {
+            definition,
+            setup,
+            plan,
+            stress,
+            residual,
+            subsurface,
+            steps,
+            solver,
+            tolerance,
+        };
         faults.done(setup.zip(plan).map(simulation))
     }
 }

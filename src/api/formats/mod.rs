@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::admission::{INLINE, Nanoseconds};
 use crate::otlp;
-use stickslip_report::plot::Plot;
+use stickslip_report::plot::Picture;
 
 use super::problem::Problem;
 use super::reply;
@@ -23,6 +23,8 @@ pub use table::Table;
 
 /// Bytes of a row of stresses in the longest of the formats.
 pub const STRESS_ROW: usize = 256;
+/// Bytes of a row of stresses below the surface, likewise.
+pub const SUBSURFACE_ROW: usize = 640;
 /// Bytes that a plot takes while it is drawn.
 const PLOT: usize = 16 * 1024 * 1024;
 
@@ -119,10 +121,10 @@ impl Format {
     ///
     /// # Errors
     /// [`Problem::internal`] if it cannot be written, which is a fault of the service.
-    pub fn write<'p>(
+    pub fn write<'p, P: Picture>(
         self,
         page: &impl Serialize,
-        plot: impl FnOnce() -> Plot,
+        plot: impl FnOnce() -> P,
         table: impl FnOnce() -> Table<'p>,
     ) -> Result<Vec<u8>, Problem> {
         let write = || match self {

@@ -3,9 +3,12 @@
 use uuid::Uuid;
 
 use stickslip_mechanics::{Contact, Move, Regime, Tangential};
-use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot};
+use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot, Section};
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::{Cycle, CyclePage, CycleReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply};
+use stickslip_wire::subsurface::SubsurfaceTask;
+use stickslip_wire::{
+    Cycle, CyclePage, CycleReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
+};
 
 /// Points of each branch of a steady loop.
 const BRANCH_POINTS: usize = 200;
@@ -43,6 +46,32 @@ pub fn stress(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply) -
         }],
         bands,
     }
+}
+
+/// One field over a plane; empty where the request has no such.
+#[must_use]
+pub fn section(stress: &Subsurface, task: &SubsurfaceTask) -> Section {
+    let [x, y, z] = task.places.axes().unwrap_or_default();
+    let fields = [
+        ("von Mises stress", &stress.von_mises),
+        ("largest shear stress", &stress.max_shear),
+        ("mean stress", &stress.hydrostatic),
+    ];
+    let (name, values) = fields.into_iter().find_map(|(name, values)| Some((name, values.as_ref()?))).unzip();
+    let values: Vec<f64> = values.into_iter().flatten().map(|value| value.unwrap_or(f64::NAN)).collect();
+    let axis = |name| Axis { name, unit: Some("m") };
+    let (across, along, depth) = (axis("x, along the motion"), axis("y, across the motion"), axis("depth z"));
+    // The grid runs along x, y and z in turn, and is a single value along one of them.
+    let (first, second, downwards) = if y.len() == 1 {
+        ((across, x), (depth, z), true)
+    } else if z.len() == 1 {
+        ((across, x), (along, y), false)
+    } else {
+        ((along, y), (depth, z), true)
+    };
+    let title = format!("{} in the {} body", name.unwrap_or_default(), task.body_name());
+    let unit = Axis { name: name.unwrap_or_default(), unit: Some("Pa") };
+    Section { title, x: first, y: second, downwards, values: (unit, values) }
 }
 
 /// Displacement, force and friction work over the moves.

@@ -8,7 +8,8 @@ use crate::simulation::SweepResult;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::sweep::{CheckedSweep, indices};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, Field, Harmonic, HistoryPage, LoopPage, State, SteadyCycle, StressReply,
+    Cycle, CyclePage, CycleReply, Field, Harmonic, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
+    subsurface,
 };
 
 use super::table::{Cells, Column, Table};
@@ -35,6 +36,22 @@ pub fn stress(reply: &StressReply) -> Table<'_> {
         }
     }
     flat(reply.radius.len(), columns)
+}
+
+/// The stress below the surface: a row for each place.
+#[must_use]
+pub fn subsurface(reply: &Subsurface) -> Table<'_> {
+    let mut columns = vec![
+        Column::floats("x", "m", |row| reply.x[row]),
+        Column::floats("y", "m", |row| reply.y[row]),
+        Column::floats("z", "m", |row| reply.z[row]),
+    ];
+    for (name, values) in subsurface::COLUMNS.into_iter().zip(reply.columns()) {
+        if let Some(values) = values {
+            columns.push(Column::floats(name, "Pa", |row| values[row].unwrap_or(f64::NAN)));
+        }
+    }
+    flat(reply.x.len(), columns)
 }
 
 /// A page of a history: the states with their numbers and times.

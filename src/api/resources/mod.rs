@@ -15,4 +15,5 @@ pub mod page;
 pub mod protocols;
 pub mod simulate;
 pub mod stress;
+pub mod subsurface;
 pub mod sweep;

@@ -21,6 +21,10 @@ pub use tensor::Stress;
 
 /// Distance from the centre of the contact, in contact radii, from which the closed form of the parabola would lose digits.
 const FAR: f64 = 8.0;
+/// What quadrature and closed form leave, over the unit pressure, as tests find it at the worst.
+const NUMERICAL: f64 = 4e-12;
+/// How many times the error of a traction the stress below it may err: its largest component under a unit traction.
+const GAIN: f64 = 4.0;
 /// Depth, in contact radii, below which a point is taken as one of the surface: the stress changes with its root.
 const SURFACE: f64 = 1e-36;
 
@@ -142,6 +146,13 @@ impl Subsurface {
             &tangential.map(|value| dragged * value),
         );
         if surface { self.of_surface(r, stress) } else { stress }
+    }
+
+    /// Estimated error of any component, relative to [`ContactSummary::unit_pressure`](super::ContactSummary::unit_pressure): that
+    /// of the tractions, and of the quadrature.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        NUMERICAL + GAIN * self.contact.friction().max(1.0) * self.contact.accuracy().stress_error
     }
 
     /// A stress of the surface, with the tractions that the surface is known to have.

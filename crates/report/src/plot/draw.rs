@@ -6,7 +6,7 @@ use std::ops::Range;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Axis, Band, Colour, Panel, Plot, unit_prefix};
+use super::{Axis, Band, Colour, Panel, Picture, Plot, unit_prefix};
 
 /// Pixels of a plot. Twice the size shown on a page, so that curves and text are smooth.
 pub(super) const SIZE: (u32, u32) = (1520, 1000);
@@ -21,9 +21,9 @@ const HEADROOM: f64 = 0.24;
 const SMALLEST: f64 = 1e-200;
 
 /// The divisor of the values of an axis, and its label.
-struct Scale {
-    unit: f64,
-    label: String,
+pub(super) struct Scale {
+    pub(super) unit: f64,
+    pub(super) label: String,
 }
 
 impl Colour {
@@ -36,30 +36,52 @@ impl Colour {
     }
 }
 
-/// The plot as an SVG document.
-pub(super) fn svg(plot: &Plot) -> Result<Vec<u8>, Box<dyn Error>> {
+/// A picture as an SVG document.
+pub(super) fn svg(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut text = String::new();
     let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-    draw(plot, &area)?;
+    prepare(picture, &area)?;
     drop(area);
     Ok(text.into_bytes())
 }
 
-/// The plot as rows of pixels of three bytes.
-pub(super) fn pixels(plot: &Plot) -> Result<Vec<u8>, Box<dyn Error>> {
+/// A picture as rows of pixels of three bytes.
+pub(super) fn pixels(picture: &(impl Picture + ?Sized)) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut pixels = vec![0; 3 * SIZE.0 as usize * SIZE.1 as usize];
     let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
-    draw(plot, &area)?;
+    prepare(picture, &area)?;
     drop(area);
     Ok(pixels)
+}
+
+/// Draws on white, with the fonts.
+fn prepare<DB: DrawingBackend>(
+    picture: &(impl Picture + ?Sized),
+    area: &DrawingArea<DB, Shift>,
+) -> Result<(), Box<dyn Error>>
+where
+    DB::ErrorType: 'static,
+{
+    super::font::register();
+    area.fill(&WHITE)?;
+    picture.draw(area)?;
+    area.present()?;
+    Ok(())
+}
+
+impl Picture for Plot {
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
+    where
+        DB::ErrorType: 'static,
+    {
+        draw(self, area)
+    }
 }
 
 fn draw<DB: DrawingBackend>(plot: &Plot, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
 where
     DB::ErrorType: 'static,
 {
-    super::font::register();
-    area.fill(&WHITE)?;
     let titled = area.margin(16, 0, 0, 0).titled(&plot.title, ("sans-serif", 30))?;
     let ends = plot.bands.iter().flat_map(|band| [band.from, band.to]);
     let x_range =
@@ -73,7 +95,6 @@ where
         let bands: &[Band] = if index == 0 { &plot.bands } else { &[] };
         draw_panel(part, panel, bands, &extent, &scale, index == last)?;
     }
-    area.present()?;
     Ok(())
 }
 
@@ -156,7 +177,7 @@ where
 }
 
 /// The range of the values, widened if they are all the same.
-fn extent(values: impl Iterator<Item = f64>) -> Range<f64> {
+pub(super) fn extent(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for value in values.filter(is_drawable) {
         (low, high) = (low.min(value), high.max(value));
@@ -175,7 +196,7 @@ fn is_drawable(value: &f64) -> bool {
     value.abs() < 1e250
 }
 
-fn scale(axis: &Axis, extent: &Range<f64>) -> Scale {
+pub(super) fn scale(axis: &Axis, extent: &Range<f64>) -> Scale {
     match axis.unit {
         None => Scale { unit: 1.0, label: axis.name.to_owned() },
         Some(unit) => {
@@ -186,7 +207,7 @@ fn scale(axis: &Axis, extent: &Range<f64>) -> Scale {
 }
 
 /// A tick's label: a few digits, without a sign on zero.
-fn tick(value: &f64) -> String {
+pub(super) fn tick(value: &f64) -> String {
     let size = value.abs();
     if size < 1e-12 {
         "0".to_owned()

@@ -7,6 +7,14 @@ pub mod chart;
 mod draw;
 mod font;
 mod png;
+mod section;
+
+pub use section::Section;
+
+use std::error::Error;
+
+use plotters::coord::Shift;
+use plotters::prelude::{DrawingArea, DrawingBackend};
 
 /// Panels one above the other, over the same axis.
 pub struct Plot {
@@ -71,20 +79,29 @@ pub enum Colour {
     Grey,
 }
 
-impl Plot {
-    /// The plot as an SVG document.
+/// Something that can be drawn.
+pub trait Picture {
+    /// Draws it on an empty area.
+    ///
+    /// # Errors
+    /// What the backend cannot do.
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Box<dyn Error>>
+    where
+        DB::ErrorType: 'static;
+
+    /// It as an SVG document.
     ///
     /// # Errors
     /// A sentence for the log, if the drawing fails.
-    pub fn svg(&self) -> Result<Vec<u8>, String> {
+    fn svg(&self) -> Result<Vec<u8>, String> {
         draw::svg(self).map_err(|fault| fault.to_string())
     }
 
-    /// The plot as a PNG file.
+    /// It as a PNG file.
     ///
     /// # Errors
     /// A sentence for the log, if the drawing fails.
-    pub fn png(&self) -> Result<Vec<u8>, String> {
+    fn png(&self) -> Result<Vec<u8>, String> {
         draw::pixels(self).and_then(|pixels| png::encode(&pixels, draw::SIZE)).map_err(|fault| fault.to_string())
     }
 }

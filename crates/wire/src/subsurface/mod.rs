@@ -13,6 +13,8 @@ use stickslip_mechanics::{self as mechanics, range, subsurface::Side};
 use crate::check::{Faults, JsonPath};
 use crate::definition::{Body, ContactDefinition, Material};
 use crate::limits::{SUBSURFACE_POINTS, Triples, limits};
+use crate::parse::{Document, Rejection};
+use crate::reply::{Accuracy, Warning};
 use crate::single_key::not_null;
 
 /// The stress in one of the bodies, tension positive: x along the motion of the first body, which carries the profile, z into
@@ -136,9 +138,31 @@ pub struct Subsurface {
     pub hydrostatic: Option<Vec<Option<f64>>>,
 }
 
+/// Stresses below the surface of a contact on the server.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SubsurfaceReply {
+    /// The columns.
+    #[serde(flatten)]
+    pub stress: Subsurface,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+
 /// The names of the columns of values, in order, with their units.
 pub const COLUMNS: [&str; 12] = [
-    "xx", "yy", "zz", "xy", "yz", "xz", "principal_1", "principal_2", "principal_3", "von_mises", "max_shear",
+    "xx",
+    "yy",
+    "zz",
+    "xy",
+    "yz",
+    "xz",
+    "principal_1",
+    "principal_2",
+    "principal_3",
+    "von_mises",
+    "max_shear",
     "hydrostatic",
 ];
 
@@ -146,7 +170,8 @@ impl Subsurface {
     /// The columns that there are, by the order of [`COLUMNS`].
     #[must_use]
     pub fn columns(&self) -> [&Option<Vec<Option<f64>>>; 12] {
-        let Subsurface { xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, .. } = self;
+        let Subsurface { xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, .. } =
+            self;
         [xx, yy, zz, xy, yz, xz, principal_1, principal_2, principal_3, von_mises, max_shear, &self.hydrostatic]
     }
 }
@@ -167,6 +192,25 @@ pub struct SubsurfaceTask {
 }
 
 impl SubsurfaceTask {
+    /// The name of the body.
+    #[must_use]
+    pub fn body_name(&self) -> &'static str {
+        match self.side {
+            Side::First => "first",
+            Side::Second => "second",
+        }
+    }
+
+    /// How many columns its reply has.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        let of = |field, columns| if self.wants(field) { columns } else { 0 };
+        let single = [SubsurfaceField::VonMises, SubsurfaceField::MaxShear, SubsurfaceField::Hydrostatic];
+        3 + of(SubsurfaceField::Tensor, 6)
+            + of(SubsurfaceField::Principal, 3)
+            + single.into_iter().map(|field| of(field, 1)).sum::<usize>()
+    }
+
     /// Whether a field is asked for.
     #[must_use]
     pub fn wants(&self, field: SubsurfaceField) -> bool {
@@ -174,14 +218,28 @@ impl SubsurfaceTask {
     }
 }
 
+impl Document for SubsurfaceRequest {
+    /// What can only be checked against a contact is checked by [`SubsurfaceRequest::of_contact`].
+    type Checked = SubsurfaceRequest;
+
+    fn check(self) -> Result<SubsurfaceRequest, Rejection> {
+        Ok(self)
+    }
+}
+
 impl SubsurfaceRequest {
+    /// The checked request for a contact of this definition.
+    ///
+    /// # Errors
+    /// [`Rejection::Invalid`] with every fault.
+    pub fn of_contact(self, contact: &ContactDefinition) -> Result<SubsurfaceTask, Rejection> {
+        let mut faults = Faults::default();
+        let task = self.at(contact, JsonPath::Root, &mut faults);
+        faults.done(task)
+    }
+
     /// The checked request for a contact of this definition; its faults are noted at `at`.
-    pub fn check(
-        self,
-        contact: &ContactDefinition,
-        at: JsonPath<'_>,
-        faults: &mut Faults,
-    ) -> Option<SubsurfaceTask> {
+    pub fn at(self, contact: &ContactDefinition, at: JsonPath<'_>, faults: &mut Faults) -> Option<SubsurfaceTask> {
         self.check_members(at, faults);
         let poisson_ratio = faults.part(|faults| self.poisson(contact, at, faults)).flatten();
         let fields = self.fields.unwrap_or_else(|| vec![SubsurfaceField::Tensor]);
@@ -211,6 +269,14 @@ impl SubsurfaceRequest {
             BodyName::Second => Side::Second,
         };
         Some(SubsurfaceTask { side, poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
+    }
+
+    /// Whether it is for one quantity over a grid in a plane, which can be drawn.
+    #[must_use]
+    pub fn is_section(&self) -> bool {
+        let single = |field: &SubsurfaceField| !matches!(field, SubsurfaceField::Tensor | SubsurfaceField::Principal);
+        let one = self.fields.as_deref().is_some_and(|fields| matches!(fields, [only] if single(only)));
+        one && (self.plane.is_some() || self.surface.is_some())
     }
 
     /// Poisson's ratio of the body, from the material or from the request.

@@ -103,7 +103,11 @@ impl Steps {
     /// The value of this index, m.
     #[must_use]
     pub fn at(&self, index: usize) -> f64 {
-        if index == 0 { self.from } else { self.from + (self.to - self.from) * (index as f64 / (self.count - 1) as f64) }
+        if index == 0 {
+            self.from
+        } else {
+            self.from + (self.to - self.from) * (index as f64 / (self.count - 1) as f64)
+        }
     }
 
     fn single(value: f64) -> Steps {
@@ -197,6 +201,13 @@ impl Places {
     fn grid(steps: [Steps; 3], at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
         let count = steps.iter().fold(1_usize, |count, steps| count.saturating_mul(steps.count));
         faults.length(at, count, &SUBSURFACE_POINTS).then_some(Places::Grid(steps))
+    }
+
+    /// The values along the three axes, if it is a grid.
+    #[must_use]
+    pub fn axes(&self) -> Option<[Vec<f64>; 3]> {
+        let Places::Grid(steps) = self else { return None };
+        Some(steps.map(|steps| (0..steps.count).map(|index| steps.at(index)).collect()))
     }
 
     /// How many there are.

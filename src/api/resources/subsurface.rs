@@ -1,0 +1,79 @@
+//! `/contacts/{id}/subsurface`: the stress below the surface in the present state of a contact.
+
+use axum::http::HeaderMap;
+use axum::response::Response;
+use utoipa::IntoParams;
+
+use stickslip_wire::subsurface::SubsurfaceTask;
+use stickslip_wire::{SubsurfaceReply, SubsurfaceRequest};
+
+use crate::api::extract::CheckedBody;
+use crate::api::formats::{Format, SUBSURFACE_ROW, plots, tables};
+use crate::api::params::ContactPath;
+use crate::api::problem::{Code, Problem};
+use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
+use crate::api::reply;
+use crate::api::state::TenantApp;
+
+/// How the stresses are written.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct SubsurfaceFormat {
+    /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
+    /// stream), or a picture as `svg` or `png`: of one field in a plane or on the surface. If it is left out, `Accept`
+    /// decides.
+    #[param(value_type = Option<String>, nullable = false, default = "columns")]
+    format: Option<Format>,
+}
+
+impl QueryParams for SubsurfaceFormat {
+    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<SubsurfaceFormat> {
+        Some(SubsurfaceFormat { format: query.format(&Format::ALL) })
+    }
+}
+
+/// Compute the stress below the surface
+///
+/// The stress tensor and its invariants in one of the two bodies, in the present state of the contact, after whatever history.
+/// Nothing changes.
+#[utoipa::path(
+    post, path = "/contacts/{id}/subsurface", tag = "contacts", params(ContactPath, SubsurfaceFormat),
+    request_body(content = SubsurfaceRequest, examples(
+        ("section" = (summary = "Von Mises stress in the plane of the motion", value = json!({
+            "body": "first", "plane": {"normal": "y", "offset": 0.0, "x": [-2e-4, 2e-4, 41], "z": [0.0, 2e-4, 21]},
+            "fields": ["von_mises"]
+        }))),
+        ("points" = (summary = "The tensor at two points, with a bulk stress", value = json!({
+            "body": "first", "points": [[0.0, 0.0, 5e-5], [1e-4, 0.0, 0.0]], "bulk": {"xx": 1e8}
+        })))
+    )),
+    responses((status = 200, description = "The stresses in its present state", body = SubsurfaceReply,
+        headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
+)]
+pub async fn compute_subsurface_stress(
+    TenantApp(app): TenantApp,
+    ContactPath { id }: ContactPath,
+    headers: HeaderMap,
+    query: Result<CheckedQuery<SubsurfaceFormat>, Problem>,
+    request: CheckedBody<SubsurfaceRequest>,
+) -> Result<Response, Problem> {
+    let CheckedQuery(query) = query?;
+    let format = Format::chosen(query.format, &headers, &Format::ALL)?;
+    let CheckedBody { body, held, .. } = request;
+    if format.is_plot() && !body.is_section() {
+        let detail =
+            "a picture shows one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
+        return Err(Problem::at(Code::InvalidInput, "/fields", detail));
+    }
+    let more = (move |places: usize| format.bytes(places, SUBSURFACE_ROW), format.cost());
+    let write = move |stress: &SubsurfaceReply, task: &SubsurfaceTask| written(format, stress, task);
+    let (sequence, body, memory) = app.sessions.subsurface(id, body, more, write).await?;
+    drop(held);
+    let tag = format.tag(&sequence.to_string());
+    Ok(reply::holding(reply::tagged(format.reply(body?), &tag), memory))
+}
+
+/// The stresses in a format.
+fn written(format: Format, reply: &SubsurfaceReply, task: &SubsurfaceTask) -> Result<Vec<u8>, Problem> {
+    format.write(reply, || plots::section(&reply.stress, task), || tables::subsurface(&reply.stress))
+}
