@@ -115,6 +115,10 @@ impl Solver for Counting<'_> {
     fn path_error(&self) -> f64 {
         self.contact.path_error()
     }
+
+    fn in_depth(&self) -> Option<&Contact> {
+        Some(&self.contact)
+    }
 }
 
 /// Simulates with these members added to the request, on a parabola or, if not `parabola`, on a rounded punch.
