@@ -88,6 +88,25 @@ fn the_work_of_small_cycles_grows_with_the_cube_of_the_amplitude_to_all_digits()
     }
 }
 
+#[test]
+fn the_loss_factor_begins_straight_and_has_trebled_its_slope_at_gross_slip() {
+    // D = (2/3) mu F_N'' U0^3/m^2 with F_N'' = 2 E* da/dd, and E = G* a U0^2: 2/(3 pi) (d/a)(da/dd) U0/u_max.
+    let share = 1e-7;
+    let slope = |contact: &Contact| {
+        SteadyCycle::of(contact, share * contact.gross_slip_displacement()).loss_factor().unwrap() / share
+    };
+    for n in [1.0, 1.5, 2.0, 4.0] {
+        let virgin = contact(Profile::PowerLaw(PowerLaw::new(n, 0.1).unwrap()), 1e-3);
+        close(slope(&virgin), 2.0 / (3.0 * PI * n), 1e-6);
+        let onset = SteadyCycle::of(&virgin, virgin.gross_slip_displacement());
+        close(onset.loss_factor().unwrap(), 2.0 / (PI * n), 1e-12);
+    }
+    // A worn ball, d = a (a^2 - b^2)^(1/2)/R: (d/a)(da/dd) = (a^2 - b^2)/(2 a^2 - b^2).
+    let worn = contact(Profile::TruncatedSphere(TruncatedSphere::new(0.01, 8e-5).unwrap()), 6e-7);
+    close(worn.contact_radius(), 1e-4, 1e-12);
+    close(slope(&worn), 2.0 / (3.0 * PI) * 0.36 / 1.36, 1e-6);
+}
+
 /// The state after the moves U0, -U0, U0, and the work of the last two.
 fn stepped(virgin: &Contact, amplitude: f64) -> (Contact, f64) {
     let mut contact = virgin.clone();
