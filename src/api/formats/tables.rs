@@ -124,6 +124,11 @@ pub fn cycle<'a>(reply: &'a CycleReply, task: &CycleTask) -> Table<'a> {
         let amplitude = Column::floats("machine_amplitude", "m", move |row| maybe(cycles[row].machine_amplitude));
         columns.insert(2, amplitude);
     }
+    if task.map.is_some() {
+        let load = Column::floats("normal_force", "N", move |row| maybe(cycles[row].normal_force));
+        let limit = move |row: usize| maybe(cycles[row].gross_slip_displacement);
+        columns.splice(0..0, [load, Column::floats("gross_slip_displacement", "m", limit)]);
+    }
     let unit = if task.is_force_driven() { "m" } else { "N" };
     for index in 0..task.harmonics {
         let part = |of: fn(&Harmonic) -> f64| {
