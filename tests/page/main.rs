@@ -307,6 +307,7 @@ async fn the_steady_cycle_follows_the_slider() {
     let (force, displacement) = (session.contact.gross_slip_force, session.contact.gross_slip_displacement);
     let stiffness = four(1e-6 * (1.0 - 0.1_f64.powf(1.5)) * force / (0.9 * displacement));
     browser.until(&format!("{card}.includes({:?})", format!("{stiffness} MN/m"))).await;
+    browser.value("document.querySelector('#steady-card').scrollIntoView()").await;
     browser.picture("steady").await;
     // Dragged to the end and back to the middle, it ends with what belongs there.
     browser.drag("#slide-displacement", 0.2, 0.99).await;
@@ -354,6 +355,7 @@ async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
         );
         browser.until(&off).await;
     }
+    browser.value("document.querySelector('#plot-map').scrollIntoView()").await;
     browser.picture("map").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;

@@ -52,6 +52,6 @@ impl FrettingMap {
     /// The normal forces, N.
     pub fn loads(self) -> impl Iterator<Item = f64> {
         let LoadSpan { from, to, count } = self.normal_force;
-        (0..count).map(move |index| from * (to / from).powf(index as f64 / (count - 1) as f64))
+        (0..count).map(move |index| from * (to / from).powf(index as f64 / count.saturating_sub(1) as f64))
     }
 }

@@ -324,7 +324,7 @@ impl CycleTask {
     /// How many cycles there are.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.drives().len() * self.map.map_or(1, |map| map.normal_force.count)
+        self.drives().len().saturating_mul(self.map.map_or(1, |map| map.normal_force.count))
     }
 
     /// The JSON pointer to the amplitude of this index.
