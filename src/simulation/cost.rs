@@ -277,7 +277,7 @@ pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
     let each = CYCLE_COST + stepped + harmonics + searched + task.radii() as u64 * RADIUS_COST;
     let swept = task.response.as_ref().map_or(0, |asked| asked.frequencies.as_ref().map_or(200, Vec::len));
     let response = if swept > 0 { HARMONICS_COST.saturating_mul(1_000 + 60 * swept as u64) } else { 0 };
-    on_profile(profile, each.saturating_mul(task.drives().len() as u64).saturating_add(response), false)
+    on_profile(profile, each.saturating_mul(task.rows() as u64).saturating_add(response), false)
 }
 
 /// Bytes that steady cycles take, with their reply.
@@ -285,7 +285,7 @@ pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
 pub fn bytes_of_cycle(task: &CycleTask) -> usize {
     let curve = task.best_load.map_or(0, |study| study.points.unwrap_or(0));
     let swept = task.response.as_ref().map_or(0, |asked| asked.frequencies.as_ref().map_or(200, Vec::len));
-    task.drives().len() * (CYCLE_BYTES + task.harmonics * HARMONIC_BYTES + (task.radii() + curve) * DENSITY_BYTES)
+    task.rows() * (CYCLE_BYTES + task.harmonics * HARMONIC_BYTES + (task.radii() + curve) * DENSITY_BYTES)
         + swept * CYCLE_BYTES
 }
 
