@@ -38,6 +38,9 @@ const HARMONICS_COST: u64 = 3_000;
 const INVERTED_HARMONICS_COST: u64 = 20_000;
 /// One cycle under a load that oscillates, which is stepped until three results agree.
 const STEPPED_CYCLE_COST: u64 = 15_000_000;
+/// The same driven by a force or through a machine, where what is left falls with the square of the step alone and each
+/// step searches for a force.
+const SEARCHED_CYCLE_COST: u64 = 100_000_000;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -275,7 +278,8 @@ pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
     let inverted = task.is_force_driven() || task.stiffness.is_some();
     let once = if inverted { INVERTED_HARMONICS_COST } else { HARMONICS_COST };
     let harmonics = if task.harmonics > 0 { once * (1 + task.harmonics as u64 / 8) } else { 0 };
-    let stepped = if task.normal.is_some() { STEPPED_CYCLE_COST } else { 0 };
+    let each_stepped = if inverted { SEARCHED_CYCLE_COST } else { STEPPED_CYCLE_COST };
+    let stepped = if task.normal.is_some() { each_stepped } else { 0 };
     // Some four hundred loads are compared, and the harmonics of a thousand amplitudes and of each root.
     let searched = task.best_load.map_or(0, |study| 400 + study.points.unwrap_or(0) as u64) * CYCLE_COST;
     let each = CYCLE_COST + stepped + harmonics + searched + task.radii() as u64 * RADIUS_COST;

@@ -11,7 +11,7 @@ use stickslip_wire::{CycleReply, Document as _, SteadyCycle, parse};
 use super::harness::{Outcome, refused};
 
 /// The largest estimated cost of a body that is run.
-const MAX_COST: Nanoseconds = 500_000_000;
+const MAX_COST: Nanoseconds = 150_000_000;
 /// The allowed error of the work in the first harmonic beyond the estimate, relative to the work of the amplitudes.
 const WORK: f64 = 1e-10;
 /// Contact radii, m, and normal forces, N, below which products of a few of them lose their digits.
