@@ -32,10 +32,15 @@ const RADIUS_COST: u64 = 200;
 const SEARCH_COST: u64 = 1_000_000;
 /// One steady cycle with its row as JSON.
 const CYCLE_COST: u64 = 2_000;
-/// The harmonics of one cycle: some ten panels of twenty nodes.
-const HARMONICS_COST: u64 = 20_000;
-/// One cycle under a load that oscillates, which is stepped.
-const STEPPED_CYCLE_COST: u64 = 5_000_000;
+/// The first harmonics of one cycle, and as much again for every eight orders.
+const HARMONICS_COST: u64 = 3_000;
+/// The same of a driven force or through a machine, where each node inverts the profile.
+const INVERTED_HARMONICS_COST: u64 = 20_000;
+/// One cycle under a load that oscillates, which is stepped until three results agree.
+const STEPPED_CYCLE_COST: u64 = 15_000_000;
+/// The same driven by a force or through a machine, where what is left falls with the square of the step alone and each
+/// step searches for a force.
+const SEARCHED_CYCLE_COST: u64 = 100_000_000;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -270,8 +275,11 @@ pub fn bytes_of_comparison(comparison: &Comparison) -> usize {
 /// The cost of steady cycles.
 #[must_use]
 pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
-    let harmonics = if task.harmonics > 0 { HARMONICS_COST } else { 0 };
-    let stepped = if task.normal.is_some() { STEPPED_CYCLE_COST } else { 0 };
+    let inverted = task.is_force_driven() || task.stiffness.is_some();
+    let once = if inverted { INVERTED_HARMONICS_COST } else { HARMONICS_COST };
+    let harmonics = if task.harmonics > 0 { once * (1 + task.harmonics as u64 / 8) } else { 0 };
+    let each_stepped = if inverted { SEARCHED_CYCLE_COST } else { STEPPED_CYCLE_COST };
+    let stepped = if task.normal.is_some() { each_stepped } else { 0 };
     // Some four hundred loads are compared, and the harmonics of a thousand amplitudes and of each root.
     let searched = task.best_load.map_or(0, |study| 400 + study.points.unwrap_or(0) as u64) * CYCLE_COST;
     let each = CYCLE_COST + stepped + harmonics + searched + task.radii() as u64 * RADIUS_COST;

@@ -207,6 +207,34 @@ fn harmonics_are_those_of_many_points_of_the_stepped_loop() {
 }
 
 #[test]
+fn harmonics_of_all_orders_are_integrals_of_the_closed_loop_of_a_ball() {
+    let ball = unit_sphere();
+    let limit = FRICTION * ball.normal_force();
+    for share in [1e-3, 0.3, 0.97, 0.99, 1.0, 1.01, 1.03, 1.5, 20.0_f64] {
+        // The first loading at twice its size, from the upper end.
+        let force = |angle: f64| {
+            let first = |part: f64| 1.0 - (1.0 - part).max(0.0).powf(1.5);
+            first(share) - 2.0 * first(share * (0.5 * angle).sin().powi(2))
+        };
+        let sliding = 2.0 * share.max(1.0).sqrt().recip().asin();
+        for count in [6, 18, 31] {
+            for found in SteadyCycle::of(&ball, share * SCALE).harmonics(count).harmonics {
+                let order = found.order as f64;
+                let part = |wave: fn(f64) -> f64| {
+                    let product = |angle: f64| 2.0 / PI * force(angle) * wave(order * angle);
+                    integral(&product, 0.0, sliding, 1e-13) + integral(&product, sliding, PI, 1e-13)
+                };
+                // Half a turn later the force is the opposite, and so are the waves of odd order.
+                let expected = if found.order % 2 == 1 { [part(f64::cos), part(f64::sin)] } else { [0.0; 2] };
+                for (found, expected) in [found.in_phase, found.quadrature].into_iter().zip(expected) {
+                    assert!((found / limit - expected).abs() < 1e-11, "{share} {order}: {found:e} {expected:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_first_quadrature_is_the_work_whatever_is_driven() {
     for (profile, depth) in shapes() {
         let virgin = contact(profile.clone(), depth);
