@@ -6,10 +6,10 @@ use std::str::FromStr;
 
 use clap::Args;
 use stickslip::admission::Stop;
-use stickslip::simulation;
-use stickslip_mechanics::{Preload, Setup};
+use stickslip::simulation::{self, Timer};
+use stickslip_mechanics::Setup;
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::{self as wire, CycleRequest};
+use stickslip_wire::{self as wire, CycleRequest, Faults, FrettingMap, JsonPath, LoadSpan};
 
 use super::io::{json, print, problem, read};
 
@@ -28,13 +28,9 @@ pub struct Cycle {
     map: Option<Loads>,
 }
 
-/// Normal forces, evenly spaced in their logarithm.
+/// The loads of a map as the command line has them.
 #[derive(Clone, Copy)]
-struct Loads {
-    from: f64,
-    to: f64,
-    count: usize,
-}
+struct Loads(FrettingMap);
 
 impl FromStr for Loads {
     type Err = &'static str;
@@ -43,10 +39,15 @@ impl FromStr for Loads {
         let parts: Vec<&str> = text.split(':').collect();
         let read = || {
             let [from, to, count] = parts[..] else { return None };
-            Some(Loads { from: from.parse().ok()?, to: to.parse().ok()?, count: count.parse().ok()? })
+            Some(LoadSpan { from: from.parse().ok()?, to: to.parse().ok()?, count: count.parse().ok()? })
         };
-        let sound = |loads: &Loads| loads.from > 0.0 && loads.from < loads.to && (2..=1_000).contains(&loads.count);
-        read().filter(sound).ok_or("from:to:count is needed, with 0 < from < to in N and 2 to 1000 loads")
+        let sound = |map: &FrettingMap| {
+            let mut faults = Faults::default();
+            map.check(1, JsonPath::Root, &mut faults);
+            faults.is_empty()
+        };
+        let map = read().map(|normal_force| FrettingMap { normal_force }).filter(sound);
+        map.map(Loads).ok_or("from:to:count is needed, with 0 < from < to in N and 2 to 1000 loads")
     }
 }
 
@@ -54,8 +55,8 @@ impl Cycle {
     /// Computes the cycles and prints them.
     pub fn run(&self) -> Result<(), String> {
         let (_, setup, task) = wire::read::<CycleRequest>(&read(&self.file)?).map_err(problem)?;
-        if let Some(loads) = self.map {
-            return print(map(&setup, &task, loads)?.trim_end());
+        if let Some(Loads(loads)) = self.map {
+            return print(map(setup, &task, loads)?.trim_end());
         }
         let (_, reply) = simulation::cycle_of(setup, &task, &Stop::default()).map_err(problem)?;
         print(json(&reply))
@@ -63,12 +64,12 @@ impl Cycle {
 }
 
 /// The cycles of a contact under each of the loads.
-fn map(setup: &Setup, task: &CycleTask, Loads { from, to, count }: Loads) -> Result<String, String> {
+fn map(setup: Setup, task: &CycleTask, loads: FrettingMap) -> Result<String, String> {
     let mut lines = format!("{HEADER}\n");
-    for index in 0..count {
-        let load = from * (to / from).powf(index as f64 / (count - 1) as f64);
-        let pressed = Setup { preload: Preload::NormalForce(load), ..setup.clone() };
-        let (_, reply) = simulation::cycle_of(pressed, task, &Stop::default()).map_err(problem)?;
+    let stop = Stop::default();
+    let contact = simulation::contact(setup, "/contact").map_err(problem)?;
+    for load in loads.loads() {
+        let reply = simulation::cycles_under(&contact, load, task, Timer::start(), &stop).map_err(problem)?;
         for cycle in reply.cycles {
             let loss = cycle.loss_factor.map(|loss| loss.to_string()).unwrap_or_default();
             let (u, f, c) = (cycle.displacement_amplitude, cycle.force_amplitude, cycle.stick_radius);

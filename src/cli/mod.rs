@@ -74,7 +74,7 @@ enum Command {
     Check(Check),
     /// Measure speed against error of each solver on this machine.
     Report(Report),
-    /// Draw the figures of the paper, as SVG and CSV.
+    /// Draw the figures of the paper, of protocols and of steady cycles, as SVG and CSV.
     Figures {
         /// The folder to write them to.
         #[arg(long)]

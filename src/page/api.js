@@ -81,8 +81,9 @@ export async function offered(path) {
 /** All pages of a list, or as many items as `most`. */
 export async function pages(path, most, after) {
   const items = [];
+  const join = path.includes("?") ? "&" : "?";
   do {
-    const page = await call("GET", `${path}?limit=1000${after ? `&after=${after}` : ""}`);
+    const page = await call("GET", `${path}${join}limit=1000${after ? `&after=${after}` : ""}`);
     items.push(...page.items);
     after = page.next;
   } while (after !== null && items.length < most);

@@ -13,7 +13,7 @@ export async function showContact(main, id, signal) {
     call("GET", `/contacts/${id}/definition`),
   ]);
   const begin = Math.max(0, contact.sequence - MAX_HISTORY);
-  const history = await pages(`/contacts/${id}/history`, MAX_HISTORY, begin || undefined);
+  const history = await pages(`/contacts/${id}/history?cycles=false`, MAX_HISTORY, begin || undefined);
   const { contact: figures } = contact;
   const virgin = {
     displacement: 0,

@@ -8,6 +8,7 @@ import { moveControl } from "./move_controls.js";
 import { pathCard } from "./path_run.js";
 import { protocolCard } from "./protocol_run.js";
 import { stateText } from "./state_text.js";
+import { steadyCard } from "./steady_cycle.js";
 import { studyCards } from "./studies.js";
 
 /** The query for the stresses that are shown. */
@@ -18,6 +19,8 @@ const CONNECTION = { live: "live", waiting: "reconnecting …", deleted: "delete
 export function contactView(model, contact) {
   const { id, figures } = model;
   const plots = contactPlots();
+  const steady = steadyCard(model);
+  const studies = studyCards(model);
   const live = el("span", { class: "badge", role: "status" }, "connecting …");
   const stateElement = el("div", { class: "state-text", "aria-live": "polite" });
   const controls = [
@@ -103,6 +106,7 @@ export function contactView(model, contact) {
         jump("slip →", () => model.reach(model.state) / 1.5),
       ),
     ),
+    steady.element,
     el(
       "details",
       { class: "card preload" },
@@ -126,14 +130,14 @@ export function contactView(model, contact) {
     el("div", { class: "contact-view" }, side, el("div", { class: "plots" }, ...plots.all.map((plot) => plot.element))),
     protocolCard(model),
     pathCard(model),
-    studyCards(model),
+    studies.element,
   );
   return {
     element,
     plots,
     show: (state) => {
       stateElement.replaceChildren(...stateText(state, model));
-      for (const one of controls) one.show(state);
+      for (const one of [...controls, steady, studies]) one.show(state);
     },
     report: (what) => {
       live.textContent = CONNECTION[what] ?? what;

@@ -1,22 +1,31 @@
-// Studies of a virgin contact of this kind: remaining stress against the number of reversals, and speed against error of the
-// solvers.
+// Studies of a virgin contact of this kind: a fretting map, remaining stress against the number of reversals, and speed against
+// error of the solvers.
 import { call, offered } from "./api.js";
 import { Chart } from "./chart.js";
 import { copyButtons } from "./copy_as_code.js";
 import { el, notice, withSubscripts } from "./dom.js";
+import { frettingMap } from "./fretting_map.js";
 import { virginContact, PROTOCOLS } from "./protocol_run.js";
 
 const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
 // Smaller errors are drawn as this one: a logarithmic axis has no zero.
 const SMALLEST_ERROR = 1e-17;
 
-/** The cards below a contact. */
+/** The cards below a contact, and a function that shows its state in them. */
 export function studyCards(model) {
-  const element = el("div", { class: "studies" }, residual(model));
+  const map = frettingMap(model);
+  const mapCard = card({
+    id: "compute-map",
+    signal: model.signal,
+    title: "Fretting map",
+    text: "For this shape and friction: which loads and amplitudes slide, and how much friction work a steady cycle does.",
+    ...map,
+  });
+  const element = el("div", { class: "studies" }, mapCard, residual(model));
   offered("/accuracy").then((is) => {
     if (is) element.append(accuracy(model));
   });
-  return element;
+  return { element, show: map.mark };
 }
 
 /** A card with a button that computes a plot. */

@@ -1,5 +1,6 @@
 //! The closed cycles of a session's past, from its recorded states alone.
 
+use std::cmp::Ordering;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -12,9 +13,10 @@ use crate::store::Record;
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::{Contact, Move, Normal};
 use stickslip_wire::reply::finite;
-use stickslip_wire::{Cycle, CyclePage, State, limits};
+use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
 use super::cycle_scan::{Answer, ClosedCycle, CycleScan};
+use super::loaded::LoadedSession;
 use super::replay::PAGE;
 use super::{SessionError, Sessions};
 
@@ -24,6 +26,8 @@ const STATE_COST: Nanoseconds = 50;
 const CYCLE_MOVES: usize = 4;
 /// JSON pointer to the number of cycles.
 const LAST: &str = "/last";
+/// JSON pointer to the choice of cycles in a history.
+const MARKED: &str = "/cycles";
 
 /// What has been found in the states of a session so far. It stays with the cached session, so that later requests read
 /// the new states alone.
@@ -34,6 +38,8 @@ pub(super) struct CycleLog {
     sequence: u64,
     /// As many as a reply can have.
     newest: VecDeque<ClosedCycle>,
+    /// The move that closed the last cycle that is no longer among them.
+    dropped: u64,
 }
 
 impl CycleLog {
@@ -43,15 +49,26 @@ impl CycleLog {
         log
     }
 
-    fn push(&mut self, sequence: u64, state: &State) {
+    /// Looks at the next state; returns the outermost of the cycles that it closes.
+    fn push(&mut self, sequence: u64, state: &State) -> Option<ClosedCycle> {
         self.sequence = sequence;
-        let newest = &mut self.newest;
+        let (newest, dropped) = (&mut self.newest, &mut self.dropped);
+        let mut outermost = None;
         self.scan.push(sequence, state, |cycle| {
             if newest.len() == *limits::CYCLES.end() {
-                newest.pop_front();
+                *dropped = newest.pop_front().map_or(0, |oldest| oldest.to);
             }
             newest.push_back(cycle);
+            outermost = Some(cycle);
         });
+        outermost
+    }
+
+    /// The outermost of the cycles that a move closed, if it is among the newest.
+    fn closed_by(&self, sequence: u64) -> Option<ClosedCycle> {
+        let end = self.newest.partition_point(|cycle| cycle.to <= sequence);
+        let last = end.checked_sub(1).map(|index| self.newest[index]);
+        last.filter(|cycle| cycle.to == sequence)
     }
 
     /// Bytes of memory.
@@ -82,32 +99,75 @@ impl Sessions {
         };
         let log = match known {
             Some(known) if known.sequence == sequence => known,
-            known => self.look_on(id, sequence, known, &virgin, &stop).await?,
+            known => {
+                let known = known.filter(|known| known.sequence < sequence);
+                let log = self.look_on(id, sequence, known, &virgin, (&stop, LAST)).await?;
+                self.keep(id, &log).await?;
+                log
+            }
         };
         let work = Work { moves: CYCLE_MOVES * last.min(log.newest.len()), ..Work::default() };
         let cost = work.cost(virgin.profile());
         let answers = move || {
             let newest = log.newest.range(log.newest.len().saturating_sub(last)..);
-            newest.map(|cycle| answered(cycle, &virgin, &stop)).collect::<Result<_, _>>()
+            newest.map(|cycle| answered(cycle, &virgin, (&stop, LAST))).collect::<Result<_, _>>()
         };
         let items = self.common.pool.run(cost, answers).await??;
         Ok((sequence, CyclePage { items }))
     }
 
-    /// Looks at the states up to the move `sequence` that are not in `known`, and leaves the result with the session.
+    /// Adds to the moves of a page the cycles that they closed.
+    ///
+    /// # Errors
+    /// As [`Sessions::cycles`].
+    pub async fn mark(&self, id: Uuid, page: &mut HistoryPage) -> Result<(), SessionError> {
+        let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
+        let (stop, _guard) = self.common.pool.deadline();
+        let (virgin, known) = {
+            let mut guard = self.lock(id).await?;
+            let live = self.current(&mut guard).await?;
+            (live.contact.virgin(), live.log_for(after))
+        };
+        let mut log = match known {
+            Some(known) if known.sequence >= after => known,
+            known => self.look_on(id, after, known, &virgin, (&stop, MARKED)).await?,
+        };
+        let _held = self.common.pool.reserve(log.bytes_of_page()).await?;
+        let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
+        let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
+        let look = move || {
+            let mut answer = |(sequence, state): (u64, State)| {
+                let is_known = sequence <= log.sequence;
+                let cycle =
+                    if is_known { log.closed_by(sequence) } else { Arc::make_mut(&mut log).push(sequence, &state) };
+                cycle.map(|cycle| answered(&cycle, &virgin, (&stop, MARKED))).transpose()
+            };
+            let cycles = states.into_iter().map(&mut answer).collect::<Result<Vec<_>, _>>()?;
+            Ok::<_, SessionError>((log, cycles))
+        };
+        let (log, cycles) = self.common.pool.run(cost, look).await??;
+        page.items.iter_mut().zip(cycles).for_each(|(item, cycle)| item.cycle = cycle);
+        self.keep(id, &log).await
+    }
+
+    /// Looks at the states up to the move `sequence` that are not in `known`. What has been seen when the time is up is
+    /// left with the session, so that another try comes farther; `place` is then refused.
     async fn look_on(
         &self,
         id: Uuid,
         sequence: u64,
         known: Option<Arc<CycleLog>>,
         virgin: &Contact,
-        stop: &Stop,
+        (stop, place): (&Stop, &str),
     ) -> Result<Arc<CycleLog>, SessionError> {
-        let known = known.filter(|known| known.sequence < sequence);
         let bytes = known.as_ref().map_or_else(|| CycleLog::default().bytes_of_page(), |known| known.bytes_of_page());
         let mut held = self.common.pool.reserve(bytes).await?;
         let mut log = known.map_or_else(|| CycleLog::new(&virgin.state().into()), Arc::unwrap_or_clone);
         while log.sequence < sequence {
+            if let Err(interrupted) = stop.check() {
+                self.keep(id, &Arc::new(log)).await?;
+                return Err(Failure::interrupted(interrupted, place).into());
+            }
             self.common.pool.resize(&mut held, log.bytes_of_page()).await?;
             let most = usize::try_from(sequence - log.sequence).unwrap_or(PAGE).min(PAGE);
             let next = log.sequence + 1;
@@ -116,29 +176,48 @@ impl Sessions {
             if records.first().is_none_or(|record| record.sequence != next) {
                 return Err(SessionError::Broken(format!("move {next} of contact {id} is missing")));
             }
-            let stop = stop.clone();
             let look = move || {
-                stop.check().map_err(|interrupted| Failure::interrupted(interrupted, LAST))?;
-                records.iter().for_each(|record| log.push(record.sequence, &record.state));
-                Ok::<_, SessionError>(log)
+                for record in records {
+                    log.push(record.sequence, &record.state);
+                }
+                log
             };
-            log = self.common.pool.run(STATE_COST * most as u64, look).await??;
+            log = self.common.pool.run(STATE_COST * most as u64, look).await?;
         }
         log.scan.shrink();
-        let log = Arc::new(log);
+        Ok(Arc::new(log))
+    }
+
+    /// Leaves what has been found with the session if that has come as far.
+    async fn keep(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
         let mut guard = self.lock(id).await?;
-        if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= sequence)
-            && live.cycles.as_ref().is_none_or(|kept| kept.sequence < sequence)
-        {
-            live.cycles = Some(Arc::clone(&log));
+        if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
+            live.keep_log(log);
         }
-        Ok(log)
+        Ok(())
+    }
+}
+
+impl LoadedSession {
+    /// The log that has come farthest of those that know every cycle that the moves after this one closed.
+    fn log_for(&self, after: u64) -> Option<Arc<CycleLog>> {
+        let logs = [&self.cycles, &self.past_cycles].into_iter().flatten().filter(|log| log.dropped <= after);
+        logs.max_by_key(|log| log.sequence).cloned()
+    }
+
+    fn keep_log(&mut self, log: &Arc<CycleLog>) {
+        let newest = self.cycles.as_ref().map(|kept| kept.sequence);
+        match newest.cmp(&Some(log.sequence)) {
+            Ordering::Less => self.cycles = Some(Arc::clone(log)),
+            Ordering::Equal => {}
+            Ordering::Greater => self.past_cycles = Some(Arc::clone(log)),
+        }
     }
 }
 
 /// A row of the reply; `virgin` is the contact before its first move.
-fn answered(cycle: &ClosedCycle, virgin: &Contact, stop: &Stop) -> Result<Cycle, SessionError> {
-    stop.check().map_err(|interrupted| Failure::interrupted(interrupted, LAST))?;
+fn answered(cycle: &ClosedCycle, virgin: &Contact, (stop, place): (&Stop, &str)) -> Result<Cycle, SessionError> {
+    stop.check().map_err(|interrupted| Failure::interrupted(interrupted, place))?;
     let amplitude = cycle.displacement_amplitude;
     let (force_amplitude, dissipated_energy, sliding_ratio) = match cycle.answer {
         Answer::Recorded { force_amplitude, dissipated_energy } => (force_amplitude, dissipated_energy, None),

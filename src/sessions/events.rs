@@ -11,7 +11,7 @@ use futures::Stream;
 use uuid::Uuid;
 
 use crate::store::{Listener, StreamEvent};
-use stickslip_wire::{EndReason, StateEvent};
+use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
 use super::{SessionError, Sessions};
 
@@ -58,7 +58,7 @@ impl Sessions {
             None if found > 0 => found - 1,
             None => {
                 let (state, at) = (session.state, session.created_at);
-                ready.push_back(StateEvent { id, sequence: 0, step: None, state, at });
+                ready.push_back(StateEvent { id, sequence: 0, step: None, state, cycle: None, at });
                 0
             }
         };
@@ -74,6 +74,13 @@ impl Sessions {
 }
 
 impl Follower {
+    /// The moves beyond those that have been read.
+    async fn page(&self) -> Result<HistoryPage, SessionError> {
+        let mut page = self.sessions.history_page(self.id, self.seen, PAGE).await?;
+        self.sessions.mark(self.id, &mut page).await?;
+        Ok(page)
+    }
+
     async fn next(mut self) -> Option<(StreamEvent<StateEvent>, Follower)> {
         if self.ended {
             return None;
@@ -85,7 +92,7 @@ impl Follower {
             if let Some(event) = self.ready.pop_front() {
                 break StreamEvent::State(event);
             }
-            match self.sessions.history_page(self.id, self.seen, PAGE).await {
+            match self.page().await {
                 Ok(page) if page.items.is_empty() => self.listener.wait().await,
                 Ok(page) => {
                     self.seen = page.items.last().map_or(self.seen, |item| item.sequence);
@@ -95,6 +102,7 @@ impl Follower {
                         sequence: item.sequence,
                         step: Some(item.step),
                         state: item.state,
+                        cycle: item.cycle,
                         at: item.at,
                     }));
                 }

@@ -30,6 +30,8 @@ pub(super) struct LoadedSession {
     pub(super) shared: bool,
     /// The closed cycles of its past, once they have been asked for.
     pub(super) cycles: Option<Arc<CycleLog>>,
+    /// The same up to an earlier move: up to the page of the history that was read last.
+    pub(super) past_cycles: Option<Arc<CycleLog>>,
 }
 
 /// Values that follow from the definition and never change.
@@ -45,7 +47,9 @@ impl LoadedSession {
         let contact = simulation::contact(setup, "")?;
         let derived = Derived { figures: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
-        Ok(LoadedSession { session, derived, contact, replay_cost: ReplayCost::default(), shared: false, cycles: None })
+        let replay_cost = ReplayCost::default();
+        let (cycles, past_cycles) = (None, None);
+        Ok(LoadedSession { session, derived, contact, replay_cost, shared: false, cycles, past_cycles })
     }
 
     /// The same of a session as it is stored, or why its definition is invalid.
@@ -60,7 +64,7 @@ impl LoadedSession {
     pub(super) fn bytes(&self) -> usize {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
         let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
-        let cycles = self.cycles.as_ref().map_or(0, |cycles| cycles.bytes());
+        let cycles: usize = [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.bytes()).sum();
         FIXED + self.contact.memory_bytes() + label + warnings + cycles + definition_bytes(&self.session.definition)
     }
 

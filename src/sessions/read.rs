@@ -184,6 +184,7 @@ impl Sessions {
             sequence: record.sequence,
             step: record.step,
             state: record.state,
+            cycle: None,
             at: record.at,
         });
         Ok(HistoryPage { items: items.collect(), next })

@@ -33,16 +33,21 @@ const RADIUS_COST: u64 = 200;
 const SEARCH_COST: u64 = 1_000_000;
 /// One steady cycle with its row as JSON.
 const CYCLE_COST: u64 = 2_000;
-/// The harmonics of one cycle: some ten panels of twenty nodes.
-const HARMONICS_COST: u64 = 20_000;
-/// One cycle under a load that oscillates, which is stepped.
-const STEPPED_CYCLE_COST: u64 = 5_000_000;
 /// One kink of the slip history of a sphere in the stress at one place below the surface.
 const KINK_COST: u64 = 100;
 /// The stress at one place below the surface of another profile.
 const PLACE_COST: u64 = 20_000;
 /// One number of a reply, written as JSON.
 const NUMBER_COST: u64 = 60;
+/// The first harmonics of one cycle, and as much again for every eight orders.
+const HARMONICS_COST: u64 = 3_000;
+/// The same of a driven force or through a machine, where each node inverts the profile.
+const INVERTED_HARMONICS_COST: u64 = 20_000;
+/// One cycle under a load that oscillates, which is stepped until three results agree.
+const STEPPED_CYCLE_COST: u64 = 15_000_000;
+/// The same driven by a force or through a machine, where what is left falls with the square of the step alone and each
+/// step searches for a force.
+const SEARCHED_CYCLE_COST: u64 = 100_000_000;
 /// One spring in one move, or its contribution at one radius.
 const SPRING_COST: u64 = 3;
 
@@ -297,14 +302,17 @@ pub fn bytes_of_subsurface(task: &SubsurfaceTask) -> usize {
 /// The cost of steady cycles.
 #[must_use]
 pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
-    let harmonics = if task.harmonics > 0 { HARMONICS_COST } else { 0 };
-    let stepped = if task.normal.is_some() { STEPPED_CYCLE_COST } else { 0 };
+    let inverted = task.is_force_driven() || task.stiffness.is_some();
+    let once = if inverted { INVERTED_HARMONICS_COST } else { HARMONICS_COST };
+    let harmonics = if task.harmonics > 0 { once * (1 + task.harmonics as u64 / 8) } else { 0 };
+    let each_stepped = if inverted { SEARCHED_CYCLE_COST } else { STEPPED_CYCLE_COST };
+    let stepped = if task.normal.is_some() { each_stepped } else { 0 };
     // Some four hundred loads are compared, and the harmonics of a thousand amplitudes and of each root.
     let searched = task.best_load.map_or(0, |study| 400 + study.points.unwrap_or(0) as u64) * CYCLE_COST;
     let each = CYCLE_COST + stepped + harmonics + searched + task.radii() as u64 * RADIUS_COST;
     let swept = task.response.as_ref().map_or(0, |asked| asked.frequencies.as_ref().map_or(200, Vec::len));
     let response = if swept > 0 { HARMONICS_COST.saturating_mul(1_000 + 60 * swept as u64) } else { 0 };
-    on_profile(profile, each.saturating_mul(task.drives().len() as u64).saturating_add(response), false)
+    on_profile(profile, each.saturating_mul(task.rows() as u64).saturating_add(response), false)
 }
 
 /// Bytes that steady cycles take, with their reply.
@@ -312,7 +320,7 @@ pub fn of_cycle(profile: &Profile, task: &CycleTask) -> Nanoseconds {
 pub fn bytes_of_cycle(task: &CycleTask) -> usize {
     let curve = task.best_load.map_or(0, |study| study.points.unwrap_or(0));
     let swept = task.response.as_ref().map_or(0, |asked| asked.frequencies.as_ref().map_or(200, Vec::len));
-    task.drives().len() * (CYCLE_BYTES + task.harmonics * HARMONIC_BYTES + (task.radii() + curve) * DENSITY_BYTES)
+    task.rows() * (CYCLE_BYTES + task.harmonics * HARMONIC_BYTES + (task.radii() + curve) * DENSITY_BYTES)
         + swept * CYCLE_BYTES
 }
 

@@ -9,6 +9,7 @@ use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
 use super::Failure;
+use super::cycle_map::map_of;
 use super::cycle_studies::{best_load, resonance};
 use super::run::{Timer, accuracy, contact};
 use super::warnings::{excess_error, warnings_at};
@@ -21,11 +22,14 @@ const REASON: &str = "a steady cycle at constant load follows from the load curv
 const REASON_STEPPED: &str =
     "a cycle under a load that oscillates is stepped with the exact slip history, to the tolerance";
 
-/// The contact of a definition, and its steady cycles.
+/// The contact of a definition, and its steady cycles, under the loads of a map if one is asked for.
 ///
 /// # Errors
 /// As [`cycle()`], and [`Failure::Refused`] for a preload that cannot be reached.
 pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
+    if let Some(map) = task.map {
+        return map_of(setup, task, map, stop);
+    }
     let timer = Timer::start();
     let contact = contact(setup, "/contact")?;
     let reply = cycle(&contact, task, timer, stop)?;
@@ -106,6 +110,8 @@ fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
     let stored = cycle.max_elastic_energy;
     let loss = if stored > 0.0 { cycle.dissipated_energy / (TAU * stored) } else { f64::NAN };
     SteadyCycle {
+        normal_force: None,
+        gross_slip_displacement: None,
         displacement_amplitude: cycle.displacement_amplitude,
         force_amplitude: cycle.force_amplitude,
         machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
@@ -129,6 +135,8 @@ fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
 
 fn row(cycle: &cycle::SteadyCycle<'_>, with_machine: bool) -> SteadyCycle {
     SteadyCycle {
+        normal_force: None,
+        gross_slip_displacement: None,
         displacement_amplitude: cycle.displacement_amplitude(),
         force_amplitude: cycle.force_amplitude(),
         machine_amplitude: with_machine.then(|| cycle.machine_amplitude()),

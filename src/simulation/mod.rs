@@ -7,6 +7,7 @@
 mod compare_solvers;
 pub mod cost;
 mod cycle;
+mod cycle_map;
 mod cycle_studies;
 mod protocol;
 mod reply_template;
@@ -20,6 +21,7 @@ mod warnings;
 
 pub use compare_solvers::compare_solvers;
 pub use cycle::{cycle, cycle_of};
+pub use cycle_map::cycles_under;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;

@@ -249,6 +249,11 @@ async fn a_map_has_the_cycles_of_each_load() {
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!((lines.len(), lines[0][0], lines[0][5]), (10, "normal_force", "dissipated_energy"));
     let server = Server::start().await;
+    let map = json!({"normal_force": {"from": 1.0, "to": 100.0, "count": 3}});
+    let body = of(&ball(), &json!({"drive": asked["drive"], "map": map}));
+    let whole = good(server.post("/cycle", &body).await).await;
+    close(number(&whole["contact"]["normal_force"]), 10.0, 1e-12);
+    let mut cells = whole["cycles"].as_array().unwrap().iter();
     for (rows, load) in lines[1..].chunks(3).zip([1.0, 10.0, 100.0]) {
         let mut pressed = ball();
         pressed["preload"] = json!({"normal_force": load});
@@ -257,11 +262,88 @@ async fn a_map_has_the_cycles_of_each_load() {
             close(row[0].parse().unwrap(), load, 1e-14);
             assert_eq!(row[3], cycle["regime"].as_str().unwrap());
             close(row[5].parse().unwrap(), number(&cycle["dissipated_energy"]), 1e-9);
+            let cell = cells.next().unwrap();
+            close(number(&cell["normal_force"]), load, 1e-14);
+            close(
+                number(&cell["gross_slip_displacement"]),
+                number(&reply["contact"]["gross_slip_displacement"]),
+                1e-12,
+            );
+            for name in ["displacement_amplitude", "force_amplitude", "secant_stiffness", "loss_factor"] {
+                close(number(&cell[name]), number(&cycle[name]), 1e-9);
+            }
+            assert_eq!(cell["regime"], cycle["regime"]);
         }
     }
+    assert!(cells.next().is_none());
+    let csv = server.post("/cycle?format=csv", &body).await.text().await.unwrap();
+    assert!(csv.starts_with("normal_force,gross_slip_displacement,displacement_amplitude,force_amplitude,"), "{csv}");
+    assert_eq!(csv.lines().count(), 10);
     for wrong in ["1:100", "0:1:3", "2:1:3", "1:2:1", "1:2:1001", "a:b:c"] {
         assert!(!run(&["cycle", file.to_str().unwrap(), "--map", wrong]).status.success(), "{wrong}");
     }
+}
+
+#[tokio::test]
+async fn a_map_has_the_lines_of_the_ball_and_refuses_what_is_wrong_at_its_place() {
+    let server = Server::start().await;
+    let base = json!({
+        "drive": {"displacement": (0..30).map(|index| 1e-9 * 1.3_f64.powi(index)).collect::<Vec<_>>()},
+        "map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 20}}
+    });
+    let reply = good(server.post("/cycle", &of(&ball(), &base)).await).await;
+    let rows = reply["cycles"].as_array().unwrap();
+    assert_eq!(rows.len(), 600);
+    for row in rows {
+        // Gross slip of a ball begins at a displacement that goes with the load to the power 2/3.
+        let begin = number(&row["gross_slip_displacement"]);
+        close(begin, number(&rows[0]["gross_slip_displacement"]) * number(&row["normal_force"]).powf(2.0 / 3.0), 1e-12);
+        let slides = number(&row["displacement_amplitude"]) >= begin;
+        assert_eq!(row["regime"], if slides { "gross_slip" } else { "partial_slip" });
+    }
+    let picture = server.post("/cycle?format=svg", &of(&ball(), &base)).await.text().await.unwrap();
+    for text in ["Fretting map", "log₁₀(normal force / N)", "log₁₀(displacement amplitude U₀ / m)", "gross slip above"]
+    {
+        assert!(picture.contains(text), "{text}");
+    }
+    // The boundary, and a line for each power of ten of the work.
+    let works = rows.iter().map(|row| number(&row["dissipated_energy"]).log10());
+    let (least, most) = (works.clone().fold(f64::MAX, f64::min), works.fold(f64::MIN, f64::max));
+    let decades = (least.ceil() as i32..=most.floor() as i32).count();
+    let lines = picture.matches("<polyline").count();
+    assert!(decades > 5 && lines > decades, "{decades} {lines}");
+
+    let force = |from: Value, to: Value, count: Value| json!({"map": {"normal_force": {"from": from, "to": to, "count": count}}});
+    for (wrong, pointer) in [
+        (force(json!(0.0), json!(1.0), json!(3)), "/map/normal_force/from"),
+        (force(json!(1.0), json!(1e300), json!(3)), "/map/normal_force/to"),
+        (force(json!(2.0), json!(1.0), json!(3)), "/map/normal_force/to"),
+        (force(json!(1.0), json!(2.0), json!(1)), "/map/normal_force/count"),
+        (force(json!(1.0), json!(2.0), json!(1001)), "/map/normal_force/count"),
+        (force(json!(1.0), json!(2.0), json!(1.5)), "/map/normal_force/count"),
+        (json!({"map": {}}), "/map/normal_force"),
+        (json!({"harmonics": 3}), "/harmonics"),
+        (json!({"normal": {"normal_force": 1.0}}), "/normal"),
+        (json!({"work_density": {"points": 5}}), "/work_density"),
+        (json!({"best_load": {}}), "/best_load"),
+        (json!({"frequency_response": {"mass": 1.0, "drive_force": 1.0}}), "/frequency_response"),
+        // Too many of both together, and a force that the smallest load does not hold.
+        (json!({"drive": {"displacement": vec![1e-8; 5_001]}}), "/map/normal_force/count"),
+        (json!({"drive": {"force": 1.0}}), "/drive/force"),
+    ] {
+        let mut body = of(&ball(), &base);
+        for (name, value) in wrong.as_object().unwrap() {
+            body[name] = value.clone();
+        }
+        let refused = problem(server.post("/cycle", &body).await).await;
+        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer), "{wrong}");
+    }
+    // A load beyond the end of the shape.
+    let mut ended = ball();
+    ended["profile"] = json!({"type": "tabulated", "r": [0.0, 1e-5, 2e-5, 3e-5], "z": [0.0, 5e-9, 2e-8, 4.5e-8]});
+    ended["preload"] = json!({"normal_force": 1e-3});
+    let refused = problem(server.post("/cycle", &of(&ended, &base)).await).await;
+    assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/map/normal_force"));
 }
 
 #[tokio::test]

@@ -5,7 +5,8 @@ use crate::common;
 
 use std::sync::Arc;
 
-use common::{Binary, Server, create, problem};
+use common::{Binary, PATIENCE, Server, create, problem};
+use futures::StreamExt as _;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
@@ -13,7 +14,7 @@ use serde_json::{Value, json};
 use stickslip::sessions::CAPACITY;
 use stickslip::store::MemoryStore;
 use stickslip_mechanics::{Contact, DEFAULT_TOLERANCE, Tangential};
-use stickslip_wire::client::{Client, Options};
+use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{Cycle, Document as _, ForkRequest, HistoryItem, Move, Path, PathRequest, Regime, Steps};
 use tempfile::tempdir;
 use uuid::Uuid;
@@ -54,6 +55,14 @@ async fn history(client: &Client, id: Uuid) -> Vec<HistoryItem> {
 
 fn ends(cycles: &[Cycle]) -> Vec<(u64, u64)> {
     cycles.iter().map(|cycle| (cycle.from, cycle.to)).collect()
+}
+
+/// The cycles that the moves of a history carry are those that close last with them.
+fn assert_marked(history: &[HistoryItem], cycles: &[Cycle]) {
+    for item in history {
+        let outermost = cycles.iter().rfind(|cycle| cycle.to == item.sequence);
+        assert_eq!(item.cycle.as_ref(), outermost, "move {}", item.sequence);
+    }
 }
 
 /// A value of a strategy, the next one of a fixed sequence.
@@ -175,8 +184,10 @@ async fn random_paths_have_the_cycles_of_the_definition() {
         let path: Vec<f64> = if case < 45 { draw(&mut runner, &on_grid) } else { draw(&mut runner, &free) };
         let (id, unit) = new(client).await;
         follow(client, id, slide(unit, &path)).await;
-        let expected = by_definition(&history(client, id).await);
+        let history = history(client, id).await;
+        let expected = by_definition(&history);
         let found = cycles(client, id).await;
+        assert_marked(&history, &found);
         let found: Vec<_> = found.iter().map(|cycle| (cycle.from, cycle.to, cycle.displacement_amplitude)).collect();
         assert_eq!(found, expected, "{path:?}");
         count += found.len();
@@ -331,7 +342,11 @@ async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece()
     for moves in path.chunks(7) {
         follow(&cached.client, id, slide(unit, moves)).await;
         // The one reads on where it was, the other from the beginning.
-        assert_eq!(cycles(&cached.client, id).await, cycles(&uncached.client, id).await);
+        let found = cycles(&cached.client, id).await;
+        assert_eq!(found, cycles(&uncached.client, id).await);
+        for server in [&cached, &uncached] {
+            assert_marked(&history(&server.client, id).await, &found);
+        }
     }
     let expected = cycles(&uncached.client, id).await;
     assert!(expected.len() > 20);
@@ -351,8 +366,56 @@ async fn cycles_are_the_same_after_a_restart_in_a_fork_and_read_piece_by_piece()
     follow(&server.client, fork, slide(unit, &[2.0, -2.0, 2.0])).await;
     drop(server);
     let server = Binary::over(&store, &[]);
+    assert_marked(&history(&server.client, id).await, &expected);
     assert_eq!(cycles(&server.client, id).await, expected);
     assert_eq!(cycles(&server.client, fork).await, expected_of_fork);
+    assert_marked(&history(&server.client, fork).await, &expected_of_fork);
+}
+
+#[tokio::test]
+async fn a_history_is_marked_the_same_in_whatever_order_it_is_read() {
+    let memory = Arc::new(MemoryStore::new());
+    let (cached, uncached) = (Server::with(memory.clone(), CAPACITY).await, Server::with(memory, 0).await);
+    let (id, unit) = new(&cached.client).await;
+    // More cycles than a list can have: each second move closes one that began two moves before.
+    follow(&cached.client, id, slide(unit, &[0.5, -0.5].repeat(1_200))).await;
+    for (after, limit) in [(0, 40), (40, 40), (2_300, 1_000), (80, 40), (7, 1), (2_000, 100), (120, 1_000), (1, 2)] {
+        for server in [&cached, &uncached] {
+            let page = server.client.history(id, Some(after), Some(limit)).await.unwrap();
+            assert_eq!(page.items[0].sequence, after + 1);
+            for item in page.items {
+                let expected =
+                    (item.sequence > 2 && item.sequence % 2 == 1).then(|| (item.sequence - 2, item.sequence));
+                assert_eq!(item.cycle.map(|cycle| (cycle.from, cycle.to)), expected, "after {after}");
+            }
+        }
+        assert_eq!(cycles(&cached.client, id).await.len(), 1_000);
+    }
+}
+
+#[tokio::test]
+async fn an_event_carries_the_cycle_that_its_move_closes_and_the_outermost_of_several() {
+    let server = Server::start().await;
+    let client = &server.client;
+    let (id, unit) = new(client).await;
+    let mut events = std::pin::pin!(client.events(id, Some(0)).await.unwrap());
+    let path = [0.5, -0.5, 0.1, -0.2, 0.0, -0.1, 0.5, -0.5, 0.7];
+    let mut closed = Vec::new();
+    for step in slide(unit, &path) {
+        client.apply(id, &step.into(), &Options::default()).await.unwrap();
+        let event = tokio::time::timeout(PATIENCE, events.next()).await.unwrap().unwrap().unwrap();
+        let Event::State(state) = event else { panic!("{event:?}") };
+        let found = cycles(client, id).await;
+        assert_eq!(state.cycle.as_ref(), found.iter().rfind(|cycle| cycle.to == state.sequence));
+        closed.extend(state.cycle.map(|cycle| (cycle.from, cycle.to)));
+    }
+    // The seventh move closes those within too: 5 to 7 and 3 to 7.
+    assert_eq!(closed, [(1, 7), (7, 9)]);
+    assert_eq!(ends(&cycles(client, id).await), [(5, 7), (3, 7), (1, 7), (7, 9)]);
+    // A listener that comes late sees the last move as the others did.
+    let late = std::pin::pin!(client.events(id, None).await.unwrap()).next().await.unwrap().unwrap();
+    let Event::State(state) = late else { panic!("{late:?}") };
+    assert_eq!((state.sequence, state.cycle.as_ref()), (9, cycles(client, id).await.last()));
 }
 
 #[tokio::test]

@@ -52,6 +52,7 @@ async fn past(client: &Client, id: Uuid, after: u64) -> Vec<StateEvent> {
             sequence: item.sequence,
             step: Some(item.step),
             state: item.state,
+            cycle: item.cycle,
             at: item.at,
         };
         all.extend(page.items.into_iter().map(event));

@@ -113,6 +113,9 @@ async fn stresses_are_the_same_in_every_format() {
 #[tokio::test]
 async fn a_history_is_the_same_in_every_format() {
     let (server, contact) = moved().await;
+    // The load changes within the cycle that the last move closes.
+    let moves = json!({"path": {"moves": [{"displacement": -5e-8}, {"displacement": 1e-7, "normal_force": 11.0}]}});
+    assert!(server.post(&format!("{contact}/path"), &moves).await.status().is_success());
     let path = format!("{contact}/history");
     let page: Value = server.get(&path).await.json().await.unwrap();
     let names = [
@@ -128,19 +131,31 @@ async fn a_history_is_the_same_in_every_format() {
         "dissipated_energy",
         "elastic_energy",
         "memory_depth",
+        "cycle_from",
+        "cycle_displacement_amplitude",
+        "cycle_force_amplitude",
+        "cycle_dissipated_energy",
+        "cycle_secant_stiffness",
+        "cycle_sliding_ratio",
     ];
     let items = page["items"].as_array().unwrap();
-    assert_eq!(items.len(), 3);
-    let value =
-        |item: &Value, name: &str| if item[name].is_null() { item["state"][name].clone() } else { item[name].clone() };
+    assert_eq!(items.len(), 5);
+    assert!(items[4]["cycle"].is_object() && items[4]["cycle"]["sliding_ratio"].is_null());
+    let value = |item: &Value, name: &str| {
+        let place = name.strip_prefix("cycle_").map_or(&item["state"], |_| &item["cycle"]);
+        let own = name.strip_prefix("cycle_").unwrap_or(name);
+        if item[name].is_null() { place[own].clone() } else { item[name].clone() }
+    };
     let rows: Vec<Vec<Value>> = items.iter().map(|item| names.iter().map(|name| value(item, name)).collect()).collect();
     hold(&server, &path, &names, &rows).await;
 
-    let first = server.get(&format!("{path}?limit=2&format=csv")).await;
+    let bare = server.get(&format!("{path}?cycles=false")).await;
+    assert!(!bare.text().await.unwrap().contains("\"cycle\""));
+    let first = server.get(&format!("{path}?limit=2&format=csv&cycles=false")).await;
     let link = header(&first, "link").to_owned();
     let next = link.trim_start_matches('<').split('>').next().unwrap();
     let rest = server.get(next).await;
-    assert!(rest.headers().get("link").is_none());
+    assert!(header(&rest, "link").contains("after=4&limit=2&cycles=false&format=csv"));
     assert!(rest.text().await.unwrap().lines().nth(1).unwrap().starts_with("3,"));
 }
 

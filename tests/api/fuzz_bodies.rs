@@ -1,4 +1,4 @@
-//! Random bodies of `POST /simulate`: each is answered with a reply that obeys the laws, or refused with the place of the
+//! Random bodies of `POST /simulate` and `POST /cycle`: each is answered with a reply that obeys the laws, or refused with the place of the
 //! fault. None panics.
 //!
 //! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` sets
@@ -8,6 +8,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::cycle_laws;
+use crate::cycle_requests::RandomCycle;
 use crate::harness::{Outcome, examine};
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -52,7 +54,12 @@ fn watch(running: Running) {
 }
 
 /// Runs this many cases, and shrinks the first that breaks a law.
-fn fuzz<S: Strategy>(usual: u64, strategy: S, write: impl Fn(&S::Value) -> Vec<u8>) {
+fn fuzz<S: Strategy>(
+    usual: u64,
+    strategy: S,
+    write: impl Fn(&S::Value) -> Vec<u8>,
+    examine: impl Fn(&[u8]) -> Outcome,
+) {
     let running: Running = Arc::default();
     watch(Arc::clone(&running));
     let (cases, seed, start) = (case_count(usual), seed(), Instant::now());
@@ -109,15 +116,21 @@ fn bodies_that_once_broke_a_law() {
 
 #[test]
 fn raw_bytes() {
-    fuzz(1_200_000, crate::damage::raw(), Clone::clone);
+    fuzz(1_200_000, crate::damage::raw(), Clone::clone, examine);
 }
 
 #[test]
 fn damaged_requests() {
-    fuzz(35_000, crate::damage::damaged(), Clone::clone);
+    fuzz(35_000, crate::damage::damaged(), Clone::clone, examine);
 }
 
 #[test]
 fn sound_requests() {
-    fuzz(10_000, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes());
+    fuzz(9_500, crate::requests::random_request(), |request| request.to_json().to_string().into_bytes(), examine);
+}
+
+#[test]
+fn cycles() {
+    let write = |request: &RandomCycle| request.to_json().to_string().into_bytes();
+    fuzz(1_000, crate::cycle_requests::random_cycle(), write, cycle_laws::examine);
 }

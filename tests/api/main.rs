@@ -2,6 +2,10 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../harness/cycle_laws.rs"]
+mod cycle_laws;
+#[path = "../harness/cycle_requests.rs"]
+mod cycle_requests;
 #[path = "../harness/damage.rs"]
 mod damage;
 #[path = "../harness/mod.rs"]

@@ -70,17 +70,25 @@ impl Readings {
     /// Waits until it has read the server after this moment. Queries are about that reading from then on.
     async fn catch_up(&mut self) {
         let now = jiff::Timestamp::now().as_millisecond() as f64 / 1e3;
-        let newer = format!("timestamp(up == 1) > {now}");
         let read = async {
-            loop {
-                let data = self.ask("query", &[("query", &newer)]).await.unwrap_or_default();
-                if let Some(at) = data["result"][0]["value"][1].as_str() {
-                    break at.to_owned();
-                }
-                tokio::time::sleep(Duration::from_millis(50)).await;
-            }
+            let at = self.reading_after(&now.to_string()).await;
+            // The next reading begins when all of the first is stored.
+            self.reading_after(&at).await;
+            at
         };
         self.at = tokio::time::timeout(PATIENCE, read).await.expect("Prometheus cannot read the server");
+    }
+
+    /// The time of a reading after another time, in seconds.
+    async fn reading_after(&self, time: &str) -> String {
+        let newer = format!("timestamp(up == 1) > {time}");
+        loop {
+            let data = self.ask("query", &[("query", &newer)]).await.unwrap_or_default();
+            if let Some(at) = data["result"][0]["value"][1].as_str() {
+                return at.to_owned();
+            }
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
     }
 }
 

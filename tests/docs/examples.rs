@@ -3,7 +3,7 @@
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use stickslip_wire::Move;
 
 use crate::common::create;
@@ -49,6 +49,34 @@ async fn the_scripts_of_python_reproduce_a_figure_and_follow_a_contact() {
         assert_eq!((row[0], row[3].parse()), (index.to_string().as_str(), Ok(moved.state.force)), "{line}");
     }
     assert!(follow.wait().unwrap().success());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_dynamics_code_finds_the_response_of_the_service_from_its_table_of_cycles() {
+    let server = Process::start("memory:").await;
+    let printed = succeed(program("python").arg(file("examples/python/cycle_dynamics.py")).arg(&server.base), "");
+    assert!(printed.starts_with("frequency,amplitude,phase\n"), "{printed}");
+    let rows = cells(&printed);
+    assert_eq!(rows.len(), 100);
+    // What CONTACT, MASS and DRIVE_FORCE of the script say.
+    let contact = json!({
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
+    });
+    let frequencies: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    let body = json!({"mass": 0.1, "drive_force": 0.5, "frequencies": frequencies});
+    let asked = json!({"contact": contact, "drive": {"displacement": 1e-8}, "frequency_response": body});
+    let url = format!("{}/cycle", server.base);
+    let reply = reqwest::Client::new().post(url).json(&asked).send().await.unwrap().error_for_status().unwrap();
+    let reply: Value = reply.json().await.unwrap();
+    let points = reply["frequency_response"]["points"].as_array().unwrap();
+    assert_eq!(points.len(), rows.len());
+    for (row, point) in rows.iter().zip(points) {
+        let [amplitude, phase] = ["amplitude", "phase"].map(|name| point[name].as_f64().unwrap());
+        assert!((row[1] / amplitude - 1.0).abs() < 1e-5 && (row[2] - phase).abs() < 1e-2, "{row:?} {point}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]

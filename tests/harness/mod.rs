@@ -51,7 +51,8 @@ pub fn examine(body: &[u8]) -> Outcome {
     }
 }
 
-fn refused(body: &[u8], problem: stickslip::api::Problem) -> Outcome {
+/// Checks the refusal of a body.
+pub fn refused(body: &[u8], problem: stickslip::api::Problem) -> Outcome {
     refusals::check(body, problem);
     Outcome::Refused
 }

@@ -149,7 +149,8 @@ fn profile() -> impl Strategy<Value = Value> {
     ]
 }
 
-fn contact() -> impl Strategy<Value = Value> {
+/// A definition of a contact.
+pub fn contact() -> impl Strategy<Value = Value> {
     let poisson = || prop_oneof![6 => 0.0..0.5_f64, 2 => -0.99..0.0_f64, 1 => Just(0.5), 1 => any_magnitude()];
     let body = || {
         (quantity(&range::YOUNGS_MODULUS, 6.0, 12.0), poisson())
@@ -280,7 +281,7 @@ pub fn random_request() -> impl Strategy<Value = RandomRequest> {
 }
 
 /// The units of a contact: displacement of gross slip, mu F_N, indentation, F_N, contact radius.
-fn units(contact: &Value) -> [f64; 5] {
+pub fn units(contact: &Value) -> [f64; 5] {
     let body = json!({"contact": contact, "path": {"displacement": [0.0]}, "steps": "last"});
     let simulation = read::<SimulateRequest>(body.to_string().as_bytes()).ok();
     let figures =

@@ -282,6 +282,85 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     browser.close().await;
 }
 
+/// Friction work of a steady cycle of the ball, J, whose amplitude is this part of the displacement of gross slip (Mindlin &
+/// Deresiewicz 1953).
+fn work_of_cycle(session: &NewSession, part: f64) -> f64 {
+    let left = 1.0 - part;
+    let area = part - 0.4 * (1.0 - left.powf(2.5)) - 0.5 * (1.0 - left.powf(1.5)) * part;
+    8.0 * area * session.contact.gross_slip_force * session.contact.gross_slip_displacement
+}
+
+#[tokio::test]
+async fn the_steady_cycle_follows_the_slider() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let card = "document.querySelector('#steady-card').innerText";
+    browser.until(&format!("{card}.includes('Pull the displacement')")).await;
+    for part in [0.5, -0.9] {
+        moved(&server, &session, &[part]).await;
+        let work = format!("{} nJ", four(1e9 * work_of_cycle(&session, part.abs())));
+        browser.until(&format!("{card}.includes({work:?}) && {card}.includes('inside, the surfaces stick')")).await;
+    }
+    // F over U, the force that of a first loading.
+    let (force, displacement) = (session.contact.gross_slip_force, session.contact.gross_slip_displacement);
+    let stiffness = four(1e-6 * (1.0 - 0.1_f64.powf(1.5)) * force / (0.9 * displacement));
+    browser.until(&format!("{card}.includes({:?})", format!("{stiffness} MN/m"))).await;
+    browser.value("document.querySelector('#steady-card').scrollIntoView()").await;
+    browser.picture("steady").await;
+    // Dragged to the end and back to the middle, it ends with what belongs there.
+    browser.drag("#slide-displacement", 0.2, 0.99).await;
+    browser.until(&format!("{card}.includes('slides in each stroke')")).await;
+    browser.click("button[id=run-path]").await;
+    browser.until(&format!("{card}.includes('inside, the surfaces stick')")).await;
+    moved(&server, &session, &[0.0]).await;
+    browser.until(&format!("{card}.includes('Pull') && !{card}.includes('J')")).await;
+    let apart = Move { indentation: Some(-1e-9), displacement: Some(1e-8), ..Move::default() };
+    server.client.apply(session.id, &MoveRequest::from(apart), &Options::default()).await.unwrap();
+    browser.until(&format!("{card}.includes('Without a load') && !{card}.includes('J')")).await;
+    browser.click("#compute-map").await;
+    browser.until("document.querySelector('#plot-map .line.bound') !== null").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.click("#compute-map").await;
+    let bound = "document.querySelector('#plot-map .line.bound')";
+    browser.until(&format!("{bound} !== null && document.querySelector('#plot-map .mark') === null")).await;
+    // The amplitude that does 100 nJ a cycle, by bisection.
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if work_of_cycle(&session, middle) < 1e-7 { &mut low } else { &mut high }) = middle;
+    }
+    let contour = "[...document.querySelectorAll('#plot-map text.small')].find((text) => text.textContent === '100 nJ').previousSibling";
+    for (part, line) in [(1.0, bound), (low, contour)] {
+        moved(&server, &session, &[part]).await;
+        // The height of the line at the mark, which must be within the map.
+        let off = format!(
+            "(() => {{ const mark = document.querySelector('#plot-map .mark'); if (!mark) return false; \
+             const [x, y] = ['cx', 'cy'].map((name) => Number(mark.getAttribute(name))); \
+             const way = {line}.getAttribute('d').slice(1).split('L').map((p) => p.split(',').map(Number)); \
+             const next = way.findIndex((p) => p[0] >= x); if (next < 1) return false; \
+             const [from, to] = [way[next - 1], way[next]]; \
+             const there = from[1] + ((to[1] - from[1]) * (x - from[0])) / (to[0] - from[0]); \
+             return Math.abs(there - y) < 1; }})()"
+        );
+        browser.until(&off).await;
+    }
+    browser.value("document.querySelector('#plot-map').scrollIntoView()").await;
+    browser.picture("map").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
 /// The file that the page saves, once it is complete.
 async fn saved(path: &Path) -> Vec<u8> {
     for _ in 0..600 {

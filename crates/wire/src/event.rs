@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::closed_cycle::Cycle;
 use super::path::Move;
 use super::reply::State;
 
@@ -21,6 +22,10 @@ pub struct StateEvent {
     pub step: Option<Move>,
     /// The state after it.
     pub state: State,
+    /// The cycle that it closed; the outermost if several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cycle: Option<Cycle>,
     /// When it was applied, or the contact created (ISO 8601, UTC).
     pub at: Timestamp,
 }

@@ -42,8 +42,8 @@ pub use accuracy::{AccuracyReply, AccuracyRequest, AccuracyRow, Comparison, Refe
 pub use check::{Fault, Faults, JsonPath};
 pub use closed_cycle::{Cycle, CyclePage};
 pub use cycle::{
-    Amplitudes, BestLoad, BestLoadStudy, CycleDrive, CycleReply, CycleRequest, FrequencyResponse, FrictionWork,
-    Harmonic, LoadCurve, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
+    Amplitudes, BestLoad, BestLoadStudy, CycleDrive, CycleReply, CycleRequest, FrequencyResponse, FrettingMap,
+    FrictionWork, Harmonic, LoadCurve, LoadSpan, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
 };
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};

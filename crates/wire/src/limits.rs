@@ -25,6 +25,10 @@ pub const CYCLE_AMPLITUDES: RangeInclusive<usize> = 1..=10_000;
 pub const CYCLE_RADII: usize = 200_000;
 /// Amplitudes for which the best load is sought.
 pub const BEST_LOADS: RangeInclusive<usize> = 1..=100;
+/// Normal forces of a fretting map.
+pub const MAP_LOADS: RangeInclusive<usize> = 2..=1_000;
+/// Loads times amplitudes of a fretting map.
+pub const MAP_CYCLES: usize = 100_000;
 /// Loads of the curve about it.
 pub const CURVE_POINTS: RangeInclusive<usize> = 2..=1_000;
 /// Frequencies of the response of a mass.
@@ -299,10 +303,10 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
         AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest,
-        CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine,
-        Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
-        SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest,
-        SubsurfaceSurface, SweepRequest, WorkDensity,
+        CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, LoadSpan,
+        Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest,
+        RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane,
+        SubsurfaceRequest, SubsurfaceSurface, SweepRequest, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -313,7 +317,7 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, LoadSpan, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
         Robustness, SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SweepRequest, WorkDensity
     }
 }

@@ -9,6 +9,7 @@ use uuid::Uuid;
 use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
 
 use super::check::{Faults, JsonPath};
+use super::closed_cycle::Cycle;
 use super::definition::{ContactDefinition, Material, Preload};
 use super::limits::{Characters, Tolerance, limits};
 use super::parse::{Document, Rejection};
@@ -235,6 +236,10 @@ pub struct HistoryItem {
     pub step: Move,
     /// The state after it.
     pub state: State,
+    /// The cycle that it closed; the outermost if several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cycle: Option<Cycle>,
     /// When it was applied (ISO 8601, UTC).
     pub at: Timestamp,
 }

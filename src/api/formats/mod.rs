@@ -1,6 +1,7 @@
 //! The formats of tables and plots.
 
 mod accept;
+mod fretting_map;
 pub mod plots;
 mod table;
 pub mod tables;

@@ -2,6 +2,7 @@
 
 use uuid::Uuid;
 
+use super::fretting_map;
 use stickslip_mechanics::{Contact, Move, Regime, Tangential};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot, Section};
 use stickslip_wire::cycle::CycleTask;
@@ -138,10 +139,14 @@ pub fn cycles(id: Uuid, page: &CyclePage) -> Plot {
     }
 }
 
-/// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load. `contact` is at the load of
+/// Loss factor and secant stiffness over the amplitude, or the loop if there is one amplitude at constant load, or the
+/// fretting map. `contact` is at the load of
 /// the cycles and has no history.
 #[must_use]
 pub fn cycle(contact: &Contact, reply: &CycleReply, task: &CycleTask) -> Plot {
+    if task.map.is_some() {
+        return fretting_map::plot(&reply.cycles, task.drives().len());
+    }
     if let ([only], None) = (&reply.cycles[..], task.normal) {
         return steady_loop(contact, only);
     }

@@ -48,6 +48,8 @@ pub enum Cells<'a> {
     Numbers(ByRow<'a, Option<Number>>),
     /// Whole numbers.
     Counts(ByRow<'a, u64>),
+    /// Whole numbers, where there is one.
+    SomeCounts(ByRow<'a, Option<u64>>),
     /// Moments.
     Times(ByRow<'a, Timestamp>),
     /// Words without commas and quotes.
@@ -81,6 +83,10 @@ impl<'a> Column<'a> {
                 None => text.write_str(none),
             },
             Cells::Counts(at) => write!(text, "{}", at(row)),
+            Cells::SomeCounts(at) => match at(row) {
+                Some(count) => write!(text, "{count}"),
+                None => text.write_str(none),
+            },
             Cells::Times(at) => write!(text, "{quote}{}{quote}", at(row)),
             Cells::Words(at) => write!(text, "{quote}{}{quote}", at(row)),
         }
@@ -90,6 +96,7 @@ impl<'a> Column<'a> {
         let (data_type, nullable) = match self.cells {
             Cells::Numbers(_) => (DataType::Float64, true),
             Cells::Counts(_) => (DataType::UInt64, false),
+            Cells::SomeCounts(_) => (DataType::UInt64, true),
             Cells::Times(_) => (DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())), true),
             Cells::Words(_) => (DataType::Utf8, false),
         };
@@ -103,6 +110,7 @@ impl<'a> Column<'a> {
                 Arc::new(rows.map(|row| at(row).and_then(|number| number.as_f64())).collect::<Float64Array>())
             }
             Cells::Counts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
+            Cells::SomeCounts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
             Cells::Times(at) => {
                 let since = |row| i64::try_from(at(row).as_nanosecond()).ok();
                 Arc::new(rows.map(since).collect::<TimestampNanosecondArray>().with_timezone("UTC"))

@@ -59,6 +59,10 @@ pub fn subsurface(reply: &Subsurface) -> Table<'_> {
 pub fn history(page: &HistoryPage) -> Table<'_> {
     let items = &page.items;
     let state = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(&items[row].state));
+    let cycle = |name, unit, of: fn(&Cycle) -> Option<f64>| {
+        let value = move |row: usize| items[row].cycle.as_ref().and_then(of).unwrap_or(f64::NAN);
+        Column::floats(name, unit, value)
+    };
     let columns = vec![
         Column::counts("sequence", |row| items[row].sequence),
         Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| items[row].at))),
@@ -72,6 +76,16 @@ pub fn history(page: &HistoryPage) -> Table<'_> {
         state("dissipated_energy", "J", |state| state.dissipated_energy),
         state("elastic_energy", "J", |state| state.elastic_energy),
         Column::counts("memory_depth", |row| items[row].state.memory_depth as u64),
+        Column::new(
+            "cycle_from",
+            Some("1"),
+            Cells::SomeCounts(Box::new(|row| items[row].cycle.as_ref().map(|cycle| cycle.from))),
+        ),
+        cycle("cycle_displacement_amplitude", "m", |cycle| Some(cycle.displacement_amplitude)),
+        cycle("cycle_force_amplitude", "N", |cycle| Some(cycle.force_amplitude)),
+        cycle("cycle_dissipated_energy", "J", |cycle| Some(cycle.dissipated_energy)),
+        cycle("cycle_secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
+        cycle("cycle_sliding_ratio", "1", |cycle| cycle.sliding_ratio),
     ];
     flat(items.len(), columns)
 }
@@ -126,6 +140,11 @@ pub fn cycle<'a>(reply: &'a CycleReply, task: &CycleTask) -> Table<'a> {
     if task.stiffness.is_some() {
         let amplitude = Column::floats("machine_amplitude", "m", move |row| maybe(cycles[row].machine_amplitude));
         columns.insert(2, amplitude);
+    }
+    if task.map.is_some() {
+        let load = Column::floats("normal_force", "N", move |row| maybe(cycles[row].normal_force));
+        let limit = move |row: usize| maybe(cycles[row].gross_slip_displacement);
+        columns.splice(0..0, [load, Column::floats("gross_slip_displacement", "m", limit)]);
     }
     let unit = if task.is_force_driven() { "m" } else { "N" };
     for index in 0..task.harmonics {

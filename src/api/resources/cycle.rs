@@ -119,7 +119,8 @@ impl QueryParams for Wanted {
 ///
 /// Moves a contact back and forth at constant load until every cycle is as the one before, in closed form: a displacement
 /// or a force that is a cosine, directly or through a machine of finite stiffness. Returns work, stiffness, loss factor and
-/// slip for each amplitude and, if asked for, the harmonics and the friction work per area. Nothing is stored.
+/// slip for each amplitude and, if asked for, the harmonics and the friction work per area, or the same cycles under many
+/// loads. Nothing is stored.
 #[utoipa::path(
     post, path = "/cycle", tag = "simulation", params(CycleFormat),
     request_body(content = CycleRequest, examples(
@@ -129,9 +130,13 @@ impl QueryParams for Wanted {
         ("machine" = (summary = "A force through a machine, with the friction work per area", value = json!({
             "contact": ContactDefinition::example(), "drive": {"force": 2.0}, "machine": {"stiffness": 2e7},
             "work_density": {"points": 50}
+        }))),
+        ("map" = (summary = "A fretting map", value = json!({
+            "contact": ContactDefinition::example(), "drive": {"displacement": [1e-8, 3e-8, 1e-7, 3e-7]},
+            "map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 40}}
         })))
     )),
-    responses((status = 200, description = "The cycles, one for each amplitude", body = CycleReply))
+    responses((status = 200, description = "The cycles, one for each amplitude, under each load of a map", body = CycleReply))
 )]
 pub async fn compute_steady_cycle(
     State(app): State<Arc<App>>,
@@ -144,7 +149,7 @@ pub async fn compute_steady_cycle(
     let (stop, _guard) = app.pool.deadline();
     let CheckedBody { body: (definition, setup, task), mut held, .. } = request;
     let bytes = cost::bytes_of_cycle(&task) + cost::bytes_of_shape(&definition.profile);
-    held.resize(&app.pool, bytes + format.bytes(task.drives().len(), cost::cycle_row(&task))).await?;
+    held.resize(&app.pool, bytes + format.bytes(task.rows(), cost::cycle_row(&task))).await?;
     let cost = cost::of_cycle(&setup.profile, &task).saturating_add(format.cost());
     let work = move || {
         let solve = || simulation::cycle_of(setup, &task, &stop);
@@ -177,7 +182,7 @@ pub async fn get_steady_cycle(
             return Ok(reply::not_modified(&tag));
         }
     }
-    let extra = (format.bytes(task.drives().len(), cost::cycle_row(&task)), format.cost());
+    let extra = (format.bytes(task.rows(), cost::cycle_row(&task)), format.cost());
     let write = move |cycles: &CycleReply, contact: &Contact, task: &CycleTask| written(format, cycles, contact, task);
     let (sequence, body, memory) = app.sessions.cycle(id, task, extra, write).await?;
     let tag = format.tag(&sequence.to_string());

@@ -14,7 +14,7 @@ use crate::api::reply;
 use crate::api::state::TenantApp;
 
 /// Bytes of an item of a history.
-pub(super) const ITEM_BYTES: usize = 1_536;
+pub(super) const ITEM_BYTES: usize = 1_792;
 
 /// Which moves to list.
 #[derive(IntoParams)]
@@ -26,6 +26,10 @@ pub struct HistoryQuery {
     /// How many moves at most.
     #[param(value_type = Option<usize>, nullable = false)]
     limit: usize,
+    /// Whether to add the cycle that a move closed to it. This needs the moves before the page too, once: without it
+    /// nothing but the page is read.
+    #[param(value_type = Option<bool>, nullable = false, default = true)]
+    cycles: bool,
     /// `columns` (this document), `rows` (a JSON array of flat objects), `csv`, `ndjson`, `arrow` (an Arrow IPC
     /// stream), or a plot as `svg` or `png`. If it is left out, `Accept` decides.
     #[param(value_type = Option<String>, nullable = false, default = "columns")]
@@ -35,13 +39,14 @@ pub struct HistoryQuery {
 impl QueryParams for HistoryQuery {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<HistoryQuery> {
         let (after, limit) = query.page(SEQUENCE);
-        Some(HistoryQuery { after: after.unwrap_or(0), limit, format: query.format(&Format::ALL) })
+        let cycles = query.number("cycles", "true or false").unwrap_or(true);
+        Some(HistoryQuery { after: after.unwrap_or(0), limit, cycles, format: query.format(&Format::ALL) })
     }
 }
 
 /// Get the history of a contact
 ///
-/// A page of its moves with the states after them, oldest first.
+/// A page of its moves with the states after them and the cycles that they closed, oldest first.
 #[utoipa::path(
     get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, HistoryQuery),
     responses((status = 200, description = "A page of moves", body = HistoryPage,
@@ -53,18 +58,24 @@ pub async fn get_history(
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<HistoryQuery>,
 ) -> Result<Response, Problem> {
-    let HistoryQuery { after, limit, format } = query;
+    let HistoryQuery { after, limit, cycles, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
     let memory = app.pool.reserve(limit * ITEM_BYTES + format.bytes(0, 0)).await?;
-    let page = app.sessions.history(id, after, limit).await?;
-    let tag = format.tag(&version(&page, after));
+    let mut page = app.sessions.history(id, after, limit).await?;
+    let unmarked = if cycles { "" } else { "-unmarked" };
+    let tag = format.tag(&(version(&page, after) + unmarked));
     if reply::is_current(&headers, &tag) {
         return Ok(reply::not_modified(&tag));
+    }
+    if cycles && !format.is_plot() {
+        app.sessions.mark(id, &mut page).await?;
     }
     let next = page.next;
     let write = move || format.write(&page, || plots::history(id, &page), || tables::history(&page));
     let response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
-    let next = next.map(|next| format!("/contacts/{id}/history?after={next}&limit={limit}&format={}", format.name()));
+    let choice = if cycles { "" } else { "&cycles=false" };
+    let query = |next| format!("after={next}&limit={limit}{choice}&format={}", format.name());
+    let next = next.map(|next| format!("/contacts/{id}/history?{}", query(next)));
     Ok(reply::holding(with_next(response, next), memory))
 }
 

@@ -12,19 +12,18 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::SteadyCycle;
+use super::{SteadyCycle, masing_harmonics};
 use crate::double_double::DoubleDouble;
 use crate::normal::load;
 use crate::profile::Ring;
 use crate::profile::gauss::Panel;
+use crate::profile::ring_quadrature::{approach, split};
 
-/// The share of a panel that must lie between it and a singularity for a rule of twenty points: rho = 2.6.
-const CLEARANCE: f64 = 0.56;
-/// What is left of the angle next to a singularity contributes its cube.
-const LEAST_PANEL: f64 = 1e-5;
+/// The turn of the highest harmonic that a panel of twenty points follows, rad.
+const TURN: f64 = 13.0;
 /// More kinks than this are not resolved one by one, but by so many panels as there are.
 const MOST_KINKS: usize = 8;
-const PANELS: usize = 16;
+const PANELS: f64 = 16.0;
 
 /// One harmonic of the answer to a drive that is a cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +63,11 @@ impl SteadyCycle<'_> {
     #[must_use]
     pub fn harmonics(&self, count: usize) -> Harmonics {
         let branch = Branch::new(self);
-        let (panels, resolved) = self.panels();
+        if !self.force_driven && self.compliance <= 0.0 {
+            let (sums, error) = masing_harmonics::integrals(self, count);
+            return branch.harmonics(&sums, count, f64::EPSILON + error);
+        }
+        let (panels, resolved) = self.panels(count);
         let (mut sums, mut error) = (branch.integrate(&panels, count), f64::EPSILON);
         if !resolved {
             let halves: Vec<f64> =
@@ -75,26 +78,21 @@ impl SteadyCycle<'_> {
                 4.0 / PI * sums.iter().zip(&finer).map(off).fold(0.0, f64::max) / branch.answer.max(f64::MIN_POSITIVE);
             sums = finer;
         }
-        let harmonic = |order: usize| {
-            if order.is_multiple_of(2) {
-                return Harmonic { order, in_phase: 0.0, quadrature: 0.0 };
-            }
-            let [sine, cosine] = sums[order / 2].map(|sum| 4.0 * sum / (PI * order as f64));
-            let straight = if order == 1 { branch.straight * branch.drive } else { 0.0 };
-            Harmonic { order, in_phase: straight + sine, quadrature: -cosine }
-        };
-        Harmonics { harmonics: (1..=count).map(harmonic).collect(), error }
+        branch.harmonics(&sums, count, error)
     }
 
     /// The ends of the panels of the angle from 0 to pi, and whether they resolve every kink.
-    fn panels(&self) -> (Vec<f64>, bool) {
+    fn panels(&self, count: usize) -> (Vec<f64>, bool) {
+        let widest = TURN / (count + 1) as f64;
         let (profile, ring) = (&self.contact.profile, &self.ring);
         let angle = |depth: f64| 2.0 * depth.max(0.0).sqrt().atan2((ring.depth - depth).max(0.0).sqrt());
         let rim = profile.rim_radius();
         let inside = |radius: &f64| *radius > ring.inner.radius && *radius <= ring.outer.radius;
         let kinks: Vec<f64> = profile.knots_below(ring.outer.radius).into_iter().chain(rim).filter(inside).collect();
         if kinks.len() > MOST_KINKS {
-            return ((0..=PANELS).map(|index| PI * index as f64 / PANELS as f64).collect(), false);
+            let mut ends = vec![0.0, PI];
+            split(&mut ends, widest.min(PI / PANELS));
+            return (ends, false);
         }
         let mut ends = vec![0.0, PI];
         let stuck = ring.inner.level.value().max(0.0);
@@ -109,17 +107,8 @@ impl SteadyCycle<'_> {
         }
         ends.sort_by(f64::total_cmp);
         ends.dedup_by(|a, b| *a - *b <= 0.0);
+        split(&mut ends, widest);
         (ends, true)
-    }
-}
-
-/// Adds ends of panels that shrink to a quarter of each other towards `place` from both sides, down to a singularity at
-/// `distance` across from it: the rule of twenty points still sees it from rho = 3.
-fn approach(ends: &mut Vec<f64>, place: f64, distance: f64) {
-    let mut width = PI;
-    while CLEARANCE * width > distance && width > LEAST_PANEL {
-        width *= 0.25;
-        ends.extend([place - width, place + width].into_iter().filter(|end| (0.0..=PI).contains(end)));
     }
 }
 
@@ -143,6 +132,19 @@ impl<'a, 'b> Branch<'a, 'b> {
         };
         let straight = if cycle.slide <= 0.0 && straight.is_finite() { straight } else { 0.0 };
         Branch { cycle, drive, answer, straight }
+    }
+
+    /// The harmonics of these integrals.
+    fn harmonics(&self, sums: &[[f64; 2]], count: usize, error: f64) -> Harmonics {
+        let harmonic = |order: usize| {
+            if order.is_multiple_of(2) {
+                return Harmonic { order, in_phase: 0.0, quadrature: 0.0 };
+            }
+            let [sine, cosine] = sums[order / 2].map(|sum| 4.0 * sum / (PI * order as f64));
+            let straight = if order == 1 { self.straight * self.drive } else { 0.0 };
+            Harmonic { order, in_phase: straight + sine, quadrature: -cosine }
+        };
+        Harmonics { harmonics: (1..=count).map(harmonic).collect(), error }
     }
 
     /// int sin(n th) dR and int cos(n th) dR for odd n up to `count`, without the straight part.

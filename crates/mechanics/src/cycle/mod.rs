@@ -15,8 +15,10 @@
 mod best_load;
 mod harmonics;
 mod lap;
+mod masing_harmonics;
 mod oscillating;
 mod response;
+mod sphere_harmonics;
 
 pub use best_load::{BestLoad, best_load};
 pub use harmonics::{Harmonic, Harmonics};

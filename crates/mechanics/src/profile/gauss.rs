@@ -49,6 +49,11 @@ impl Panel {
         Panel { width, rule: &EIGHT }
     }
 
+    /// A panel by the rule of twelve points.
+    pub(super) fn middling(width: f64) -> Panel {
+        Panel { width, rule: &TWELVE }
+    }
+
     /// A panel by the longer rule, for an integrand analytic far around.
     pub(crate) fn fine(width: f64) -> Panel {
         Panel { width, rule: &TWENTY }
@@ -77,6 +82,13 @@ impl Panel {
             visit(self.width * u, self.width * weight);
             visit(self.width * (1.0 - u), self.width * weight);
         }
+    }
+
+    /// The abscissae from the panel's top on, with their weights.
+    pub(super) fn nodes(self) -> impl Iterator<Item = (f64, f64)> {
+        let lower = self.rule.iter().map(|&(u, weight)| (u, weight));
+        let upper = self.rule.iter().rev().map(|&(u, weight)| (1.0 - u, weight));
+        lower.chain(upper).map(move |(u, weight)| (self.width * u, self.width * weight))
     }
 }
 

@@ -19,6 +19,7 @@ pub(super) mod gauss;
 mod kernel_sums;
 mod power_law;
 mod ring;
+pub(super) mod ring_quadrature;
 mod roots;
 mod rounded_cone;
 mod rounded_punch;
@@ -39,6 +40,7 @@ pub use tabulated::{InterpolationError, Tabulated};
 use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::range;
+use ring_quadrature::RingNodes;
 use shape::{End, Shape};
 use span::Span;
 
@@ -219,6 +221,12 @@ impl Profile {
     /// The levels of a ring that lie on a vertical edge, m.
     pub(super) fn edge_depth(&self, ring: &Ring) -> f64 {
         each!(self, shape => shape.span(ring).edge)
+    }
+
+    /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer level and
+    /// of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
+    pub(super) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
+        each!(self, shape => ring_quadrature::nodes(shape, ring, total, turns))
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share of a

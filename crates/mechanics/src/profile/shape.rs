@@ -132,6 +132,17 @@ pub(super) trait Shape {
         sum
     }
 
+    /// The rise from a node of an interval up to the outer end of its span.
+    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
+        self.rise(&under(outer, interval, node))
+    }
+
+    /// The rises up to the outer end of a span from radii that lie below it by these distances, which increase.
+    fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
+        let gap = |&below: &f64| below * (2.0 * span.outer_radius - below);
+        below.iter().map(|below| self.rise(&Span::under(span.outer, span.outer_radius, gap(below)))).collect()
+    }
+
     /// int h dx / sqrt(r^2 - x^2) below r, with h = g(x_outer) - g(x).
     fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
         let (mut sum, mut above) = (0.0, 0.0);
@@ -216,7 +227,7 @@ pub(super) trait Shape {
 }
 
 /// The stretch from a node of an interval up to the interval's outer end.
-fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
+pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
     if node.dt < 0.5 * interval.high {
         return Span::under(top.outer, top.outer_radius, node.dt * (interval.high + node.t));
     }

@@ -26,7 +26,7 @@ pub(super) struct SmoothInterval {
     /// g changes no faster than x to this power.
     pub(super) power: f64,
     /// t at the inner end, m.
-    low: f64,
+    pub(super) low: f64,
     /// Sum of the radii at both ends, m.
     radii: f64,
     /// Difference of their squares, m^2.
@@ -78,6 +78,12 @@ impl SmoothInterval {
     /// dx/dt = t/x.
     fn stretch(&self, t: f64) -> f64 {
         if self.base > 0.0 { t / (self.base * self.base + t * t).sqrt() } else { 1.0 }
+    }
+
+    /// The node at `dt` below the top, and the share of the radii, m, of a share of t.
+    pub(super) fn node(&self, dt: f64, share: f64) -> (Node, f64) {
+        let t = (self.high - dt).max(0.0);
+        (Node { t, dt }, share * self.stretch(t))
     }
 
     /// Visits panel after panel from `top` down over `length`, in t or in an angle that t follows.

@@ -64,6 +64,25 @@ fn the_work_of_small_cycles_grows_with_the_cube_of_the_amplitude_to_all_digits()
     }
 }
 
+#[test]
+fn the_loss_factor_begins_straight_and_has_trebled_its_slope_at_gross_slip() {
+    // D = (2/3) mu F_N'' U0^3/m^2 with F_N'' = 2 E* da/dd, and E = G* a U0^2: 2/(3 pi) (d/a)(da/dd) U0/u_max.
+    let share = 1e-7;
+    let slope = |contact: &Contact| {
+        SteadyCycle::of(contact, share * contact.gross_slip_displacement()).loss_factor().unwrap() / share
+    };
+    for n in [1.0, 1.5, 2.0, 4.0] {
+        let virgin = contact(Profile::PowerLaw(PowerLaw::new(n, 0.1).unwrap()), 1e-3);
+        close(slope(&virgin), 2.0 / (3.0 * PI * n), 1e-6);
+        let onset = SteadyCycle::of(&virgin, virgin.gross_slip_displacement());
+        close(onset.loss_factor().unwrap(), 2.0 / (PI * n), 1e-12);
+    }
+    // A worn ball, d = a (a^2 - b^2)^(1/2)/R: (d/a)(da/dd) = (a^2 - b^2)/(2 a^2 - b^2).
+    let worn = contact(Profile::TruncatedSphere(TruncatedSphere::new(0.01, 8e-5).unwrap()), 6e-7);
+    close(worn.contact_radius(), 1e-4, 1e-12);
+    close(slope(&worn), 2.0 / (3.0 * PI) * 0.36 / 1.36, 1e-6);
+}
+
 /// The state after the moves U0, -U0, U0, and the work of the last two.
 fn stepped(virgin: &Contact, amplitude: f64) -> (Contact, f64) {
     let mut contact = virgin.clone();
@@ -159,6 +178,34 @@ fn harmonics_are_those_of_many_points_of_the_stepped_loop() {
                 );
             }
             assert!(found.error < 1e-7, "{profile:?} {share}: {:e}", found.error);
+        }
+    }
+}
+
+#[test]
+fn harmonics_of_all_orders_are_integrals_of_the_closed_loop_of_a_ball() {
+    let ball = unit_sphere();
+    let limit = FRICTION * ball.normal_force();
+    for share in [1e-3, 0.3, 0.97, 0.99, 1.0, 1.01, 1.03, 1.5, 20.0_f64] {
+        // The first loading at twice its size, from the upper end.
+        let force = |angle: f64| {
+            let first = |part: f64| 1.0 - (1.0 - part).max(0.0).powf(1.5);
+            first(share) - 2.0 * first(share * (0.5 * angle).sin().powi(2))
+        };
+        let sliding = 2.0 * share.max(1.0).sqrt().recip().asin();
+        for count in [6, 18, 31] {
+            for found in SteadyCycle::of(&ball, share * SCALE).harmonics(count).harmonics {
+                let order = found.order as f64;
+                let part = |wave: fn(f64) -> f64| {
+                    let product = |angle: f64| 2.0 / PI * force(angle) * wave(order * angle);
+                    integral(&product, 0.0, sliding, 1e-13) + integral(&product, sliding, PI, 1e-13)
+                };
+                // Half a turn later the force is the opposite, and so are the waves of odd order.
+                let expected = if found.order % 2 == 1 { [part(f64::cos), part(f64::sin)] } else { [0.0; 2] };
+                for (found, expected) in [found.in_phase, found.quadrature].into_iter().zip(expected) {
+                    assert!((found / limit - expected).abs() < 1e-11, "{share} {order}: {found:e} {expected:e}");
+                }
+            }
         }
     }
 }

@@ -1,8 +1,10 @@
-//! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, and figures 6 to 9 about protocols: SVG, and CSV with the data.
+//! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
+//! and 11 about steady cycles: SVG, and CSV with the data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
 
+mod cycles;
 mod protocols;
 
 use std::fmt::Write as _;
@@ -22,7 +24,7 @@ const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
 const MAX_REVERSALS: usize = 40;
 
-/// Writes `figure1.svg` to `figure9.svg` and the CSV file of each into `dir`, which is created if it does not exist.
+/// Writes `figure1.svg` to `figure11.svg` and the CSV file of each into `dir`, which is created if it does not exist.
 ///
 /// # Errors
 /// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
@@ -38,9 +40,12 @@ pub fn write(dir: &Path) -> io::Result<()> {
 }
 
 fn charts() -> Result<Vec<Chart>, Error> {
+    Ok(paper()?.into_iter().chain(protocols::charts()?).chain(cycles::charts()?).collect())
+}
+
+fn paper() -> Result<[Chart; 5], Error> {
     let path = NormalisedPath::follow(REVERSALS, REVERSALS + 1)?;
-    let paper = [positions(&path), forces(&path), shear_partway()?, remaining_shear(&path), remaining_peaks()?];
-    Ok(paper.into_iter().chain(protocols::charts()?).collect())
+    Ok([positions(&path), forces(&path), shear_partway()?, remaining_shear(&path), remaining_peaks()?])
 }
 
 /// A reference sphere on the path of eq. 20; its methods give dimensionless values.
@@ -200,4 +205,21 @@ fn csv(chart: &Chart) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them anew.
+    #[test]
+    fn the_figures_of_the_documentation_are_those_that_are_drawn() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures");
+        let (paper, cycles) = (super::paper().unwrap(), super::cycles::charts().unwrap());
+        for (number, chart) in (1..).zip(&paper).chain((10..).zip(&cycles)) {
+            let name = format!("figure{number}.svg");
+            let kept = std::fs::read_to_string(folder.join(&name)).unwrap();
+            assert!(chart.svg().unwrap() == kept, "{name} has changed");
+        }
+    }
 }

@@ -20,12 +20,13 @@ pub(super) fn charts() -> Result<[Chart; 4], Error> {
     Ok([reduction()?, over_radius()?, shapes()?, robustness()?])
 }
 
-fn contact_of(profile: Profile, friction: f64) -> Result<Contact, Error> {
+/// A contact of the radius 1e-4 m.
+pub(super) fn contact_of(profile: Profile, friction: f64) -> Result<Contact, Error> {
     let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
     Contact::new(Setup { profile, elasticity, friction, preload: Preload::ContactRadius(1e-4) })
 }
 
-fn sphere() -> Result<Profile, Error> {
+pub(super) fn sphere() -> Result<Profile, Error> {
     Ok(Profile::Sphere(Sphere::new(0.01)?))
 }
 

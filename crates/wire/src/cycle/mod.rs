@@ -1,8 +1,10 @@
 //! The body of `POST /cycle`, the parameters of `GET /contacts/{id}/cycle`, and their reply.
 
+mod map;
 mod reply;
 mod studies;
 
+pub use map::{FrettingMap, LoadSpan};
 pub use reply::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
 
@@ -63,6 +65,9 @@ pub struct CycleRequest {
     pub frequency_response: Option<FrequencyResponse>,
     /// Ask for the normal force under which each amplitude does most friction work; with at most 100 amplitudes.
     pub best_load: Option<BestLoadStudy>,
+    /// Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. At constant load, with
+    /// `machine` alone. At most 100 000 cycles.
+    pub map: Option<FrettingMap>,
 }
 limits!(CycleRequest { harmonics: HARMONICS, tolerance: CycleTolerance });
 
@@ -266,6 +271,8 @@ pub struct CycleTask {
     pub response: Option<FrequencyResponse>,
     /// The best load of each amplitude.
     pub best_load: Option<BestLoadStudy>,
+    /// The loads of a fretting map.
+    pub map: Option<FrettingMap>,
     places: CyclePlaces,
 }
 
@@ -298,6 +305,7 @@ impl CycleOptions {
             normal: None,
             response: None,
             best_load: None,
+            map: None,
             places,
         })
     }
@@ -311,6 +319,12 @@ impl CycleTask {
             CycleDrive::Force(_) => cycle::Drive::Force,
         };
         self.drive.amplitudes().all().iter().copied().map(drive)
+    }
+
+    /// How many cycles there are.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.drives().len().saturating_mul(self.map.map_or(1, |map| map.normal_force.count))
     }
 
     /// The JSON pointer to the amplitude of this index.
@@ -342,7 +356,7 @@ impl Document for CycleRequest {
     fn check(self) -> Result<Self::Checked, Rejection> {
         let mut faults = Faults::default();
         let CycleRequest { contact, drive, machine, harmonics, work_density, normal, tolerance, .. } = self;
-        let (response, best_load) = (self.frequency_response, self.best_load);
+        let (response, best_load, map) = (self.frequency_response, self.best_load, self.map);
         let setup = contact.check(JsonPath::Root.member("contact"), &mut faults);
         let stiffness = machine.map(|machine| machine.stiffness);
         let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
@@ -370,8 +384,15 @@ impl Document for CycleRequest {
         if response.is_some() && stiffness.is_some() {
             faults.add(at("frequency_response"), "the mass hangs on the contact alone: leave this or `machine` out");
         }
+        if let Some(map) = &map {
+            map.check(task.as_ref().map_or(0, |task| task.drives().len()), at("map"), &mut faults);
+            let others = [("harmonics", harmonics.is_some()), ("normal", normal.is_some())];
+            for (name, _) in constant.into_iter().chain(others).filter(|(_, asked)| *asked) {
+                faults.add(at(name), "not in a fretting map: leave this or `map` out");
+            }
+        }
         let normal = load.map(|load| (load, tolerance.unwrap_or(DEFAULT_TOLERANCE)));
-        let task = task.map(|task| CycleTask { normal, response, best_load, ..task });
+        let task = task.map(|task| CycleTask { normal, response, best_load, map, ..task });
         faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))
     }
 }

@@ -9,9 +9,9 @@ use crate::reply::{Accuracy, ContactSummary, Regime, Warning};
 /// Steady cycles, one for each amplitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CycleReply {
-    /// The contact at its load.
+    /// The contact at its load, in a map at its preload.
     pub contact: ContactSummary,
-    /// The cycles, in the order of the amplitudes.
+    /// The cycles, in the order of the amplitudes; in a map load by load.
     pub cycles: Vec<SteadyCycle>,
     /// The oscillations of a mass on the contact, if asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -26,6 +26,14 @@ pub struct CycleReply {
 /// One steady cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SteadyCycle {
+    /// Normal force, N; in a map alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub normal_force: Option<f64>,
+    /// Displacement amplitude of the indenter at which gross slip begins under this load, m; in a map alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub gross_slip_displacement: Option<f64>,
     /// Amplitude of the displacement of the indenter, m.
     pub displacement_amplitude: f64,
     /// Amplitude of the tangential force, N.

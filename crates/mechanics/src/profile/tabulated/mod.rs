@@ -16,8 +16,9 @@ mod spline;
 mod tests;
 
 use super::super::error::TableFault;
-use super::shape::{End, Shape};
+use super::shape::{self, End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
+use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 use far_field::FarField;
 pub use interpolation_error::InterpolationError;
@@ -317,6 +318,37 @@ impl Shape for Tabulated {
             .map(|(index, span)| smooth_coordinate::rise(&self.panels[index], &span))
             .sum::<f64>()
             + between
+    }
+
+    fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
+        let index = self.panels.partition_point(|panel| panel.radius < outer.outer_radius).saturating_sub(1);
+        let panel = &self.panels[index];
+        // The series knows no other knot than its own.
+        if panel.base.to_bits() == interval.base.to_bits() && node.t >= panel.low {
+            return panel.rise_at(node.t, interval.high, node.dt);
+        }
+        self.rise(&shape::under(outer, interval, node))
+    }
+
+    fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
+        let leaves = self.tree.len() / 2;
+        let (_, mut index) = self.ends(span);
+        let (mut above, mut high) = (0.0, self.panels[index].t_of(span.outer));
+        let rise = |&below: &f64| {
+            let square = span.outer - DoubleDouble::from(below * (2.0 * span.outer_radius - below));
+            let mut panel = &self.panels[index];
+            while index > 0 && panel.square > square {
+                let whole = high >= panel.high;
+                above +=
+                    if whole { self.tree[leaves + index].1 } else { panel.rise_at(panel.low, high, high - panel.low) };
+                index -= 1;
+                panel = &self.panels[index];
+                high = panel.high;
+            }
+            let t = panel.t_of(square).min(high);
+            above + panel.rough_rise(t, high)
+        };
+        below.iter().map(rise).collect()
     }
 
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {

@@ -9,6 +9,9 @@ use super::{DoubleDouble, Span, gauss};
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
 
+/// The part of P below which its terms do not count where an error is estimated that is larger.
+const NEGLIGIBLE: f64 = 1e-14;
+
 /// A stretch of radii.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Panel {
@@ -28,6 +31,8 @@ pub(super) struct Panel {
     /// Coefficients of q and, for u from -1 on, of P.
     slope: Box<[f64]>,
     primitive: Box<[f64]>,
+    /// How many terms of P are more than [`NEGLIGIBLE`].
+    terms: usize,
 }
 
 /// Where the values that fix a series on low..high must be taken.
@@ -84,6 +89,8 @@ impl Panel {
             primitive.push(0.5 * half * (before - product(k + 1)) / order);
         }
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
+        let size = primitive.iter().fold(0.0_f64, |size, a| size.max(a.abs()));
+        let terms = primitive.iter().rposition(|a| a.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
         Panel {
             base,
             singularity,
@@ -95,6 +102,7 @@ impl Panel {
             load: 0.0,
             slope: slope.into(),
             primitive: primitive.into(),
+            terms,
         }
     }
 
@@ -140,6 +148,12 @@ impl Panel {
     /// The t of a radius that lies in it.
     pub(super) fn t_of(&self, square: DoubleDouble) -> f64 {
         (square - DoubleDouble::square_of(self.base)).value().max(0.0).sqrt().clamp(self.low, self.high)
+    }
+
+    /// g from t to `top`, m, without the terms that do not count.
+    pub(super) fn rough_rise(&self, t: f64, top: f64) -> f64 {
+        let difference = divided_difference(&self.primitive[..self.terms], self.place(top), self.place(t));
+        (top - t) * difference * 2.0 / (self.high - self.low)
     }
 
     /// Values of t, increasing, between which q cannot hide a fall.

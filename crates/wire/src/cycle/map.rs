@@ -1,0 +1,57 @@
+//! The normal forces of a fretting map.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::range::{self, Range};
+
+use crate::check::{Faults, JsonPath};
+use crate::limits::{MAP_CYCLES, MAP_LOADS, limits};
+
+/// Steady cycles under many loads: each amplitude under each of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"normal_force": {"from": 1.0, "to": 100.0, "count": 40}}))]
+pub struct FrettingMap {
+    /// The loads.
+    pub normal_force: LoadSpan,
+}
+
+/// Normal forces with the same ratio from one to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadSpan {
+    /// The first, N.
+    pub from: f64,
+    /// The last, N; above the first.
+    pub to: f64,
+    /// How many, both ends included.
+    pub count: usize,
+}
+limits!(LoadSpan { from: LOAD, to: LOAD, count: MAP_LOADS });
+
+/// A positive normal force.
+const LOAD: Range = Range { min: range::MIN_POSITIVE_NORMAL_FORCE, ..range::NORMAL_FORCE };
+
+impl FrettingMap {
+    /// Notes what is wrong with a map of so many amplitudes.
+    pub fn check(&self, amplitudes: usize, at: JsonPath<'_>, faults: &mut Faults) {
+        let (at, LoadSpan { from, to, count }) = (at.member("normal_force"), self.normal_force);
+        self.normal_force.check_members(at, faults);
+        if from >= to {
+            faults.add(at.member("to"), "must be above `from`");
+        }
+        if count.saturating_mul(amplitudes) > MAP_CYCLES {
+            faults.add(
+                at.member("count"),
+                format_args!("{count} loads of {amplitudes} amplitudes: allowed are {MAP_CYCLES} cycles"),
+            );
+        }
+    }
+
+    /// The normal forces, N.
+    pub fn loads(self) -> impl Iterator<Item = f64> {
+        let LoadSpan { from, to, count } = self.normal_force;
+        (0..count).map(move |index| from * (to / from).powf(index as f64 / count.saturating_sub(1) as f64))
+    }
+}

@@ -1,0 +1,52 @@
+//! A fretting map: the steady cycles of a contact under many loads.
+
+use stickslip_mechanics::{Contact, Setup};
+use stickslip_wire::cycle::{CycleTask, FrettingMap};
+use stickslip_wire::{Accuracy, CycleReply};
+
+use super::Failure;
+use super::cycle::cycle;
+use super::run::{Timer, contact};
+use crate::admission::Stop;
+
+/// The contact of a definition, and its steady cycles under each load, the loads one after the other.
+///
+/// # Errors
+/// As [`cycles_under`], and [`Failure::Refused`] for a preload that cannot be reached.
+pub fn map_of(setup: Setup, task: &CycleTask, map: FrettingMap, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
+    let timer = Timer::start();
+    let contact = contact(setup, "/contact")?;
+    let (mut rows, mut error) = (Vec::new(), 0.0_f64);
+    for load in map.loads() {
+        let mut reply = cycles_under(&contact, load, task, timer, stop)?;
+        rows.append(&mut reply.cycles);
+        error = error.max(reply.accuracy.force_error);
+    }
+    // The time is that of all, the warnings are those of the largest load.
+    let CycleReply { accuracy, warnings, .. } = cycles_under(&contact, map.normal_force.to, task, timer, stop)?;
+    let accuracy = Accuracy { force_error: error, ..accuracy };
+    let reply =
+        CycleReply { contact: contact.summary().into(), cycles: rows, frequency_response: None, accuracy, warnings };
+    Ok((contact, reply))
+}
+
+/// The steady cycles of a contact under a load, N; the rows say which.
+///
+/// # Errors
+/// As [`cycle()`], and [`Failure::Refused`] for a load that the profile does not reach.
+pub fn cycles_under(
+    contact: &Contact,
+    load: f64,
+    task: &CycleTask,
+    timer: Timer,
+    stop: &Stop,
+) -> Result<CycleReply, Failure> {
+    let refused = |error| Failure::Refused { pointer: "/map/normal_force".to_owned(), error };
+    let pressed = contact.pressed(load).map_err(refused)?;
+    let mut reply = cycle(&pressed, task, timer, stop)?;
+    for row in &mut reply.cycles {
+        row.normal_force = Some(load);
+        row.gross_slip_displacement = Some(reply.contact.gross_slip_displacement);
+    }
+    Ok(reply)
+}
