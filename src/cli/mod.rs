@@ -11,6 +11,7 @@ mod protocol;
 mod report;
 mod serve;
 mod settings;
+mod subsurface;
 mod sweep;
 
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ use protocol::Protocol;
 use report::Report;
 use serve::Serve;
 use settings::{Settings, SettingsError};
+use subsurface::Subsurface;
 use sweep::Sweep;
 
 /// Simulate the frictional contact of two elastic bodies exactly: as a service, or from the command line.
@@ -59,6 +61,8 @@ enum Command {
     Protocol(Protocol),
     /// Run the body of POST /cycle from a file and print the reply, or a fretting map.
     Cycle(Cycle),
+    /// Run the body of POST /simulate from a file and print the stress below the surface that it asks for.
+    Subsurface(Subsurface),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -112,6 +116,7 @@ impl Command {
             Command::Simulate { file } => simulate(&file),
             Command::Protocol(protocol) => protocol.run(),
             Command::Cycle(cycle) => cycle.run(),
+            Command::Subsurface(subsurface) => subsurface.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),

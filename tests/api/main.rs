@@ -37,5 +37,6 @@ mod profiles;
 mod protocols;
 mod schema;
 mod settings;
+mod subsurface;
 mod sweeps;
 mod warnings;

@@ -60,11 +60,6 @@ pub async fn compute_subsurface_stress(
     let CheckedQuery(query) = query?;
     let format = Format::chosen(query.format, &headers, &Format::ALL)?;
     let CheckedBody { body, held, .. } = request;
-    if format.is_plot() && !body.is_section() {
-        let detail =
-            "a picture shows one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
-        return Err(Problem::at(Code::InvalidInput, "/fields", detail));
-    }
     let more = (move |places: usize| format.bytes(places, SUBSURFACE_ROW), format.cost());
     let write = move |stress: &SubsurfaceReply, task: &SubsurfaceTask| written(format, stress, task);
     let (sequence, body, memory) = app.sessions.subsurface(id, body, more, write).await?;
@@ -75,5 +70,10 @@ pub async fn compute_subsurface_stress(
 
 /// The stresses in a format.
 fn written(format: Format, reply: &SubsurfaceReply, task: &SubsurfaceTask) -> Result<Vec<u8>, Problem> {
+    if format.is_plot() && !task.is_section() {
+        let detail =
+            "a picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
+        return Err(Problem::at(Code::InvalidInput, "/fields", detail));
+    }
     format.write(reply, || plots::section(&reply.stress, task), || tables::subsurface(&reply.stress))
 }

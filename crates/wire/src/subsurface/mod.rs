@@ -192,6 +192,13 @@ pub struct SubsurfaceTask {
 }
 
 impl SubsurfaceTask {
+    /// Whether it is for one quantity over a grid in a plane, which can be drawn.
+    #[must_use]
+    pub fn is_section(&self) -> bool {
+        let single = |field: &SubsurfaceField| !matches!(field, SubsurfaceField::Tensor | SubsurfaceField::Principal);
+        matches!(&self.fields[..], [only] if single(only)) && matches!(self.places, Places::Grid(_))
+    }
+
     /// The name of the body.
     #[must_use]
     pub fn body_name(&self) -> &'static str {
@@ -269,14 +276,6 @@ impl SubsurfaceRequest {
             BodyName::Second => Side::Second,
         };
         Some(SubsurfaceTask { side, poisson_ratio: poisson_ratio?, places: places?, fields, bulk })
-    }
-
-    /// Whether it is for one quantity over a grid in a plane, which can be drawn.
-    #[must_use]
-    pub fn is_section(&self) -> bool {
-        let single = |field: &SubsurfaceField| !matches!(field, SubsurfaceField::Tensor | SubsurfaceField::Principal);
-        let one = self.fields.as_deref().is_some_and(|fields| matches!(fields, [only] if single(only)));
-        one && (self.plane.is_some() || self.surface.is_some())
     }
 
     /// Poisson's ratio of the body, from the material or from the request.
