@@ -20,6 +20,7 @@ pub mod closed_cycle;
 pub mod cycle;
 pub mod definition;
 pub mod event;
+pub mod fretting;
 pub mod job;
 pub mod json_value;
 pub mod limits;
@@ -46,6 +47,10 @@ pub use cycle::{
     FrictionWork, Harmonic, LoadCurve, LoadSpan, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
 };
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
+pub use fretting::{
+    BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased, StressPath,
+    SurfaceCriterion, Weighted,
+};
 pub use event::{EndEvent, EndReason, StateEvent};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
