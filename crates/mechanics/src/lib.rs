@@ -49,7 +49,7 @@
 //! | [`cycle`] | what does it do in a steady cycle? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
-//! | [`fatigue`] | how hard does a cycle of stresses try the material? |
+//! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
 //! | `packed` | how is a contact stored as bytes? |

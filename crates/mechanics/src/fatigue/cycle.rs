@@ -57,7 +57,7 @@ impl Cycle {
             let start = (here.displacement, here.history.edge().level);
             let mut largest = start.0.value().abs().max(start.1.value().abs());
             for step in moves {
-                here.apply_while(step, DEFAULT_TOLERANCE, keep_going)?;
+                follow(&mut here, step, keep_going)?;
                 largest = largest.max(here.displacement.value().abs()).max(here.indentation().abs());
             }
             let drifts = [
@@ -88,10 +88,10 @@ impl Cycle {
             let (start, mut between) = (here.clone(), here.clone());
             for part in 1..instants {
                 let target = start.partial_move(step, part as f64 / instants as f64);
-                between.apply_while(&target, DEFAULT_TOLERANCE, keep_going)?;
+                follow(&mut between, &target, keep_going)?;
                 states.push(between.clone());
             }
-            here.apply_while(step, DEFAULT_TOLERANCE, keep_going)?;
+            follow(&mut here, step, keep_going)?;
             states.push(here.clone());
         }
         Ok(states)
@@ -153,4 +153,9 @@ impl Cycle {
             }
         }
     }
+}
+
+/// Makes a move, unless the caller has lost interest: a straight move would not ask.
+fn follow(contact: &mut Contact, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+    if keep_going() { contact.apply_while(step, DEFAULT_TOLERANCE, keep_going) } else { Err(Error::Interrupted) }
 }

@@ -8,15 +8,17 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
-/// Angle between neighbours of the grid: ten degrees.
-pub(super) const GRID: f64 = PI / 18.0;
-/// Normals closer than this are neighbours; on a latitude of the grid and across to the next, it reaches one on each side.
-const NEIGHBOURS: f64 = 1.5 * GRID;
-/// The search starts from so many peaks of the grid at most.
-const MOST_PEAKS: usize = 6;
-/// A peak of the grid lower than the largest by more than this share of the range over the grid is none to start from: the
-/// grid is off a peak by at most 7 degrees.
-const SLACK: f64 = 0.3;
+/// Angle between neighbours of the grid: five degrees.
+const GRID: f64 = PI / 36.0;
+/// Normals closer than this are neighbours: it reaches the next one on each side.
+const NEIGHBOURS: f64 = 1.3 * GRID;
+/// The search starts from so many planes of the grid at most.
+const MOST_STARTS: usize = 16;
+/// A plane lower than the largest by more than this share of the range over the grid is none to start from.
+const SLACK: f64 = 0.1;
+/// One lower by less than this share, as much as the grid can be below a peak, is one even if a neighbour is higher, unless a
+/// search has ended near it: peaks can hide between the planes of the grid.
+const OFF_PEAK: f64 = 0.03;
 /// The distance of the first parabola, and of the last. What is left of a value is of the order of the square of the latter.
 const FIRST_STEP: f64 = 0.5 * GRID;
 const LAST_STEP: f64 = 1e-5;
@@ -29,7 +31,7 @@ pub(super) type Vector = [f64; 3];
 /// Normals of the upper half of a sphere.
 static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
     let mut normals = vec![[0.0, 0.0, 1.0]];
-    for latitude in 1..=9 {
+    for latitude in 1..=18 {
         let tilt = f64::from(latitude) * GRID;
         // Around the equator opposite normals are the same plane.
         let turn = if tilt < FRAC_PI_2 - 0.5 * GRID { 2.0 * PI } else { PI };
@@ -43,33 +45,48 @@ static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
 });
 
 /// The largest value of a function that opposite normals share, and the normal, sought from the grid and from `more`.
-pub(super) fn largest(more: &[Vector], mut value: impl FnMut(&Vector) -> f64) -> (f64, Vector) {
-    let normals: Vec<(f64, Vector)> = NORMALS.iter().chain(more).map(|normal| (value(normal), *normal)).collect();
-    let mut order: Vec<usize> = (0..normals.len()).collect();
-    order.sort_by(|one, other| normals[*other].0.total_cmp(&normals[*one].0));
-    let (top, bottom) = (normals[order[0]].0, normals[order[order.len() - 1]].0);
-    let near = NEIGHBOURS.cos();
-    let mut peaks = 0;
-    let mut best = normals[order[0]];
-    for (rank, index) in order.iter().enumerate() {
-        let (height, normal) = normals[*index];
-        if height < top - SLACK * (top - bottom) || peaks == MOST_PEAKS {
+/// The function takes whether a bound from above will do, which is to be cheaper: it spares low planes the exact value.
+pub(super) fn largest(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> (f64, Vector) {
+    let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
+    let mut bounds: Vec<(f64, Vector)> =
+        NORMALS.iter().chain(more).map(|normal| (value(normal, true), *normal)).collect();
+    bounds.sort_by(highest_first);
+    let bottom = bounds[bounds.len() - 1].0;
+    let mut best = (f64::NEG_INFINITY, bounds[0].1);
+    let mut normals: Vec<(f64, Vector)> = Vec::new();
+    for (bound, normal) in bounds {
+        if bound < best.0 - SLACK * (best.0 - bottom) {
             break;
         }
-        if order[..rank].iter().any(|higher| dot(&normals[*higher].1, &normal).abs() > near) {
-            continue;
+        normals.push((value(&normal, false), normal));
+        if normals[normals.len() - 1].0 > best.0 {
+            best = normals[normals.len() - 1];
         }
-        peaks += 1;
-        let found = climb((height, normal), &mut value);
-        if found.0 > best.0 {
-            best = found;
+    }
+    normals.sort_by(highest_first);
+    let top = best.0;
+    let near = |normal: &Vector, others: &[(f64, Vector)]| {
+        others.iter().any(|other| dot(&other.1, normal).abs() > NEIGHBOURS.cos())
+    };
+    let mut found: Vec<(f64, Vector)> = Vec::with_capacity(MOST_STARTS);
+    for (rank, start) in normals.iter().enumerate() {
+        if start.0 < top - SLACK * (top - bottom) || found.len() == MOST_STARTS {
+            break;
+        }
+        let hidden = start.0 >= best.0 - OFF_PEAK * (top - bottom) && !near(&start.1, &found);
+        if hidden || !near(&start.1, &normals[..rank]) {
+            let peak = climb(*start, |normal| value(normal, false));
+            if peak.0 > best.0 {
+                best = peak;
+            }
+            found.push(peak);
         }
     }
     best
 }
 
 /// The peak next to a normal: parabolas through six values, and the best value seen where a parabola has no maximum.
-fn climb(start: (f64, Vector), value: &mut impl FnMut(&Vector) -> f64) -> (f64, Vector) {
+fn climb(start: (f64, Vector), mut value: impl FnMut(&Vector) -> f64) -> (f64, Vector) {
     let (mut best, mut step) = (start, FIRST_STEP);
     for _ in 0..MOST_STEPS {
         if step < LAST_STEP {
