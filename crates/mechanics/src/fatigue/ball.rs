@@ -93,8 +93,9 @@ impl<'a, const N: usize> Smallest<'a, N> {
         search
     }
 
-    /// Tries the ball through the apex and the `carriers`, and those with further points: its centre from the apex is in the
-    /// flat that `frame` spans. It counts with the distance of the farthest point, so that round-off cannot win.
+    /// Tries the ball through the apex and the `carriers`, and those with further points: its centre from the apex is
+    /// in the flat that `frame` spans. It counts with the distance of the farthest point, so that round-off cannot
+    /// win.
     fn extend(
         &mut self,
         center: &[f64; N],

@@ -35,8 +35,8 @@ pub struct Refined {
 }
 
 impl Cycle {
-    /// The cycle that a contact has under `moves` again and again, while `keep_going` returns true. A displacement and an
-    /// indentation that are closed make the whole slip history closed.
+    /// The cycle that a contact has under `moves` again and again, while `keep_going` returns true. It is steady after
+    /// the first time that displacement and indentation end where they began: then the slip history does too.
     ///
     /// # Errors
     /// [`Error::OpenCycle`] for moves that drift, [`Error::Interrupted`], and those of [`Contact::apply`].
@@ -75,8 +75,8 @@ impl Cycle {
         }
     }
 
-    /// The contact at so many instants of each move, at least one, equally spaced in what the move is straight in; the last is the
-    /// end of the move.
+    /// The contact at so many instants of each move, at least one, equally spaced in what the move is straight in; the
+    /// last is the end of the move.
     ///
     /// # Errors
     /// [`Error::Interrupted`], and those of [`Contact::apply`].
@@ -97,8 +97,8 @@ impl Cycle {
         Ok(states)
     }
 
-    /// The stresses of [`Cycle::states`] at each of the places, m, in one of the bodies: axes, Poisson's ratio and infinite
-    /// stresses as in [`Contact::subsurface`].
+    /// The stresses of [`Cycle::states`], Pa, at each of the places, m, in one of the bodies: axes, Poisson's ratio and
+    /// infinite stresses as in [`Contact::subsurface`].
     ///
     /// # Errors
     /// As [`Cycle::states`], and [`Error::OutOfRange`] for Poisson's ratio.
@@ -123,8 +123,8 @@ impl Cycle {
         Ok(paths)
     }
 
-    /// A criterion at one place, m, over instants that are doubled, from four a move to [`MAX_INSTANTS`], until it changes by
-    /// less than `tolerance` relative to it; [`DEFAULT_REFINEMENT`] is one.
+    /// A criterion at one place, m, over instants that are doubled, from four a move to [`MAX_INSTANTS`], until it
+    /// changes by at most `tolerance`, relative to it, such as [`DEFAULT_REFINEMENT`].
     ///
     /// # Errors
     /// As [`Cycle::stress_paths`].

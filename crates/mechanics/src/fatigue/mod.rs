@@ -8,11 +8,12 @@
 //! | Smith, Watson & Topper (1970) | max over planes of max sigma_n (range of eps_n)/2; zero without tension | Pa |
 //! | Fatemi & Socie (1988) | max over planes of gamma_a (1 + k max sigma_n/sigma_y), gamma_a = tau_a/G, no factor below zero | – |
 //!
-//! Tresca shear is half the difference of the outer principal stresses; sigma_n and eps_n are the normal stress and strain of
-//! a plane; tau_a is the radius of the smallest circle around the path of the shear stress in the plane. Strains are
-//! elastic (Hooke). Planes are searched for on a grid of five degrees and refined from its peaks to about 1e-9 of the
-//! value. Of random paths, one in ten thousand has a narrow peak between the planes of the grid that the search misses, with a value
-//! higher by up to 0.4 %. [`Cycle`] gives the stresses, [`Ruiz`] looks at the surface alone.
+//! Tresca shear is half the difference of the outer principal stresses; sigma_n and eps_n are the normal stress and
+//! strain of a plane; tau_a is the radius of the smallest circle around the path of the shear stress in the plane.
+//! Strains are elastic (Hooke). Planes are searched for on a grid of five degrees and refined from its peaks to about
+//! 1e-9 of the value. Of random paths, one in ten thousand has a narrow peak between the planes of the grid that the
+//! search misses; the value is then too low, by 0.4 % at most of those seen. [`Cycle`] gives the stresses, [`Ruiz`]
+//! looks at the surface alone.
 
 mod ball;
 mod cycle;
@@ -75,8 +76,8 @@ pub enum Criterion {
 pub struct Value {
     /// In the unit of the criterion.
     pub value: f64,
-    /// Unit normal, z not negative, of the critical plane, if the criterion has one. Where several planes have the largest
-    /// value, as mirror images do, it is one of them.
+    /// Unit normal, z not negative, of the critical plane, if the criterion has one. Where several planes have the
+    /// largest value, as mirror images do, it is one of them.
     pub plane: Option<[f64; 3]>,
     /// Index of the critical instant: of the largest hydrostatic stress (Crossland), of the largest sum (Dang Van), of
     /// the largest normal stress on the plane (the others).
@@ -110,8 +111,8 @@ impl Criterion {
         Ok(self)
     }
 
-    /// Its value over the stresses at the instants of a closed cycle. Zero for none; infinite where a stress is, with the first
-    /// such instant.
+    /// Its value over the stresses at the instants of a closed cycle. Zero for none; infinite where a stress is, with
+    /// the first such instant.
     ///
     /// ```
     /// use stickslip_mechanics::Stress;
@@ -160,7 +161,8 @@ impl Criterion {
         (value, Some(if normal[2] < 0.0 { normal.map(|part| -part) } else { normal }), instant)
     }
 
-    /// The value on one plane, or a bound of it, and the instant of the largest normal stress. `shears` is room to work in.
+    /// The value on one plane, or a bound of it, and the instant of the largest normal stress. `shears` is room to work
+    /// in.
     fn on_plane(&self, path: &[Stress], normal: &Vector, bound: bool, shears: &mut Vec<[f64; 2]>) -> (f64, usize) {
         let along = weights(normal, normal);
         let (instant, tension) = most(path.iter().map(|stress| resolved(stress, &along)));
@@ -218,8 +220,8 @@ fn resolved(stress: &Stress, [xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> f64 {
     (xx * stress.xx + yy * stress.yy + zz * stress.zz) + (xy * stress.xy + yz * stress.yz + xz * stress.xz)
 }
 
-/// The radius of the smallest circle around the shear stresses of a path in a plane, or of one about the middle of their
-/// ranges.
+/// The radius of the smallest circle around the shear stresses of a path in a plane, or of one about the middle of
+/// their ranges.
 fn shear_amplitude(path: &[Stress], normal: &Vector, bound: bool, shears: &mut Vec<[f64; 2]>) -> f64 {
     let [one, two] = axes(normal).map(|axis| weights(&axis, normal));
     shears.clear();

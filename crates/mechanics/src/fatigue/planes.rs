@@ -16,10 +16,10 @@ const NEIGHBOURS: f64 = 1.3 * GRID;
 const MOST_STARTS: usize = 16;
 /// A plane lower than the largest by more than this share of the range over the grid is none to start from.
 const SLACK: f64 = 0.1;
-/// One lower by less than this share, as much as the grid can be below a peak, is one even if a neighbour is higher, unless a
-/// search has ended near it: peaks can hide between the planes of the grid.
+/// One lower by less than this share, as much as the grid can be below a peak, is one even if a neighbour is higher,
+/// unless a search has ended near it: peaks can hide between the planes of the grid.
 const OFF_PEAK: f64 = 0.03;
-/// The distance of the first parabola, and of the last. What is left of a value is of the order of the square of the latter.
+/// The distance of the first parabola, and of the last. The error of a value is of the order of the latter's square.
 const FIRST_STEP: f64 = 0.5 * GRID;
 const LAST_STEP: f64 = 1e-5;
 /// More parabolas than a search needs; a safeguard only.
