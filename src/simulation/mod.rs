@@ -89,7 +89,9 @@ impl Failure {
     pub fn code(&self) -> Code {
         match self {
             Failure::Refused { error, .. } => match error {
-                mechanics::Error::OutOfRange { .. } | mechanics::Error::Table { .. } => Code::InvalidInput,
+                mechanics::Error::OutOfRange { .. }
+                | mechanics::Error::Table { .. }
+                | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
