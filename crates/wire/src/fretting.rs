@@ -321,6 +321,33 @@ pub struct FrettingTask {
     pub tolerance: f64,
 }
 
+impl FrettingTask {
+    /// Whether it is for one criterion over a grid in a plane, which can be drawn.
+    #[must_use]
+    pub fn is_section(&self) -> bool {
+        let surface = usize::from(self.ruiz.is_some()) + usize::from(self.friction_work.is_some());
+        self.criteria.iter().flatten().count() + surface == 1 && matches!(self.places, Places::Grid(_))
+    }
+}
+
+impl FrettingReply {
+    /// The criteria that there are, with names and units.
+    pub fn ratings(&self) -> impl Iterator<Item = (&'static str, &'static str, &Rating)> {
+        [
+            ("crossland", "Pa", &self.crossland),
+            ("dang_van", "Pa", &self.dang_van),
+            ("findley", "Pa", &self.findley),
+            ("swt", "Pa", &self.swt),
+            ("fatemi_socie", "1", &self.fatemi_socie),
+            ("ruiz", "N/m", &self.ruiz),
+            ("ruiz_tension", "N²/m³", &self.ruiz_tension),
+            ("friction_work", "J/m²", &self.friction_work),
+        ]
+        .into_iter()
+        .filter_map(|(name, unit, rating)| Some((name, unit, rating.as_ref()?)))
+    }
+}
+
 impl Document for FrettingRequest {
     type Checked = (ContactDefinition, Setup, FrettingTask);
 
@@ -390,7 +417,7 @@ impl Criteria {
             let names = "`crossland`, `dang_van`, `findley`, `swt`, `fatemi_socie`, `ruiz`, `friction_work`";
             faults.add(at, format_args!("empty: give at least one of {names}"));
         }
-        let mut modulus = |given: Option<f64>, name: &str, faults: &mut Faults| {
+        let modulus = |given: Option<f64>, name: &str, faults: &mut Faults| {
             let place = at.member(name);
             match (given, youngs_modulus) {
                 (Some(given), Some(known)) if given != known => {

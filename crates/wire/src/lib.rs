@@ -47,11 +47,11 @@ pub use cycle::{
     FrictionWork, Harmonic, LoadCurve, LoadSpan, Machine, Resonance, ResonancePoint, SteadyCycle, WorkDensity,
 };
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
-pub use fretting::{
-    BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased, StressPath,
-    SurfaceCriterion, Weighted,
-};
 pub use event::{EndEvent, EndReason, StateEvent};
+pub use fretting::{
+    BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,
+    StressPath, SurfaceCriterion, Weighted,
+};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Path, Plan};

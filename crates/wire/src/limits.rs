@@ -340,11 +340,12 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive, CycleRequest,
-        CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie, Findley, ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan,
-        Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest,
-        RelaxRequest, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane,
-        SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive,
+        CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie, Findley,
+        ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest,
+        NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs,
+        StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
+        SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
