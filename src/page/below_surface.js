@@ -36,7 +36,8 @@ function sentence(field, { infinite, low, high }) {
   const at = (name, point) => `largest ${name} ${formatQuantity(Math.abs(point[2]), "Pa", 3)}, ${place(point)}`;
   const parts = field === "hydrostatic" ? [] : [at(NAMES[field], high)];
   if (field === "hydrostatic" && low[2] < 0) parts.push(at("mean compression", low));
-  if (field === "hydrostatic" && high[2] > 0) parts.push(at("mean tension", high));
+  // Where there is no tension, round-off is left.
+  if (field === "hydrostatic" && high[2] > 1e-9 * -low[2]) parts.push(at("mean tension", high));
   const text = `${edge}${parts.join("; ")}.`;
   return text[0].toUpperCase() + text.slice(1);
 }

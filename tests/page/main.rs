@@ -407,8 +407,9 @@ async fn the_stress_below_the_surface_follows_the_moves() {
     browser.until(&says(&format!("Largest shear stress on any plane {}, {depth}", pascals(0.5 * mises)))).await;
     browser.choose("Stress", "hydrostatic").await;
     let (_, mean) = below(&session, 0.3, 1e-9);
-    browser.until(&says(&format!("Largest mean compression {}, on the surface at x = 0", pascals(-mean)))).await;
+    browser.until(&says(&format!("Largest mean compression {}, on the surface at x = 0.", pascals(-mean)))).await;
     browser.choose("Stress", "von_mises").await;
+    browser.until(&says(&pascals(mises))).await;
     browser.value("document.querySelector('#below-card').scrollIntoView() ?? null").await;
     browser.picture("below").await;
 
