@@ -37,12 +37,14 @@ export class Axis {
     const count = Math.max(2, Math.floor(Math.abs(this.end - this.start) / apart));
     if (this.log) return decadeTicks(this.from, this.to, count);
     const { factor } = this.scale;
-    const span = (this.to - this.from) / factor;
+    // A depth grows downwards.
+    const [low, high] = this.from < this.to ? [this.from, this.to] : [this.to, this.from];
+    const span = (high - low) / factor;
     const wide = roundStep(span / count);
     // Fewer than three ticks hardly show a scale.
     const step = span < 3 * wide ? roundStep(0.4 * wide) : wide;
-    const first = Math.ceil(this.from / factor / step - 1e-9);
-    const last = Math.floor(this.to / factor / step + 1e-9);
+    const first = Math.ceil(low / factor / step - 1e-9);
+    const last = Math.floor(high / factor / step + 1e-9);
     const numbers = Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => (first + index) * step);
     return numbers.map((number) => [number * factor, formatNumber(Number(number.toPrecision(10)), 6)]);
   }

@@ -12,9 +12,10 @@ let count = 0;
 
 /** A plot. `draw` sets its data; `onhover` is called with what is under the pointer. */
 export class Chart {
-  /** `mode`: whether the pointer selects all series at its `x`, the `nearest` point, or a `radius` that `read` finds. */
-  constructor({ name, title, x, y, mode = "x", square = false, height = 300, note }) {
-    Object.assign(this, { name, title, mode, square, height, x: new Axis(x), y: new Axis(y) });
+  /** `mode`: whether the pointer selects all series at its `x`, the `nearest` point, or a `radius` that `read` finds; `aspect`:
+   *  height over width of its field. */
+  constructor({ name, title, x, y, mode = "x", square = false, aspect, height = 300, note }) {
+    Object.assign(this, { name, title, mode, square, aspect, height, x: new Axis(x), y: new Axis(y) });
     this.clip = `clip-${(count += 1)}`;
     this.data = { series: [] };
     this.view = null;
@@ -82,7 +83,11 @@ export class Chart {
   render() {
     const { width } = this.svg.getBoundingClientRect();
     if (!width) return;
-    const height = this.square ? Math.min(this.height, width) : this.height;
+    const height = this.aspect
+      ? this.aspect * (width - PAD.left - PAD.right) + PAD.top + PAD.bottom
+      : this.square
+        ? Math.min(this.height, width)
+        : this.height;
     const ranges = this.ranges();
     this.box = { left: PAD.left, right: width - PAD.right, top: PAD.top, bottom: height - PAD.bottom };
     const box = this.box;

@@ -83,8 +83,11 @@ function drawBox(chart, start, now) {
 }
 
 function zoomToBox(chart, start, now) {
-  const x = sorted(chart.x.back(start[0]), chart.x.back(now[0]));
-  const y = sorted(chart.y.back(start[1]), chart.y.back(now[1]));
+  const x = sorted(start[0], now[0]).map((place) => chart.x.back(place));
+  // From the lower border up, whichever way the axis points.
+  const y = sorted(now[1], start[1])
+    .reverse()
+    .map((place) => chart.y.back(place));
   // A flat box zooms along x alone.
   chart.view = { x, y: Math.abs(start[1] - now[1]) < 12 ? chart.ranges().y : y };
   chart.showCursor(null);

@@ -1,5 +1,6 @@
 // The elements of the view of a contact: its plots, its state in words, and the controls that move it.
 import { call } from "./api.js";
+import { belowSurfaceCard } from "./below_surface.js";
 import { contactPlots } from "./contact_plots.js";
 import { copyButtons } from "./copy_as_code.js";
 import { figureList } from "./create_form.js";
@@ -20,6 +21,7 @@ export function contactView(model, contact) {
   const { id, figures } = model;
   const plots = contactPlots();
   const steady = steadyCard(model);
+  const below = belowSurfaceCard(model);
   const studies = studyCards(model);
   const live = el("span", { class: "badge", role: "status" }, "connecting …");
   const stateElement = el("div", { class: "state-text", "aria-live": "polite" });
@@ -127,7 +129,7 @@ export function contactView(model, contact) {
       el("button", { type: "button", class: "quiet", onclick: fork }, "Fork"),
       el("button", { type: "button", class: "quiet danger", onclick: remove }, "Delete"),
     ),
-    el("div", { class: "contact-view" }, side, el("div", { class: "plots" }, ...plots.all.map((plot) => plot.element))),
+    el("div", { class: "contact-view" }, side, el("div", { class: "plots" }, ...plots.all.map((plot) => plot.element), below.element)),
     protocolCard(model),
     pathCard(model),
     studies.element,
@@ -137,7 +139,7 @@ export function contactView(model, contact) {
     plots,
     show: (state) => {
       stateElement.replaceChildren(...stateText(state, model));
-      for (const one of [...controls, steady, studies]) one.show(state);
+      for (const one of [...controls, steady, below, studies]) one.show(state);
     },
     report: (what) => {
       live.textContent = CONNECTION[what] ?? what;

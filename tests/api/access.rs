@@ -37,6 +37,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/contacts/{id}/relax", "relax", 200, &["write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/cycle", "", 200, &["read", "write"]),
+    ("POST", "/contacts/{id}/subsurface", "subsurface", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/history", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/loop", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/cycles", "", 200, &["read", "write"]),
@@ -55,6 +56,7 @@ fn body(name: &str) -> Option<Value> {
         "protocol" => Some(json!({"contact": ball(), "reversals": 2, "kind": "linear"})),
         "cycle" => Some(json!({"contact": ball(), "drive": {"force": 1.0}})),
         "relax" => Some(json!({"reversals": 2})),
+        "subsurface" => Some(json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]})),
         "ball" => Some(ball()),
         "move" => Some(json!({"displacement": 1e-8})),
         "sweep" => {

@@ -102,7 +102,8 @@ fn every_number_that_can_be_sent_has_its_range_and_every_object_is_closed() {
                 assert!(node["minimum"].is_number() && node["maximum"].is_number(), "{name}: {node}");
             }
             Some("array") => {
-                let bounded = node["maxItems"].is_number() || reference(&node["items"]).as_deref() == Some("Field");
+                let names = matches!(reference(&node["items"]).as_deref(), Some("Field" | "SubsurfaceField"));
+                let bounded = node["maxItems"].is_number() || names;
                 assert!(bounded, "{name}: {node}");
             }
             Some("object") => {

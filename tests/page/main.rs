@@ -139,6 +139,8 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
             browser.until("document.documentElement.scrollWidth <= innerWidth").await;
         }
         browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
+        browser.until("document.querySelector('#plot-below .shade') !== null").await;
+        browser.until("document.documentElement.scrollWidth <= innerWidth").await;
         // Both axes of every plot are named, and have their unit but where they count.
         let titles = browser
             .value(
@@ -147,7 +149,7 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
             )
             .await;
         let titles: Vec<Vec<String>> = serde_json::from_value(titles).unwrap();
-        assert_eq!(titles.len(), 4);
+        assert_eq!(titles.len(), 5);
         for title in titles.iter().flatten() {
             assert!(title == "Move" || title.ends_with(')'), "{title}");
         }
@@ -358,6 +360,126 @@ async fn the_mark_of_a_fretting_map_is_where_its_lines_say() {
     browser.value("document.querySelector('#plot-map').scrollIntoView()").await;
     browser.picture("map").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+/// The largest pressure of the ball, Pa, and the parts of it that Hertz's stress on the axis has at a depth in contact radii:
+/// von Mises and the mean, under this Poisson's ratio.
+fn below(session: &NewSession, poisson: f64, depth: f64) -> (f64, f64) {
+    let most = 3.0 * 10.0 / (2.0 * PI * session.contact.contact_radius.powi(2));
+    let axial = -1.0 / (1.0 + depth * depth);
+    let radial = -(1.0 + poisson) * (1.0 - depth * (1.0 / depth).atan()) - 0.5 * axial;
+    (most * (axial - radial).abs(), most * (axial + 2.0 * radial) / 3.0)
+}
+
+/// Three digits in MPa or GPa, as the page shows them.
+fn pascals(value: f64) -> String {
+    let (value, unit) = if value >= 1e9 { (value / 1e9, "GPa") } else { (value / 1e6, "MPa") };
+    let places = 2 - value.log10().floor() as usize;
+    format!("{} {unit}", format!("{value:.places$}").parse::<f64>().unwrap())
+}
+
+#[tokio::test]
+async fn the_stress_below_the_surface_follows_the_moves() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let text = "document.querySelector('#below-text')?.innerText";
+    let says = |words: &str| format!("{text}?.includes({words:?})");
+    // Of the rows of the section, the one at 0.5 a is nearest to Hertz's depth of 0.48 a.
+    let (mises, _) = below(&session, 0.3, 0.5);
+    let depth = format!("{:.1} µm below the surface at x = 0.", 0.5e6 * session.contact.contact_radius);
+    browser.until(&says(&format!("Largest von Mises stress {}, {depth}", pascals(mises)))).await;
+    let bodies = "[...document.querySelector('#below-card select').options].map((option) => option.value).join()";
+    assert_eq!(browser.value(bodies).await, "first", "a rigid body has no stress");
+    assert_eq!(browser.value("document.querySelectorAll('#below-card input').length").await, 0);
+    // The edges are at a quarter and three quarters of four contact radii, and the darkest shade is where the ring is.
+    let drawn = "(() => { const frame = document.querySelector('#plot-below .frame').getBBox(); \
+                 const edges = [...document.querySelectorAll('#plot-below .contact-edge')].map((line) => (line.getBBox().x - frame.x) / frame.width); \
+                 const dark = [...document.querySelectorAll('#plot-below .shade')].at(-1).getBBox(); \
+                 const ring = document.querySelector('#plot-below .mark'); \
+                 const [x, y] = ['cx', 'cy'].map((name) => Number(ring.getAttribute(name))); \
+                 return Math.abs(edges[0] - 0.25) < 1e-3 && Math.abs(edges[1] - 0.75) < 1e-3 && Math.abs((y - frame.y) / frame.height - 1 / 3) < 1e-3 \
+                 && x > dark.x && x < dark.x + dark.width && y > dark.y && y < dark.y + dark.height; })()";
+    browser.until(drawn).await;
+    browser.choose("Stress", "max_shear").await;
+    browser.until(&says(&format!("Largest shear stress on any plane {}, {depth}", pascals(0.5 * mises)))).await;
+    browser.choose("Stress", "hydrostatic").await;
+    let (_, mean) = below(&session, 0.3, 1e-9);
+    browser.until(&says(&format!("Largest mean compression {}, on the surface at x = 0.", pascals(-mean)))).await;
+    browser.choose("Stress", "von_mises").await;
+    browser.until(&says(&pascals(mises))).await;
+    browser.value("document.querySelector('#below-card').scrollIntoView() ?? null").await;
+    browser.picture("below").await;
+
+    // It follows moves by another client and the slider, and ends with what belongs to the last of them.
+    moved(&server, &session, &[0.9, -0.7]).await;
+    browser.until(&says(&largest(&server, &session).await)).await;
+    browser.drag("#slide-displacement", 0.3, 0.95).await;
+    moved(&server, &session, &[1.5]).await;
+    let sliding = largest(&server, &session).await;
+    browser.until(&says(&sliding)).await;
+    assert_ne!(sliding, pascals(mises), "friction adds to it");
+    browser.picture("below-sliding").await;
+    // By keyboard, from the upper left corner to the right.
+    browser.press("#plot-below svg", "\u{e011}\u{e014}").await;
+    let corner = browser.value("document.querySelector('#plot-below .said').textContent").await;
+    let corner = corner.as_str().unwrap();
+    assert!(
+        corner.contains("Depth z 0 m, von Mises stress") && corner.starts_with("x, along the motion −"),
+        "{corner}"
+    );
+    let apart = Move { indentation: Some(-1e-9), displacement: Some(1e-8), ..Move::default() };
+    server.client.apply(session.id, &MoveRequest::from(apart), &Options::default()).await.unwrap();
+    browser.until(&format!("{} && document.querySelector('#plot-below').hidden", says("do not press"))).await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+/// The largest von Mises stress of the section that the page shows, as the service has it now.
+async fn largest(server: &Binary, session: &NewSession) -> String {
+    let a = server.client.contact(session.id).await.unwrap().state.contact_radius;
+    let plane = json!({"normal": "y", "offset": 0.0, "x": [-2.0 * a, 2.0 * a, 61], "z": [0.0, 1.5 * a, 31]});
+    let request = json!({"body": "first", "plane": plane, "fields": ["von_mises"]});
+    let request = serde_json::from_value(request).unwrap();
+    let reply = server.client.subsurface(session.id, &request).await.unwrap();
+    pascals(reply.stress.von_mises.unwrap().into_iter().flatten().fold(0.0, f64::max))
+}
+
+#[tokio::test]
+async fn below_the_surface_reduced_moduli_need_a_poissons_ratio_and_an_edge_is_infinite() {
+    let server = Binary::start(&[]);
+    let mut request = create();
+    let material = json!({"effective": {"e_star": 2.31e11, "g_star": 1.9e11}});
+    request.material = serde_json::from_value(material).unwrap();
+    let session = server.client.create(&request, &Options::default()).await.unwrap();
+    request.profile = serde_json::from_value(json!({"type": "flat_punch", "radius": 1e-4})).unwrap();
+    let punch = server.client.create(&request, &Options::default()).await.unwrap();
+    let browser = Browser::start(400, 850, true).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let text = "document.querySelector('#below-text')?.innerText";
+    for (typed, poisson) in [("0.3", 0.3), ("0", 0.0), ("0,5", 0.5)] {
+        browser.write("#below-card input", typed).await;
+        browser.choose("Stress", "hydrostatic").await;
+        let (_, mean) = below(&session, poisson, 1e-9);
+        browser.until(&format!("{text}?.includes({:?})", pascals(-mean))).await;
+    }
+    browser.choose("Stress", "von_mises").await;
+    browser.choose("Body", "second").await;
+    browser.until(&format!("{text}?.includes({:?})", pascals(below(&session, 0.5, 0.55).0))).await;
+    browser.value("document.querySelector('#below-card').scrollIntoView() ?? null").await;
+    browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+    browser.picture("below-narrow").await;
+    browser.write("#below-card input", "0.7").await;
+    let fault = "[...document.querySelectorAll('#below-card .fault')].map((fault) => fault.innerText).join('')";
+    browser.until(&format!("{fault}.includes('0.5') && document.querySelector('#plot-below').hidden")).await;
+    browser.write("#below-card input", "0.5").await;
+    browser.until(&format!("{fault} === '' && !document.querySelector('#plot-below').hidden")).await;
+
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, punch.id)).await.unwrap();
+    browser.until(&format!("{text}?.startsWith('Infinite on the surface at x = −100 µm, where')")).await;
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
     browser.close().await;
 }
 

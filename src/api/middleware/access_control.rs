@@ -45,6 +45,7 @@ const ROUTE_ROLES: &[(&str, &str, Need)] = &[
     ("POST", "/contacts/{id}/fork", Key(Role::Write)),
     ("GET", "/contacts/{id}/stress", Key(Role::Read)),
     ("GET", "/contacts/{id}/cycle", Key(Role::Read)),
+    ("POST", "/contacts/{id}/subsurface", Key(Role::Read)),
     ("GET", "/contacts/{id}/history", Key(Role::Read)),
     ("GET", "/contacts/{id}/loop", Key(Role::Read)),
     ("GET", "/contacts/{id}/cycles", Key(Role::Read)),
