@@ -1,10 +1,11 @@
 //! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
-//! and 11 about steady cycles: SVG, and CSV with the data.
+//! and 11 about steady cycles, and figures 12 and 13 about fretting fatigue: SVG, and CSV with the data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
 
 mod cycles;
+mod fretting;
 mod protocols;
 
 use std::fmt::Write as _;
@@ -13,6 +14,7 @@ use std::io;
 use std::path::Path;
 
 use crate::plot::chart::{Chart, Series};
+use crate::plot::{Picture as _, Section};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::{
     Contact, Elasticity, Error, Move, Preload, Profile, Residual, Setup, Sphere, State, Tangential,
@@ -24,7 +26,7 @@ const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
 const MAX_REVERSALS: usize = 40;
 
-/// Writes `figure1.svg` to `figure11.svg` and the CSV file of each into `dir`, which is created if it does not exist.
+/// Writes `figure1.svg` to `figure13.svg` and the CSV file of each into `dir`, which is created if it does not exist.
 ///
 /// # Errors
 /// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
@@ -35,6 +37,12 @@ pub fn write(dir: &Path) -> io::Result<()> {
         let name = format!("figure{}", index + 1);
         fs::write(dir.join(format!("{name}.svg")), chart.svg().map_err(io::Error::other)?)?;
         fs::write(dir.join(format!("{name}.csv")), csv(chart))?;
+    }
+    let sections = fretting::sections().map_err(io::Error::other)?;
+    for (index, section) in sections.iter().enumerate() {
+        let name = format!("figure{}", charts.len() + index + 1);
+        fs::write(dir.join(format!("{name}.svg")), section.svg().map_err(io::Error::other)?)?;
+        fs::write(dir.join(format!("{name}.csv")), section_csv(section))?;
     }
     Ok(())
 }
@@ -207,9 +215,22 @@ fn csv(chart: &Chart) -> String {
     text
 }
 
+/// One row a place.
+fn section_csv(section: &Section) -> String {
+    let ((x, columns), (y, rows), (value, values)) = (&section.x, &section.y, &section.values);
+    let mut text = format!("{},{},{}\n", x.name, y.name, value.name);
+    for (index, value) in values.iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{},{},{value}", columns[index / rows.len()], rows[index % rows.len()]);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+
+    use crate::plot::Picture as _;
 
     /// All but those of protocols, which take long. `cargo run --release -- figures --out docs/figures` draws them anew.
     #[test]
@@ -220,6 +241,11 @@ mod tests {
             let name = format!("figure{number}.svg");
             let kept = std::fs::read_to_string(folder.join(&name)).unwrap();
             assert!(chart.svg().unwrap() == kept, "{name} has changed");
+        }
+        for (number, section) in (12..).zip(super::fretting::sections().unwrap()) {
+            let name = format!("figure{number}.svg");
+            let kept = std::fs::read(folder.join(&name)).unwrap();
+            assert!(section.svg().unwrap() == kept, "{name} has changed");
         }
     }
 }

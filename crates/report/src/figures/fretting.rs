@@ -1,0 +1,49 @@
+//! Figures 12 and 13: Crossland's criterion below a ball that is moved back and forth, in partial slip and in gross slip.
+
+use super::protocols::{contact_of, sphere};
+use crate::plot::{Axis, Section};
+use stickslip_mechanics::fatigue::{Criterion, Cycle};
+use stickslip_mechanics::subsurface::Side;
+use stickslip_mechanics::{Error, Move, Tangential};
+
+/// Amplitudes over that of gross slip.
+const AMPLITUDES: [(&str, f64); 2] = [
+    ("Figure 12: Crossland's criterion at 0.6 of gross slip, alpha = 0.3", 0.6),
+    ("Figure 13: Crossland's criterion at 1.2 of gross slip, alpha = 0.3", 1.2),
+];
+const FRICTION: f64 = 0.5;
+const POISSON: f64 = 0.3;
+/// Half the width and the depth of the section, in contact radii, and its points.
+const HALF: f64 = 1.5;
+const DEPTH: f64 = 1.0;
+const COLUMNS: usize = 121;
+const ROWS: usize = 41;
+/// Instants of each stroke.
+const INSTANTS: usize = 16;
+
+pub(super) fn sections() -> Result<[Section; 2], Error> {
+    let [first, second] = AMPLITUDES.map(|(title, share)| section(title, share));
+    Ok([first?, second?])
+}
+
+fn section(title: &str, share: f64) -> Result<Section, Error> {
+    let contact = contact_of(sphere()?, FRICTION)?;
+    let amplitude = share * contact.gross_slip_displacement();
+    let to = |displacement| Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
+    let cycle = Cycle::new(&contact, &[to(amplitude), to(-amplitude)], &|| true)?;
+    let x: Vec<f64> = (0..COLUMNS).map(|index| HALF * (2.0 * index as f64 / (COLUMNS - 1) as f64 - 1.0)).collect();
+    let z: Vec<f64> = (0..ROWS).map(|index| DEPTH * index as f64 / (ROWS - 1) as f64).collect();
+    let a = contact.contact_radius();
+    let places: Vec<[f64; 3]> = x.iter().flat_map(|x| z.iter().map(move |z| [a * x, 0.0, a * z])).collect();
+    let paths = cycle.stress_paths(INSTANTS, (Side::Second, POISSON), &places, &|| true)?;
+    let unit = contact.summary().unit_pressure();
+    let values = paths.iter().map(|path| Criterion::Crossland { alpha: 0.3 }.of(path).value / unit).collect();
+    let axis = |name| Axis { name, unit: None };
+    Ok(Section {
+        title: title.to_owned(),
+        x: (axis("x / a"), x),
+        y: (axis("z / a"), z),
+        downwards: true,
+        values: (axis("criterion / p_max"), values),
+    })
+}
