@@ -36,7 +36,7 @@ use middleware::{access_control, observe, security_headers};
 use request_metrics::RequestMetrics;
 use resources::meta::OpenApiText;
 use resources::{
-    accuracy, contacts, cycle, cycles, events, history, hysteresis_loop, jobs, meta, metrics, moves, page,
+    accuracy, contacts, cycle, cycles, events, fretting, history, hysteresis_loop, jobs, meta, metrics, moves, page,
 };
 use resources::{protocols, simulate, stress, subsurface, sweep};
 
@@ -116,6 +116,7 @@ fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
         .routes(routes!(accuracy::compare_solvers))
         .routes(routes!(protocols::find_protocol))
         .routes(routes!(cycle::compute_steady_cycle))
+        .routes(routes!(fretting::rate_fretting))
         .routes(routes!(sweep::run_sweep))
         .routes(routes!(jobs::get_job, jobs::cancel_job))
         .routes(routes!(jobs::get_job_result))

@@ -3,6 +3,7 @@
 mod backup;
 mod check;
 mod cycle;
+mod fretting;
 mod healthcheck;
 mod io;
 mod key;
@@ -26,6 +27,7 @@ use stickslip_wire::{self as wire, SimulateRequest};
 use backup::Backup;
 use check::Check;
 use cycle::Cycle;
+use fretting::Fretting;
 use healthcheck::Healthcheck;
 use io::{json, print, problem, read};
 use key::Key;
@@ -63,6 +65,8 @@ enum Command {
     Cycle(Cycle),
     /// Run the body of POST /simulate from a file and print the stress below the surface that it asks for.
     Subsurface(Subsurface),
+    /// Run the body of POST /fretting from a file and print the reply.
+    Fretting(Fretting),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -117,6 +121,7 @@ impl Command {
             Command::Protocol(protocol) => protocol.run(),
             Command::Cycle(cycle) => cycle.run(),
             Command::Subsurface(subsurface) => subsurface.run(),
+            Command::Fretting(fretting) => fretting.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),

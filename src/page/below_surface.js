@@ -72,7 +72,7 @@ export function belowSurfaceCard(model) {
   };
   const ask = debounce(async (question, asked) => {
     // A reply counts only for the question that was asked last.
-    const isStale = () => question !== wanted || model.signal.aborted;
+    const isStale = () => question !== wanted || model.signal.aborted || model.isGone;
     if (isStale()) return;
     try {
       const [name] = asked.fields;

@@ -143,6 +143,8 @@ export function contactView(model, contact) {
     },
     report: (what) => {
       live.textContent = CONNECTION[what] ?? what;
+      // Nothing more is asked of a contact that is no longer there.
+      model.isGone ||= what === "deleted" || what === "expired";
       live.classList.toggle("on", what === "live");
     },
   };

@@ -42,7 +42,7 @@ export function steadyCard(model) {
   };
   const ask = debounce(async (question) => {
     // A reply counts only for the question that was asked last.
-    const isStale = () => question !== wanted || model.signal.aborted;
+    const isStale = () => question !== wanted || model.signal.aborted || model.isGone;
     if (isStale()) return;
     try {
       const { contact, cycles } = await call("GET", path(), undefined, model.signal);

@@ -7,8 +7,9 @@
 //! what they come from.
 
 use crate::admission::Nanoseconds;
-use stickslip_mechanics::Profile;
+use stickslip_mechanics::{self as mechanics, Profile};
 use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::protocol::{Aim, ProtocolTask};
 use stickslip_wire::session::Advance;
 use stickslip_wire::simulate::Simulation;
@@ -37,6 +38,14 @@ const CYCLE_COST: u64 = 2_000;
 const KINK_COST: u64 = 100;
 /// The stress at one place below the surface of another profile.
 const PLACE_COST: u64 = 20_000;
+/// Instants of each move that a cycle is assumed to need.
+const ASSUMED_INSTANTS: usize = 64;
+/// One stress in one criterion without planes.
+const CRITERION_COST: u64 = 1_000;
+/// One stress in the search for a critical plane.
+const PLANES_COST: u64 = 20_000;
+/// Stresses that are held at once.
+pub const STRESSES_HELD: usize = 500_000;
 /// One number of a reply, written as JSON.
 const NUMBER_COST: u64 = 60;
 /// The first harmonics of one cycle, and as much again for every eight orders.
@@ -297,6 +306,31 @@ pub fn of_subsurface(profile: &Profile, task: &SubsurfaceTask, depth: usize) -> 
 #[must_use]
 pub fn bytes_of_subsurface(task: &SubsurfaceTask) -> usize {
     task.places.count() * task.columns() * (size_of::<Option<f64>>() + 2 * NUMBER_LENGTH)
+}
+
+/// The cost of fatigue criteria.
+#[must_use]
+pub fn of_fretting(profile: &Profile, task: &FrettingTask) -> Nanoseconds {
+    let states = (task.plan.length() * ASSUMED_INSTANTS) as u64;
+    let stress = match profile {
+        Profile::Sphere(_) => KINK_COST * 4,
+        _ => PLACE_COST,
+    };
+    let planes = task.criteria[2..].iter().flatten().count() as u64;
+    let each = states.saturating_mul(stress + CRITERION_COST + planes * PLANES_COST);
+    (task.places.count() as u64).saturating_mul(each).saturating_add(states * MOVE_COST)
+}
+
+/// Bytes that they take, with their reply: a part of the stresses at once.
+#[must_use]
+pub fn bytes_of_fretting(task: &FrettingTask) -> usize {
+    let columns = 3 + task.criteria.iter().flatten().count() + 3;
+    let states = task.plan.length() * ASSUMED_INSTANTS;
+    let path = size_of::<mechanics::Stress>() + 8 * 2 * NUMBER_LENGTH;
+    task.places.count() * columns * (size_of::<mechanics::fatigue::Value>() + 2 * NUMBER_LENGTH)
+        + (task.places.count() * states).min(STRESSES_HELD) * size_of::<mechanics::Stress>()
+        + task.stress_paths.len() * states * path
+        + states * MOVE_BYTES * 8
 }
 
 /// The cost of steady cycles.

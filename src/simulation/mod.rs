@@ -9,6 +9,7 @@ pub mod cost;
 mod cycle;
 mod cycle_map;
 mod cycle_studies;
+mod fretting;
 mod protocol;
 mod reply_template;
 mod run;
@@ -22,6 +23,7 @@ mod warnings;
 pub use compare_solvers::compare_solvers;
 pub use cycle::{cycle, cycle_of};
 pub use cycle_map::cycles_under;
+pub use fretting::fretting;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
@@ -89,7 +91,9 @@ impl Failure {
     pub fn code(&self) -> Code {
         match self {
             Failure::Refused { error, .. } => match error {
-                mechanics::Error::OutOfRange { .. } | mechanics::Error::Table { .. } => Code::InvalidInput,
+                mechanics::Error::OutOfRange { .. }
+                | mechanics::Error::Table { .. }
+                | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,

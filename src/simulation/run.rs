@@ -107,7 +107,7 @@ pub(super) fn run<S: Solver>(
         protocol,
         warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &observed)
             .into_iter()
-            .chain(simulation.subsurface.as_ref().and_then(bulk_warning))
+            .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))
             .collect(),
         accuracy,
     })
@@ -186,6 +186,15 @@ fn moves<'a>(
         }
         Plan::Single(step) => Box::new(std::iter::once(*step)),
     })
+}
+
+/// The moves of a path as one cycle, from the contact as it is.
+///
+/// # Errors
+/// [`Failure::Refused`] for a cut-off radius that the contact does not allow, or a load that would fall below zero.
+pub(super) fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanics::Move>, Failure> {
+    let protocol = equal_peaks(plan, contact)?;
+    Ok(moves(plan, contact, protocol.as_ref())?.map(|step| step.step()).collect())
 }
 
 /// The pointer to what has led to the refusal of a move of a plan: the move, or the number at fault if the plan has one for it.

@@ -43,7 +43,7 @@ pub fn subsurface_reply(contact: &Contact, task: &SubsurfaceTask, stop: &Stop) -
     let timer = Timer::start();
     let (stress, error) = subsurface(contact, task, stop)?;
     let accuracy = Accuracy { subsurface_error: Some(error), ..accuracy(contact, timer, REASON) };
-    let warnings = present_warnings(contact).into_iter().chain(bulk_warning(task)).collect();
+    let warnings = present_warnings(contact).into_iter().chain(bulk_warning(task.bulk.is_some())).collect();
     Ok(SubsurfaceReply { stress, accuracy, warnings })
 }
 

@@ -2,7 +2,6 @@
 
 use stickslip_mechanics::{Contact, Elasticity, Profile};
 use stickslip_wire::Warning;
-use stickslip_wire::subsurface::SubsurfaceTask;
 
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
 /// below it.
@@ -73,8 +72,8 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
 }
 
 /// The warning for a bulk stress.
-pub(super) fn bulk_warning(task: &SubsurfaceTask) -> Option<Warning> {
-    task.bulk.map(|_| Warning {
+pub(super) fn bulk_warning(added: bool) -> Option<Warning> {
+    added.then(|| Warning {
         code: "bulk_shift_neglected".to_owned(),
         message: "a bulk stress also shifts the stick zone, which is neglected: it is only added".to_owned(),
     })

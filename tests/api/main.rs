@@ -26,6 +26,7 @@ mod documents;
 mod events;
 mod exposure;
 mod formats;
+mod fretting;
 mod fuzz_bodies;
 mod fuzz_http;
 mod limiting_cases;

@@ -14,9 +14,14 @@ fn page(name: &str) -> String {
 #[tokio::test(flavor = "multi_thread")]
 async fn every_command_of_the_pages_runs_as_printed() {
     let server = Process::start("memory:").await;
-    for (name, blocks) in
-        [("simulate.md", 3), ("cycles.md", 2), ("contacts.md", 5), ("gallery.md", 1), ("errors.md", 1)]
-    {
+    for (name, blocks) in [
+        ("simulate.md", 3),
+        ("cycles.md", 3),
+        ("fretting.md", 1),
+        ("contacts.md", 5),
+        ("gallery.md", 1),
+        ("errors.md", 1),
+    ] {
         let text = page(name);
         let found: Vec<&str> = text.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
         assert_eq!(found.len(), blocks, "{name}");
@@ -36,6 +41,7 @@ fn every_link_between_the_pages_leads_somewhere() {
     for name in [
         "simulate.md",
         "cycles.md",
+        "fretting.md",
         "contacts.md",
         "dashboards.md",
         "limits.md",

@@ -6,6 +6,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle};
 use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
 use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential};
 
 const REVERSALS: usize = 20;
@@ -133,6 +134,44 @@ fn cycles(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// The stress tensor at 10 000 points below the surface after 20 reversals, beside the shear stress of the surface at as many radii.
+fn depths(criterion: &mut Criterion) {
+    const POINTS: usize = 10_000;
+    let mut group = criterion.benchmark_group("10000 points after 20 reversals");
+    group.sample_size(10);
+    let power = |exponent, coefficient| PowerLaw::new(exponent, coefficient).expect("in range");
+    let radii: Vec<f64> = (0..1_000).map(|index| 5e-7 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r).collect();
+    let shapes = [
+        ("sphere", setup().profile),
+        ("cone", Profile::Cone(Cone::new(0.05).expect("in range"))),
+        ("fourth power", Profile::PowerLaw(power(4.0, 1e6))),
+        ("exact sphere", Profile::ExactSphere(ExactSphere::new(0.01).expect("in range"))),
+        ("table of 1000", Profile::Tabulated(Tabulated::new(&radii, &heights).expect("convex"))),
+    ];
+    for (name, profile) in shapes {
+        let mut contact = Contact::new(Setup { profile, ..setup() }).expect("a valid contact");
+        let full = contact.gross_slip_displacement();
+        for target in falling_amplitude(REVERSALS, full) {
+            contact.apply(&to(target)).expect("a displacement has no limit");
+        }
+        let a = contact.contact_radius();
+        let share = |index: usize| index as f64 / POINTS as f64;
+        let radii: Vec<f64> = (0..POINTS).map(|index| a * share(index)).collect();
+        group.bench_function(format!("{name}: shear stress of the surface"), |bencher| {
+            bencher.iter(|| contact.shears(&radii).into_iter().sum::<f64>());
+        });
+        let at = |index: usize| [1.5 * a * share(index * 37 % POINTS), 0.3 * a, 1.5 * a * share(index * 101 % POINTS)];
+        group.bench_function(format!("{name}: tensor"), |bencher| {
+            bencher.iter(|| {
+                let field = contact.subsurface(Side::Second, 0.3).expect("a Poisson's ratio");
+                (0..POINTS).map(|index| field.at(at(index)).xx).sum::<f64>()
+            });
+        });
+    }
+    group.finish();
+}
+
 fn scenes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("20 reversals and 200 radii");
     group.sample_size(20);
@@ -173,5 +212,5 @@ fn stresses(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, moves, profiles, cycles, scenes, stresses);
+criterion_group!(benches, moves, profiles, cycles, depths, scenes, stresses);
 criterion_main!(benches);

@@ -52,6 +52,14 @@ pub enum Error {
         /// Where along the move that is, from 0 to 1.
         part: f64,
     },
+    /// Moves that do not lead back to where they began, however often they are repeated.
+    #[error("the moves are not a closed cycle: they change the {quantity} by {} m each time", short(*drift))]
+    OpenCycle {
+        /// Displacement or indentation.
+        quantity: Quantity,
+        /// Its change in the last cycle tried, m.
+        drift: f64,
+    },
     /// The caller has ended the computation before it was complete.
     #[error("interrupted")]
     Interrupted,

@@ -49,6 +49,7 @@
 //! | [`cycle`] | what does it do in a steady cycle? |
 //! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
+//! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
 //! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
 //! | `accuracy` | how far may a result be off? |
 //! | `packed` | how is a contact stored as bytes? |
@@ -66,6 +67,7 @@ mod double_double;
 pub mod elasticity;
 mod error;
 mod extrema;
+pub mod fatigue;
 mod force_control;
 mod friction_work;
 mod moves;

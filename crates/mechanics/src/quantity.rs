@@ -56,6 +56,8 @@ quantities! {
     BulkStress = "bulk stress", "Component of a uniform stress.";
     MachineStiffness = "stiffness", "Stiffness of a machine in series with the contact.";
     Phase = "phase", "Phase of the normal load of a cycle.";
+    FatigueWeight = "weight", "Weight of a normal or hydrostatic stress in a fatigue criterion.";
+    YieldStress = "yield_stress", "Yield stress.";
     SpringCount = "count", "Number of springs of the foundation.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";

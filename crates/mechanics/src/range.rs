@@ -72,6 +72,10 @@ pub const PLACE: Range = Range { quantity: Quantity::Place, unit: "m", min: -1e9
 pub const BULK_STRESS: Range = Range { quantity: Quantity::BulkStress, unit: "Pa", min: -1e20, max: 1e20 };
 /// The stiffness of a machine in series with the contact.
 pub const MACHINE_STIFFNESS: Range = Range { quantity: Quantity::MachineStiffness, unit: "N/m", min: 1e-9, max: 1e30 };
+/// The weight of a normal or hydrostatic stress in a fatigue criterion.
+pub const FATIGUE_WEIGHT: Range = Range { quantity: Quantity::FatigueWeight, unit: "", min: 0.0, max: 100.0 };
+/// The yield stress of a fatigue criterion.
+pub const YIELD_STRESS: Range = Range { quantity: Quantity::YieldStress, unit: "Pa", min: 1e-3, max: 1e18 };
 /// How many springs the foundation may have.
 pub const SPRING_COUNT: Range = Range { quantity: Quantity::SpringCount, unit: "", min: 2.0, max: 1e6 };
 

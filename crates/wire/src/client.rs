@@ -11,10 +11,10 @@ use uuid::Uuid;
 
 use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
-    EndEvent, EndReason, ForkRequest, HistoryPage, JobReply, LoopPage, Machine, MoveReply, MoveRequest, NewSession,
-    PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage,
-    SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest, SubsurfaceReply,
-    SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
+    EndEvent, EndReason, ForkRequest, FrettingReply, FrettingRequest, HistoryPage, JobReply, LoopPage, Machine,
+    MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest,
+    RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
+    StressRequest, SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
@@ -164,6 +164,11 @@ impl Client {
         let call = self.call(Method::GET, &format!("/contacts/{id}/stress"));
         let call = call.query(&[("points", request.points)]).query(&[("radii", radii), ("fields", fields)]);
         json(call.query(&[("residual", residual)])).await
+    }
+
+    /// `POST /fretting`.
+    pub async fn fretting(&self, request: &FrettingRequest) -> Result<FrettingReply, Error> {
+        json(self.call(Method::POST, "/fretting").json(request)).await
     }
 
     /// `POST /contacts/{id}/subsurface`.

@@ -10,6 +10,7 @@ use super::check::{Faults, JsonPath};
 use super::limits::{Items, limits};
 use super::profile::Profile;
 use super::single_key::single_key;
+use super::subsurface::BodyName;
 
 /// Two bodies pressed together, at rest and never moved tangentially.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -166,6 +167,16 @@ impl ContactDefinition {
 }
 
 impl Material {
+    /// Young's modulus of one of the bodies, Pa, where it is known.
+    #[must_use]
+    pub fn youngs_modulus(&self, body: BodyName) -> Option<f64> {
+        let Material::Bodies(bodies) = self else { return None };
+        match bodies.get(usize::from(body == BodyName::Second))? {
+            Body::Elastic(body) => Some(body.youngs_modulus),
+            Body::Rigid(_) => None,
+        }
+    }
+
     fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
         match self {
             Material::Effective(moduli) => {

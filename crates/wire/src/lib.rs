@@ -20,6 +20,7 @@ pub mod closed_cycle;
 pub mod cycle;
 pub mod definition;
 pub mod event;
+pub mod fretting;
 pub mod job;
 pub mod json_value;
 pub mod limits;
@@ -47,6 +48,10 @@ pub use cycle::{
 };
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
+pub use fretting::{
+    BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,
+    StressPath, SurfaceCriterion, Weighted,
+};
 pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Path, Plan};

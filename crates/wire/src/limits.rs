@@ -39,6 +39,10 @@ pub const HARMONICS: RangeInclusive<usize> = 1..=31;
 pub const CYCLES: RangeInclusive<usize> = 1..=1_000;
 /// Places below the surface in one request.
 pub const SUBSURFACE_POINTS: RangeInclusive<usize> = 1..=1_000_000;
+/// Moves of a cycle that is rated for fatigue.
+pub const FRETTING_MOVES: RangeInclusive<usize> = 1..=200;
+/// Places whose stresses over a cycle are in a reply.
+pub const STRESS_PATHS: RangeInclusive<usize> = 0..=100;
 /// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
@@ -101,6 +105,12 @@ pub struct Characters(pub usize);
 
 /// [`TOLERANCE`], with the default.
 pub struct Tolerance;
+
+/// [`TOLERANCE`], with another default.
+pub struct ToleranceOr(pub f64);
+
+/// The number of elements of an array of whole numbers, and the limits of each.
+pub struct Counts(pub RangeInclusive<usize>, pub RangeInclusive<usize>);
 
 impl Tolerance {
     /// The member `tolerance` of a request, or else the default.
@@ -232,6 +242,34 @@ impl Keywords for Tolerance {
     }
 }
 
+impl Keywords for ToleranceOr {
+    fn keywords(&self) -> Value {
+        let mut keywords = Tolerance.keywords();
+        keywords["default"] = json!(self.0);
+        keywords
+    }
+}
+
+impl Limit<f64> for ToleranceOr {
+    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        Tolerance.check(value, at, faults);
+    }
+}
+
+impl Keywords for Counts {
+    fn keywords(&self) -> Value {
+        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": self.1.keywords()})
+    }
+}
+
+impl Limit<Vec<usize>> for Counts {
+    fn check(&self, value: &Vec<usize>, at: JsonPath<'_>, faults: &mut Faults) {
+        if faults.length(at, value.len(), &self.0) {
+            value.iter().enumerate().for_each(|(index, value)| faults.count(at.index(index), *value, &self.1));
+        }
+    }
+}
+
 impl Limit<f64> for Tolerance {
     fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
         if !TOLERANCE.contains(value) {
@@ -302,11 +340,12 @@ pub(crate) use limits;
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest,
-        CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, LoadSpan,
-        Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest,
-        RelaxRequest, SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane,
-        SubsurfaceRequest, SubsurfaceSurface, SweepRequest, WorkDensity,
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive,
+        CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie, Findley,
+        ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest,
+        NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs,
+        StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
+        SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -316,8 +355,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, ForkRequest, FrequencyResponse, LoadSpan, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
-        Robustness, SimulateRequest, Span, Springs, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SweepRequest, WorkDensity
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        Robustness, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity
     }
 }

@@ -17,6 +17,7 @@ use super::check::{Faults, JsonPath};
 use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
 use super::single_key::{not_null, single_key};
 
+pub(crate) use cycles::PHASE;
 pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
 
 /// Reversals of an oscillation that dies away; each is one move, and one more ends the path at zero.

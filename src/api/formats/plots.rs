@@ -6,9 +6,9 @@ use super::fretting_map;
 use stickslip_mechanics::{Contact, Move, Regime, Tangential};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot, Section};
 use stickslip_wire::cycle::CycleTask;
-use stickslip_wire::subsurface::SubsurfaceTask;
+use stickslip_wire::subsurface::{Places, SubsurfaceTask};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
+    Cycle, CyclePage, CycleReply, FrettingReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
 };
 
 /// Points of each branch of a steady loop.
@@ -49,17 +49,40 @@ pub fn stress(id: Uuid, sequence: u64, contact: &Contact, reply: &StressReply) -
     }
 }
 
-/// One field over a plane; empty where the request has no such.
+/// One field below the surface over a plane.
 #[must_use]
 pub fn section(stress: &Subsurface, task: &SubsurfaceTask) -> Section {
-    let [x, y, z] = task.places.axes().unwrap_or_default();
     let fields = [
         ("von Mises stress", &stress.von_mises),
         ("largest shear stress", &stress.max_shear),
         ("mean stress", &stress.hydrostatic),
     ];
-    let (name, values) = fields.into_iter().find_map(|(name, values)| Some((name, values.as_ref()?))).unzip();
-    let values: Vec<f64> = values.into_iter().flatten().map(|value| value.unwrap_or(f64::NAN)).collect();
+    let (name, values) =
+        fields.into_iter().find_map(|(name, values)| Some((name, values.as_deref()?))).unwrap_or_default();
+    over_plane(format!("{name} in the {} body", task.body_name()), (name, "Pa"), values, &task.places)
+}
+
+/// One fatigue criterion over a plane.
+#[must_use]
+pub fn fretting(reply: &FrettingReply, places: &Places) -> Section {
+    let (title, name, unit, values) = match reply.ratings().next() {
+        Some((name, unit, rating)) => {
+            let largest = rating.largest.as_ref().map(|largest| format!(", at most {:.4e} {unit}", largest.value));
+            (format!("{name}{}", largest.unwrap_or_default()), name, unit, &rating.values[..])
+        }
+        None => Default::default(),
+    };
+    over_plane(title, (name, unit), values, places)
+}
+
+fn over_plane(
+    title: String,
+    (name, unit): (&'static str, &'static str),
+    values: &[Option<f64>],
+    places: &Places,
+) -> Section {
+    let [x, y, z] = places.axes().unwrap_or_default();
+    let values = values.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
     let axis = |name| Axis { name, unit: Some("m") };
     let (across, along, depth) = (axis("x, along the motion"), axis("y, across the motion"), axis("depth z"));
     // The grid runs along x, y and z in turn, and is a single value along one of them.
@@ -70,8 +93,7 @@ pub fn section(stress: &Subsurface, task: &SubsurfaceTask) -> Section {
     } else {
         ((along, y), (depth, z), true)
     };
-    let title = format!("{} in the {} body", name.unwrap_or_default(), task.body_name());
-    let unit = Axis { name: name.unwrap_or_default(), unit: Some("Pa") };
+    let unit = Axis { name, unit: Some(unit).filter(|unit| *unit != "1") };
     Section { title, x: first, y: second, downwards, values: (unit, values) }
 }
 

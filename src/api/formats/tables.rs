@@ -8,8 +8,8 @@ use crate::simulation::SweepResult;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::sweep::{CheckedSweep, indices};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, Field, Harmonic, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
-    subsurface,
+    Cycle, CyclePage, CycleReply, Field, FrettingReply, Harmonic, HistoryPage, LoopPage, State, SteadyCycle,
+    StressReply, Subsurface, subsurface,
 };
 
 use super::table::{Cells, Column, Table};
@@ -50,6 +50,20 @@ pub fn subsurface(reply: &Subsurface) -> Table<'_> {
         if let Some(values) = values {
             columns.push(Column::floats(name, "Pa", |row| values[row].unwrap_or(f64::NAN)));
         }
+    }
+    flat(reply.x.len(), columns)
+}
+
+/// Fatigue criteria: a row for each place.
+#[must_use]
+pub fn fretting(reply: &FrettingReply) -> Table<'_> {
+    let mut columns = vec![
+        Column::floats("x", "m", |row| reply.x[row]),
+        Column::floats("y", "m", |row| reply.y[row]),
+        Column::floats("z", "m", |row| reply.z[row]),
+    ];
+    for (name, unit, rating) in reply.ratings() {
+        columns.push(Column::floats(name, unit, |row| rating.values[row].unwrap_or(f64::NAN)));
     }
     flat(reply.x.len(), columns)
 }

@@ -5,6 +5,7 @@ pub mod contacts;
 pub mod cycle;
 pub mod cycles;
 pub mod events;
+pub mod fretting;
 pub mod history;
 pub mod hysteresis_loop;
 pub mod jobs;

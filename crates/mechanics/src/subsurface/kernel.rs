@@ -7,7 +7,7 @@
 //! half-space (Boussinesq 1885; Cerruti 1882) and integrated by parts, they leave -u'(t) dt times the imaginary part of
 //! derivatives of L0 to L3 in x and y. Written with D = (1/r) d/dr those need no division by r, so that the axis is no special place.
 
-use num_complex::Complex64;
+use super::complex::Complex;
 
 /// The functions that give the stress under a normal load: xx = P0 + x^2 P1, yy = P0 + y^2 P1, zz = P2, xy = x y P1, xz = x P3,
 /// yz = y P3.
@@ -28,31 +28,19 @@ pub(super) struct Place {
     pub(super) poisson: f64,
 }
 
-/// The root with real and imaginary part of at least zero of a number in the upper half-plane.
-pub(super) fn root(square: Complex64) -> Complex64 {
-    let size = square.norm();
-    if square.re >= 0.0 {
-        let re = (0.5 * (size + square.re)).sqrt();
-        Complex64::new(re, if re > 0.0 { 0.5 * square.im / re } else { 0.0 })
-    } else {
-        let im = (0.5 * (size - square.re)).sqrt();
-        Complex64::new(0.5 * square.im / im, im)
-    }
-}
-
 impl Place {
     /// zeta and rho for the source at t = r + `offset`, which is given by the offset to keep the digits of rho near the surface.
-    pub(super) fn source(&self, offset: f64) -> (Complex64, Complex64) {
+    pub(super) fn source(&self, offset: f64) -> (Complex, Complex) {
         let t = self.r + offset;
-        let square = Complex64::new(self.z * self.z - offset * (self.r + t), 2.0 * self.z * t);
-        (Complex64::new(self.z, t), root(square))
+        let square = Complex::new(self.z * self.z - offset * (self.r + t), 2.0 * self.z * t);
+        (Complex::new(self.z, t), square.root())
     }
 
     /// The functions for a unit of slope at t = r + `offset`.
     pub(super) fn kernels(&self, offset: f64) -> (Normal, Tangential) {
         let Place { r, z, poisson: nu } = *self;
         let (zeta, rho) = self.source(offset);
-        let (one, s) = (rho.inv(), (rho + zeta).inv());
+        let (one, s) = (rho.inverse(), (rho + zeta).inverse());
         let (both, cube) = (one * s, one * one * one);
         // D L1, D^2 L1; D L2, D^2 L2, D^3 L2; D^2 L3, D^3 L3.
         let (d1, dd1) = (both, -(cube * s + both * both));

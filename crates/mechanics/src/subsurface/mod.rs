@@ -5,6 +5,7 @@
 //! like a line source at an imaginary depth (see `kernel`). On a parabola the sum is closed (`sphere`), on every
 //! other profile it is integrated (`mesh`).
 
+mod complex;
 mod kernel;
 mod mesh;
 mod sphere;

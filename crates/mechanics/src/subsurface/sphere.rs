@@ -4,8 +4,7 @@
 //! first and second integrals of H with respect to zeta, taken at z + i a. In sigma they are Laurent polynomials and a
 //! logarithm, since d zeta = (1 + r^2/sigma^2)/2 d sigma. Of the logarithm only the angle of sigma is left.
 
-use num_complex::Complex64;
-
+use super::complex::Complex;
 use super::kernel::{Normal, Place, Tangential};
 
 /// The functions of the parabola g = t^2 up to the radius `a`, lengths over the contact radius.
@@ -13,18 +12,18 @@ pub(super) fn up_to(place: &Place, a: f64) -> (Normal, Tangential) {
     let Place { r, z, poisson: nu } = *place;
     let (zeta, rho) = place.source(a - r);
     let sigma = rho + zeta;
-    if sigma.norm_sqr() <= 0.0 {
+    if sigma == Complex::default() {
         return ([0.0; 4], [0.0; 6]);
     }
     let angle = sigma.im.atan2(sigma.re);
-    let s = sigma.inv();
+    let s = sigma.inverse();
     let (square, s2) = (r * r, s * s);
     // Each term with 1/rho has the factor z, and is zero at the surface even on the circle where rho is.
-    let over = if z > 0.0 { z * rho.inv() } else { Complex64::ZERO };
-    let whole = |first: Complex64, second: Complex64| -2.0 * a * first.re + 2.0 * second.im;
+    let over = if z > 0.0 { z * rho.inverse() } else { Complex::default() };
+    let whole = |first: Complex, second: Complex| -2.0 * a * first.re + 2.0 * second.im;
     let dd4 = 0.25 * s * (1.0 + square / 3.0 * s2);
     let l0 = 2.0 * z * angle - 2.0 * rho.im;
-    let depth = whole(-over, Complex64::ZERO) - 2.0 * z * angle;
+    let depth = whole(-over, Complex::default()) - 2.0 * z * angle;
     let d1 = whole(-s, 0.25 * square * s2) - angle;
     let d2 = whole(0.25 * square * s2, 0.5 * rho - 0.125 * square * s * (1.0 + square / 3.0 * s2)) - z * angle;
     let dd2 = whole(-0.5 * s2, dd4);

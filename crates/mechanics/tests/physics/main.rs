@@ -13,6 +13,7 @@ mod equal_peaks;
 mod equator;
 mod exactness;
 mod extrema;
+mod fatigue;
 mod few_springs;
 mod hard_cases;
 mod laws;

@@ -186,8 +186,9 @@ fn the_surface_has_its_tractions_and_the_stress_above_and_below_it_agree() {
             let [x, y] = [r * angle.cos(), r * angle.sin()];
             let r = x.hypot(y);
             let surface = field.at([x, y, 0.0]);
-            assert_eq!([-surface.zz, -surface.xz, surface.yz], [contact.pressure(r), contact.shear(r), 0.0]);
-            assert_eq!(first.at([x, y, 0.0]).xz, -surface.xz);
+            assert_eq!((-surface.zz, -surface.xz, surface.yz), (contact.pressure(r), contact.shear(r), 0.0));
+            let opposite = first.at([x, y, 0.0]);
+            assert_eq!((opposite.xz, opposite.yz), (-surface.xz, 0.0));
             // What is left falls with the depth, and near a kink with its root.
             let close = field.at([x, y, 1e-11 * a]);
             assert_close(close, surface.components(), 1e-4 * unit, &format!("{profile:?} {}", r / a));

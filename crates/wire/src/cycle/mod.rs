@@ -25,7 +25,7 @@ use stickslip_mechanics::{
 use crate::check::{Faults, JsonPath};
 use crate::definition::ContactDefinition;
 use crate::limits::{
-    BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, Tolerance, limits,
+    BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, Keywords, Limit, Numbers, ToleranceOr, limits,
 };
 use crate::parse::{Document, Rejection};
 use crate::path::NormalOscillation;
@@ -69,7 +69,7 @@ pub struct CycleRequest {
     /// `machine` alone. At most 100 000 cycles.
     pub map: Option<FrettingMap>,
 }
-limits!(CycleRequest { harmonics: HARMONICS, tolerance: CycleTolerance });
+limits!(CycleRequest { harmonics: HARMONICS, tolerance: ToleranceOr(DEFAULT_TOLERANCE) });
 
 /// What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -120,23 +120,6 @@ pub struct WorkDensity {
     pub radii: Option<Vec<f64>>,
 }
 limits!(WorkDensity and StressRequest);
-
-/// The range of a tolerance, with the default of cycles.
-struct CycleTolerance;
-
-impl Keywords for CycleTolerance {
-    fn keywords(&self) -> Value {
-        let mut keywords = Tolerance.keywords();
-        keywords["default"] = json!(DEFAULT_TOLERANCE);
-        keywords
-    }
-}
-
-impl Limit<f64> for CycleTolerance {
-    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
-        Tolerance.check(value, at, faults);
-    }
-}
 
 /// The limits of amplitudes.
 struct Within(Range);
@@ -362,7 +345,7 @@ impl Document for CycleRequest {
         let options = CycleOptions { drive, stiffness, harmonics, density: work_density };
         let task = options.check(CyclePlaces::BODY, &mut faults);
         let at = |name| JsonPath::Root.member(name);
-        Limit::check(&CycleTolerance, &tolerance, at("tolerance"), &mut faults);
+        Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &tolerance, at("tolerance"), &mut faults);
         let load = normal.and_then(|normal| normal.swing(at("normal"), &mut faults));
         if let Some(response) = &response {
             response.check_members(at("frequency_response"), &mut faults);

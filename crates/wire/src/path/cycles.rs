@@ -28,7 +28,7 @@ const TURNS_PER_CYCLE: usize = 2;
 /// Moves of a cycle under an oscillating load, unless the path says how many.
 const DEFAULT_POINTS: usize = 64;
 /// Phase of the oscillation of the load.
-const PHASE: Range = Range { quantity: Quantity::Number, unit: "degrees", min: -360.0, max: 360.0 };
+pub(crate) const PHASE: Range = Range { quantity: Quantity::Number, unit: "degrees", min: -360.0, max: 360.0 };
 
 /// Equal cycles: exactly one of `displacement` and `force`, the amplitude. The path has 1 + n k moves, at most 100 000, for n
 /// cycles of k moves: the first from the present state to the first turn, then k each cycle, which ends at that turn again. Under

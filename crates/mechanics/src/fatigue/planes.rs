@@ -1,0 +1,141 @@
+//! The plane on which a criterion is largest: a grid of normals, then a search from its peaks.
+//!
+//! Normal stress, shear amplitude and their products are largest values over instants and supports of functions that
+//! are smooth in the normal, of second degree. So a peak is at least once continuously differentiable, wide
+//! unless a criterion is cut off at zero, and reached by parabolas. Where it is cut off, the planes of the largest
+//! tension at each instant join the grid.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::LazyLock;
+
+/// Angle between neighbours of the grid: five degrees.
+const GRID: f64 = PI / 36.0;
+/// Normals closer than this are neighbours: it reaches the next one on each side.
+const NEIGHBOURS: f64 = 1.3 * GRID;
+/// The search starts from so many planes of the grid at most.
+const MOST_STARTS: usize = 16;
+/// A plane lower than the largest by more than this share of the range over the grid is none to start from.
+const SLACK: f64 = 0.1;
+/// One lower by less than this share, as much as the grid can be below a peak, is one even if a neighbour is higher,
+/// unless a search has ended near it: peaks can hide between the planes of the grid.
+const OFF_PEAK: f64 = 0.03;
+/// The distance of the first parabola, and of the last. The error of a value is of the order of the latter's square.
+const FIRST_STEP: f64 = 0.5 * GRID;
+const LAST_STEP: f64 = 1e-5;
+/// More parabolas than a search needs; a safeguard only.
+const MOST_STEPS: usize = 60;
+
+/// A vector, or the normal of a plane if it has the length one.
+pub(super) type Vector = [f64; 3];
+
+/// Normals of the upper half of a sphere.
+static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
+    let mut normals = vec![[0.0, 0.0, 1.0]];
+    for latitude in 1..=18 {
+        let tilt = f64::from(latitude) * GRID;
+        // Around the equator opposite normals are the same plane.
+        let turn = if tilt < FRAC_PI_2 - 0.5 * GRID { 2.0 * PI } else { PI };
+        let count = (turn * tilt.sin() / GRID).round();
+        normals.extend((0..count as u32).map(|index| {
+            let (sin, cos) = (turn * f64::from(index) / count).sin_cos();
+            [tilt.sin() * cos, tilt.sin() * sin, tilt.cos()]
+        }));
+    }
+    normals
+});
+
+/// The largest value of a function that opposite normals share, and the normal, sought from the grid and from `more`.
+/// The function takes whether a bound from above will do, which is to be cheaper: it spares low planes the exact value.
+pub(super) fn largest(more: &[Vector], mut value: impl FnMut(&Vector, bool) -> f64) -> (f64, Vector) {
+    let highest_first = |one: &(f64, Vector), other: &(f64, Vector)| other.0.total_cmp(&one.0);
+    let mut bounds: Vec<(f64, Vector)> =
+        NORMALS.iter().chain(more).map(|normal| (value(normal, true), *normal)).collect();
+    bounds.sort_by(highest_first);
+    let bottom = bounds[bounds.len() - 1].0;
+    let mut best = (f64::NEG_INFINITY, bounds[0].1);
+    let mut normals: Vec<(f64, Vector)> = Vec::new();
+    for (bound, normal) in bounds {
+        if bound < best.0 - SLACK * (best.0 - bottom) {
+            break;
+        }
+        normals.push((value(&normal, false), normal));
+        if normals[normals.len() - 1].0 > best.0 {
+            best = normals[normals.len() - 1];
+        }
+    }
+    normals.sort_by(highest_first);
+    let top = best.0;
+    let near = |normal: &Vector, others: &[(f64, Vector)]| {
+        others.iter().any(|other| dot(&other.1, normal).abs() > NEIGHBOURS.cos())
+    };
+    let mut found: Vec<(f64, Vector)> = Vec::with_capacity(MOST_STARTS);
+    for (rank, start) in normals.iter().enumerate() {
+        if start.0 < top - SLACK * (top - bottom) || found.len() == MOST_STARTS {
+            break;
+        }
+        let hidden = start.0 >= best.0 - OFF_PEAK * (top - bottom) && !near(&start.1, &found);
+        if hidden || !near(&start.1, &normals[..rank]) {
+            let peak = climb(*start, |normal| value(normal, false));
+            if peak.0 > best.0 {
+                best = peak;
+            }
+            found.push(peak);
+        }
+    }
+    best
+}
+
+/// The peak next to a normal: parabolas through six values, and the best value seen where a parabola has no maximum.
+fn climb(start: (f64, Vector), mut value: impl FnMut(&Vector) -> f64) -> (f64, Vector) {
+    let (mut best, mut step) = (start, FIRST_STEP);
+    for _ in 0..MOST_STEPS {
+        if step < LAST_STEP {
+            break;
+        }
+        let (middle, normal) = best;
+        let [one, two] = axes(&normal);
+        let mut at = |a: f64, b: f64| {
+            let tilted = unit(&std::array::from_fn(|i| normal[i] + step * (a * one[i] + b * two[i])));
+            let found = value(&tilted);
+            if found > best.0 {
+                best = (found, tilted);
+            }
+            found
+        };
+        let [right, left, up, down, corner] =
+            [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 1.0)].map(|(a, b)| at(a, b));
+        let slope = [0.5 * (right - left), 0.5 * (up - down)];
+        let (xx, yy, xy) = (right + left - 2.0 * middle, up + down - 2.0 * middle, corner - right - up + middle);
+        let determinant = xx * yy - xy * xy;
+        let inside = if xx < 0.0 && determinant > 0.0 {
+            let (a, b) = ((xy * slope[1] - yy * slope[0]) / determinant, (xy * slope[0] - xx * slope[1]) / determinant);
+            let far = a.hypot(b);
+            at(a * 2.0 / far.max(2.0), b * 2.0 / far.max(2.0));
+            far <= 1.0
+        } else {
+            false
+        };
+        if inside || best.0 <= middle {
+            step *= 0.25;
+        }
+    }
+    best
+}
+
+/// Two directions in the plane of a normal, at right angles to each other.
+pub(super) fn axes(&[x, y, z]: &Vector) -> [Vector; 2] {
+    // Duff et al. (2017).
+    let sign = 1.0_f64.copysign(z);
+    let (a, b) = (-1.0 / (sign + z), -x * y / (sign + z));
+    [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
+}
+
+pub(super) fn dot(one: &Vector, other: &Vector) -> f64 {
+    one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+}
+
+/// The vector at the length one.
+pub(super) fn unit(vector: &Vector) -> Vector {
+    let length = dot(vector, vector).sqrt();
+    vector.map(|part| part / length)
+}

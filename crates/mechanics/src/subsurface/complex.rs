@@ -1,0 +1,92 @@
+//! The few operations on complex numbers that the potentials need.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A complex number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Complex {
+    /// The real part.
+    pub(super) re: f64,
+    /// The imaginary part.
+    pub(super) im: f64,
+}
+
+impl Complex {
+    pub(super) fn new(re: f64, im: f64) -> Complex {
+        Complex { re, im }
+    }
+
+    /// One over it.
+    pub(super) fn inverse(self) -> Complex {
+        let square = self.re * self.re + self.im * self.im;
+        Complex::new(self.re / square, -self.im / square)
+    }
+
+    /// The root with real and imaginary part of at least zero of a number in the upper half-plane.
+    pub(super) fn root(self) -> Complex {
+        let size = (self.re * self.re + self.im * self.im).sqrt();
+        if self.re >= 0.0 {
+            let re = (0.5 * (size + self.re)).sqrt();
+            Complex::new(re, if re > 0.0 { 0.5 * self.im / re } else { 0.0 })
+        } else {
+            let im = (0.5 * (size - self.re)).sqrt();
+            Complex::new(0.5 * self.im / im, im)
+        }
+    }
+}
+
+impl Add for Complex {
+    type Output = Complex;
+
+    fn add(self, other: Complex) -> Complex {
+        Complex::new(self.re + other.re, self.im + other.im)
+    }
+}
+
+impl Sub for Complex {
+    type Output = Complex;
+
+    fn sub(self, other: Complex) -> Complex {
+        Complex::new(self.re - other.re, self.im - other.im)
+    }
+}
+
+impl Neg for Complex {
+    type Output = Complex;
+
+    fn neg(self) -> Complex {
+        Complex::new(-self.re, -self.im)
+    }
+}
+
+impl Mul for Complex {
+    type Output = Complex;
+
+    fn mul(self, other: Complex) -> Complex {
+        Complex::new(self.re * other.re - self.im * other.im, self.re * other.im + self.im * other.re)
+    }
+}
+
+impl Mul<Complex> for f64 {
+    type Output = Complex;
+
+    fn mul(self, other: Complex) -> Complex {
+        Complex::new(self * other.re, self * other.im)
+    }
+}
+
+impl Div<f64> for Complex {
+    type Output = Complex;
+
+    fn div(self, other: f64) -> Complex {
+        Complex::new(self.re / other, self.im / other)
+    }
+}
+
+impl Add<Complex> for f64 {
+    type Output = Complex;
+
+    fn add(self, other: Complex) -> Complex {
+        Complex::new(self + other.re, other.im)
+    }
+}

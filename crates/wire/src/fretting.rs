@@ -1,0 +1,485 @@
+//! The body of `POST /fretting` and its reply: fatigue criteria over the stresses of a closed cycle.
+
+use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::fatigue::Criterion;
+use stickslip_mechanics::range::{self, Quantity, Range};
+use stickslip_mechanics::{Setup, subsurface::Side};
+
+use crate::check::{Faults, JsonPath};
+use crate::definition::ContactDefinition;
+use crate::limits::{
+    Counts, FRETTING_MOVES, Keywords, Limit, Limited, STRESS_PATHS, SUBSURFACE_POINTS, ToleranceOr, Triples, limits,
+};
+use crate::parse::{Document, Rejection};
+use crate::path::{PHASE, Path, Plan};
+use crate::reply::{Accuracy, ContactSummary, Warning};
+use crate::single_key::not_null;
+use crate::subsurface::{BodyName, Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
+
+/// Change of a criterion between two numbers of instants that is accepted if the request does not say.
+const DEFAULT_TOLERANCE: f64 = 1e-4;
+
+/// A contact, a path that closes, and the fatigue criteria that its steady cycle is rated by; the server keeps nothing of it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "contact": ContactDefinition::example(),
+    "path": {"cycles": {"displacement": 1e-7, "count": 1}},
+    "body": "first",
+    "plane": {"normal": "y", "offset": 0.0, "x": [-1.2e-4, 1.2e-4, 25], "z": [0.0, 6e-5, 7]},
+    "criteria": {"crossland": {"alpha": 0.3, "limit": 3e8}}
+}))]
+pub struct FrettingRequest {
+    /// The contact.
+    pub contact: ContactDefinition,
+    /// A path of at most 200 moves that ends where it began, at least when it is repeated.
+    pub path: Path,
+    /// Which body.
+    pub body: BodyName,
+    /// Its Poisson's ratio, a pure number. Where the material has `bodies` it is known, and may be left out.
+    pub poisson_ratio: Option<f64>,
+    /// Where: a list of x, y, z, m, with z of at least zero.
+    pub points: Option<Vec<[f64; 3]>>,
+    /// Where: a straight line.
+    pub line: Option<SubsurfaceLine>,
+    /// Where: a grid in a plane.
+    pub plane: Option<SubsurfacePlane>,
+    /// Where: a grid on the surface.
+    pub surface: Option<SubsurfaceSurface>,
+    /// A normal stress of the body along x that goes with the cycle, mean + amplitude · cos(th + phase), where th grows from 0 to
+    /// 360 degrees, by as much in each move.
+    pub bulk: Option<BulkCycle>,
+    /// The criteria.
+    pub criteria: Criteria,
+    /// Indices of places whose stresses over the cycle are wanted too.
+    pub stress_paths: Option<Vec<usize>>,
+    /// Change of a criterion, relative to its largest value, below which no more instants are taken; a pure number.
+    pub tolerance: Option<f64>,
+}
+limits!(FrettingRequest {
+    poisson_ratio: range::POISSON_RATIO,
+    points: Triples(SUBSURFACE_POINTS, range::PLACE),
+    stress_paths: PATHS,
+    tolerance: ToleranceOr(DEFAULT_TOLERANCE),
+});
+/// Which stresses over the cycle may be asked for.
+const PATHS: Counts = Counts(STRESS_PATHS, 0..=*SUBSURFACE_POINTS.end() - 1);
+/// A value that a material bears.
+const BEARABLE: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-300, max: 1e30 };
+
+/// A bulk stress along x that goes with the cycle.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BulkCycle {
+    /// Its mean, Pa; zero if left out.
+    pub mean: Option<f64>,
+    /// Its amplitude, Pa; zero if left out.
+    pub amplitude: Option<f64>,
+    /// Its phase, degrees; zero if left out.
+    pub phase: Option<f64>,
+}
+limits!(BulkCycle { mean: range::BULK_STRESS, amplitude: range::BULK_STRESS, phase: PHASE });
+
+/// Which criteria, at least one.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Criteria {
+    /// √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
+    pub crossland: Option<Weighted>,
+    /// The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
+    pub dang_van: Option<Weighted>,
+    /// The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
+    pub findley: Option<Findley>,
+    /// The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper 1970).
+    pub swt: Option<StrainBased>,
+    /// The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
+    pub fatemi_socie: Option<FatemiSocie>,
+    /// Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
+    pub ruiz: Option<SurfaceCriterion>,
+    /// Friction work per area and cycle at the surface, J/m².
+    pub friction_work: Option<SurfaceCriterion>,
+}
+
+/// A criterion with a weight of the hydrostatic stress.
+#[skip_serializing_none]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Weighted {
+    /// The weight, a pure number.
+    pub alpha: f64,
+    /// The value that the material bears, Pa.
+    #[serde(default, deserialize_with = "not_null")]
+    #[schema(nullable = false)]
+    pub limit: Option<f64>,
+}
+limits!(Weighted { alpha: range::FATIGUE_WEIGHT, limit: BEARABLE });
+
+/// Findley's criterion.
+#[skip_serializing_none]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Findley {
+    /// The weight of the normal stress, a pure number.
+    pub k: f64,
+    /// The value that the material bears, Pa.
+    #[serde(default, deserialize_with = "not_null")]
+    #[schema(nullable = false)]
+    pub limit: Option<f64>,
+}
+limits!(Findley { k: range::FATIGUE_WEIGHT, limit: BEARABLE });
+
+/// A criterion that needs strains.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StrainBased {
+    /// Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out.
+    pub youngs_modulus: Option<f64>,
+    /// The value that the material bears, Pa.
+    pub limit: Option<f64>,
+}
+limits!(StrainBased { youngs_modulus: range::YOUNGS_MODULUS, limit: BEARABLE });
+
+/// Fatemi and Socie's criterion.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FatemiSocie {
+    /// The weight of the normal stress, a pure number.
+    pub k: f64,
+    /// The yield stress, Pa.
+    #[serde(rename = "yield")]
+    pub yield_stress: f64,
+    /// Young's modulus of the body, Pa. Where the material has `bodies` it is known, and may be left out.
+    pub youngs_modulus: Option<f64>,
+    /// The value that the material bears, a pure number.
+    pub limit: Option<f64>,
+}
+
+impl FatemiSocie {
+    fn members(&self) -> [(&'static str, Option<f64>, Range); 4] {
+        [
+            ("k", Some(self.k), range::FATIGUE_WEIGHT),
+            ("yield", Some(self.yield_stress), range::YIELD_STRESS),
+            ("youngs_modulus", self.youngs_modulus, range::YOUNGS_MODULUS),
+            ("limit", self.limit, BEARABLE),
+        ]
+    }
+}
+
+impl Limited for FatemiSocie {
+    const SCHEMA: &'static str = "FatemiSocie";
+
+    fn limits() -> Vec<(&'static str, serde_json::Value)> {
+        let any = FatemiSocie { k: 0.0, yield_stress: 0.0, youngs_modulus: None, limit: None };
+        any.members().map(|(name, _, range)| (name, range.keywords())).into()
+    }
+}
+
+/// A quantity of the surface.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceCriterion {
+    /// The value that the material bears.
+    pub limit: Option<f64>,
+}
+limits!(SurfaceCriterion { limit: BEARABLE });
+
+/// The criteria over the steady cycle, each with its values at all places.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FrettingReply {
+    /// What follows from the definition at the preload.
+    pub contact: ContactSummary,
+    /// Place along the motion of the first body, m.
+    pub x: Vec<f64>,
+    /// Place across it, m.
+    pub y: Vec<f64>,
+    /// Depth, m.
+    pub z: Vec<f64>,
+    /// Crossland's criterion, Pa.
+    pub crossland: Option<Rating>,
+    /// Dang Van's criterion, Pa.
+    pub dang_van: Option<Rating>,
+    /// Findley's criterion, Pa.
+    pub findley: Option<Rating>,
+    /// Smith, Watson and Topper's criterion, Pa.
+    pub swt: Option<Rating>,
+    /// Fatemi and Socie's criterion, a pure number.
+    pub fatemi_socie: Option<Rating>,
+    /// Ruiz's first parameter, shear stress times slip, N/m.
+    pub ruiz: Option<Rating>,
+    /// Ruiz's second parameter, that times the largest tension along x, N²/m³; comes with the first.
+    pub ruiz_tension: Option<Rating>,
+    /// Friction work per area and cycle, J/m².
+    pub friction_work: Option<Rating>,
+    /// The stresses over the cycle at the places of `stress_paths`.
+    pub stress_paths: Option<Vec<StressPath>>,
+    /// Instants of each move that the values are of.
+    pub instants: usize,
+    /// Change of the largest values from half as many instants, relative to them.
+    pub change: f64,
+    /// Solver, errors and time.
+    pub accuracy: Accuracy,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+
+/// A criterion at all places.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Rating {
+    /// Its values, place by place; `null` where a stress is infinite.
+    pub values: Vec<Option<f64>>,
+    /// The largest of them.
+    pub largest: Option<Largest>,
+    /// The limit over the largest value, a pure number, if a limit was given: below 1 the criterion foretells a crack.
+    pub margin: Option<f64>,
+}
+
+/// The place where a criterion is largest.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Largest {
+    /// The value.
+    pub value: f64,
+    /// Its place: x, y, z, m.
+    pub point: [f64; 3],
+    /// Unit normal of the critical plane, if the criterion has one.
+    pub plane: Option<[f64; 3]>,
+    /// The critical instant, if the criterion has one.
+    pub at: Option<Instant>,
+}
+
+/// An instant of the cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Instant {
+    /// Index of the move.
+    #[serde(rename = "move")]
+    pub step: usize,
+    /// The part of the move that has been made, above 0 and up to 1.
+    pub part: f64,
+}
+
+/// The stresses at one place over the cycle, in columns, Pa, tension positive.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StressPath {
+    /// Index of the place.
+    pub place: usize,
+    /// Index of the move.
+    #[serde(rename = "move")]
+    pub step: Vec<usize>,
+    /// The part of the move that has been made.
+    pub part: Vec<f64>,
+    /// Normal stress along x.
+    pub xx: Vec<Option<f64>>,
+    /// Normal stress along y.
+    pub yy: Vec<Option<f64>>,
+    /// Normal stress along z.
+    pub zz: Vec<Option<f64>>,
+    /// Shear stress in the plane of x and y.
+    pub xy: Vec<Option<f64>>,
+    /// Shear stress in the plane of y and z.
+    pub yz: Vec<Option<f64>>,
+    /// Shear stress in the plane of x and z.
+    pub xz: Vec<Option<f64>>,
+}
+
+/// A checked request.
+#[derive(Clone, Debug)]
+pub struct FrettingTask {
+    /// The path.
+    pub plan: Plan,
+    /// The body and its Poisson's ratio.
+    pub body: (Side, f64),
+    /// Where.
+    pub places: Places,
+    /// The bulk stress: mean and amplitude, Pa, and phase, rad.
+    pub bulk: Option<[f64; 3]>,
+    /// The criteria of stress that are asked for, in the order of the reply, with their limits.
+    pub criteria: [Option<(Criterion, Option<f64>)>; 5],
+    /// Ruiz's parameters, with the limit of the first.
+    pub ruiz: Option<SurfaceCriterion>,
+    /// The friction work, with its limit.
+    pub friction_work: Option<SurfaceCriterion>,
+    /// Places whose stresses over the cycle are asked for.
+    pub stress_paths: Vec<usize>,
+    /// The change that is accepted.
+    pub tolerance: f64,
+}
+
+impl FrettingTask {
+    /// Whether it is for one criterion over a grid in a plane, which can be drawn.
+    #[must_use]
+    pub fn is_section(&self) -> bool {
+        let surface = usize::from(self.ruiz.is_some()) + usize::from(self.friction_work.is_some());
+        self.criteria.iter().flatten().count() + surface == 1 && matches!(self.places, Places::Grid(_))
+    }
+}
+
+impl FrettingReply {
+    /// The criteria that there are, with names and units.
+    pub fn ratings(&self) -> impl Iterator<Item = (&'static str, &'static str, &Rating)> {
+        [
+            ("crossland", "Pa", &self.crossland),
+            ("dang_van", "Pa", &self.dang_van),
+            ("findley", "Pa", &self.findley),
+            ("swt", "Pa", &self.swt),
+            ("fatemi_socie", "1", &self.fatemi_socie),
+            ("ruiz", "N/m", &self.ruiz),
+            ("ruiz_tension", "N²/m³", &self.ruiz_tension),
+            ("friction_work", "J/m²", &self.friction_work),
+        ]
+        .into_iter()
+        .filter_map(|(name, unit, rating)| Some((name, unit, rating.as_ref()?)))
+    }
+}
+
+impl Document for FrettingRequest {
+    type Checked = (ContactDefinition, Setup, FrettingTask);
+
+    fn check(self) -> Result<Self::Checked, Rejection> {
+        let mut faults = Faults::default();
+        let at = |name| JsonPath::Root.member(name);
+        let setup = self.contact.check(at("contact"), &mut faults);
+        let plan = self.path.check(at("path"), &mut faults);
+        if let Some(plan) = &plan {
+            faults.length(at("path"), plan.length(), &FRETTING_MOVES);
+        }
+        Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &self.tolerance, at("tolerance"), &mut faults);
+        let bulk = self.bulk.map(|bulk| {
+            bulk.check_members(at("bulk"), &mut faults);
+            [bulk.mean, bulk.amplitude, bulk.phase.map(f64::to_radians)].map(|part| part.unwrap_or(0.0))
+        });
+        let places = SubsurfaceRequest {
+            body: self.body,
+            poisson_ratio: self.poisson_ratio,
+            points: self.points,
+            line: self.line,
+            plane: self.plane,
+            surface: self.surface,
+            fields: None,
+            bulk: None,
+        };
+        let asked = places.at(&self.contact, JsonPath::Root, &mut faults);
+        let youngs_modulus = self.contact.material.youngs_modulus(self.body);
+        let poisson = asked.as_ref().map_or(0.0, |asked| asked.poisson_ratio);
+        let criteria = self.criteria.check((youngs_modulus, poisson), at("criteria"), &mut faults);
+        let stress_paths = self.stress_paths.unwrap_or_default();
+        Limit::check(&PATHS, &stress_paths, at("stress_paths"), &mut faults);
+        if let Some(asked) = &asked {
+            self.criteria.check_surface(&asked.places, at("criteria"), &mut faults);
+            for (index, place) in stress_paths.iter().enumerate() {
+                if *place >= asked.places.count() {
+                    let most = asked.places.count() - 1;
+                    let detail = format_args!("{place} is out of range: allowed is 0 to {most}");
+                    faults.add(at("stress_paths").index(index), detail);
+                }
+            }
+        }
+        let task = plan.zip(asked).map(|(plan, asked)| FrettingTask {
+            plan,
+            body: (asked.side, asked.poisson_ratio),
+            places: asked.places,
+            bulk,
+            criteria,
+            ruiz: self.criteria.ruiz,
+            friction_work: self.criteria.friction_work,
+            stress_paths,
+            tolerance: self.tolerance.unwrap_or(DEFAULT_TOLERANCE),
+        });
+        faults.done(setup.zip(task).map(|(setup, task)| (self.contact, setup, task)))
+    }
+}
+
+impl Criteria {
+    /// The criteria of stress for a body, whose Young's modulus may be unknown.
+    fn check(
+        &self,
+        (youngs_modulus, poisson): (Option<f64>, f64),
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> [Option<(Criterion, Option<f64>)>; 5] {
+        if *self == Criteria::default() {
+            let names = "`crossland`, `dang_van`, `findley`, `swt`, `fatemi_socie`, `ruiz`, `friction_work`";
+            faults.add(at, format_args!("empty: give at least one of {names}"));
+        }
+        let modulus = |given: Option<f64>, name: &str, faults: &mut Faults| {
+            let place = at.member(name);
+            match (given, youngs_modulus) {
+                (Some(given), Some(known)) if given != known => {
+                    let detail = format_args!("{given:?} contradicts the {known:?} of this body: leave this out");
+                    faults.add(place.member("youngs_modulus"), detail);
+                }
+                (None, None) => {
+                    let detail = "give the body's `youngs_modulus`: reduced moduli do not tell it";
+                    faults.add(place.member("youngs_modulus"), detail);
+                }
+                _ => {}
+            }
+            given.or(youngs_modulus).unwrap_or(1.0)
+        };
+        if let Some(weighted) = &self.crossland {
+            weighted.check_members(at.member("crossland"), faults);
+        }
+        if let Some(weighted) = &self.dang_van {
+            weighted.check_members(at.member("dang_van"), faults);
+        }
+        if let Some(findley) = &self.findley {
+            findley.check_members(at.member("findley"), faults);
+        }
+        if let Some(swt) = &self.swt {
+            swt.check_members(at.member("swt"), faults);
+        }
+        if let Some(fatemi) = &self.fatemi_socie {
+            let place = at.member("fatemi_socie");
+            for (name, value, range) in fatemi.members() {
+                Limit::check(&range, &value, place.member(name), faults);
+            }
+        }
+        for (name, surface) in [("ruiz", &self.ruiz), ("friction_work", &self.friction_work)] {
+            if let Some(surface) = surface {
+                surface.check_members(at.member(name), faults);
+            }
+        }
+        [
+            self.crossland.map(|asked| (Criterion::Crossland { alpha: asked.alpha }, asked.limit)),
+            self.dang_van.map(|asked| (Criterion::DangVan { alpha: asked.alpha }, asked.limit)),
+            self.findley.map(|asked| (Criterion::Findley { k: asked.k }, asked.limit)),
+            self.swt.map(|asked| {
+                let youngs_modulus = modulus(asked.youngs_modulus, "swt", faults);
+                (Criterion::SmithWatsonTopper { youngs_modulus, poisson }, asked.limit)
+            }),
+            self.fatemi_socie.map(|asked| {
+                let youngs_modulus = modulus(asked.youngs_modulus, "fatemi_socie", faults);
+                let FatemiSocie { k, yield_stress, limit, .. } = asked;
+                (Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson }, limit)
+            }),
+        ]
+    }
+
+    /// Notes the criteria of the surface that are asked for below it.
+    fn check_surface(&self, places: &Places, at: JsonPath<'_>, faults: &mut Faults) {
+        if (0..places.count()).all(|index| places.at(index)[2] == 0.0) {
+            return;
+        }
+        for (name, asked) in [("ruiz", self.ruiz.is_some()), ("friction_work", self.friction_work.is_some())] {
+            if asked {
+                faults.add(at.member(name), "is of the surface: ask for places with z = 0, or leave this out");
+            }
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Fatigue criteria over the steady cycle of a contact.
+//!
+//! The instants of the cycle are doubled until the largest value of each criterion no longer changes; only then is every place
+//! rated over all of them.
+
+use std::f64::consts::TAU;
+
+use stickslip_mechanics::fatigue::{Criterion, Cycle, MAX_INSTANTS, Ruiz, Value};
+use stickslip_mechanics::{Contact, Error, Setup, Stress};
+use stickslip_wire::fretting::{FrettingTask, Instant};
+use stickslip_wire::reply::finite;
+use stickslip_wire::{Accuracy, FrettingReply, Largest, Rating, StressPath};
+
+use super::Failure;
+use super::cost::STRESSES_HELD;
+use super::run::{Timer, accuracy, contact, cycle_moves};
+use super::warnings::{bulk_warning, present_warnings};
+use crate::admission::Stop;
+
+/// Instants of each move at first.
+const FEWEST: usize = 4;
+/// Criteria of stress, two of Ruiz, and the friction work.
+const COLUMNS: usize = 8;
+
+const REASON: &str = "the cycle follows from the exact slip history, and the stress from that without a mesh";
+
+/// The values of all criteria that are asked for, place by place, in the order of the reply.
+type Values = [Option<Vec<Value>>; COLUMNS];
+
+/// The criteria over the steady cycle of a contact.
+///
+/// # Errors
+/// [`Failure::Refused`] for a preload that cannot be reached, a move without an answer, or a path that does not close;
+/// [`Failure`] if the work was ended.
+pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<FrettingReply, Failure> {
+    let timer = Timer::start();
+    let contact = contact(setup, "/contact")?;
+    let moves = cycle_moves(&task.plan, &contact)?;
+    let go_on = || stop.check().is_ok();
+    let work = Work { cycle: &Cycle::new(&contact, &moves, &go_on).map_err(|error| refused(error, stop))?, task, stop };
+    let places: Vec<[f64; 3]> = (0..task.places.count()).map(|index| task.places.at(index)).collect();
+
+    let (mut instants, mut change) = (FEWEST, f64::INFINITY);
+    let mut values = work.values(instants, &places)?;
+    let mut worst = worst(&values);
+    let mut before: Vec<f64> = worst.iter().map(|(column, place)| value_of(&values, *column, *place)).collect();
+    while change > task.tolerance && instants < MAX_INSTANTS {
+        instants *= 2;
+        change = 0.0;
+        for ((column, place), before) in worst.iter().zip(&mut before) {
+            let finer = value_of(&work.values(instants, &[places[*place]])?, *column, 0);
+            let off = (finer - *before).abs();
+            // Infinite ones do not change.
+            change = f64::max(change, if off > 0.0 { off / finer.abs() } else { 0.0 });
+            *before = finer;
+        }
+    }
+    values = work.values(instants, &places)?;
+    worst = self::worst(&values);
+
+    let rating = |column: usize, limit: Option<f64>| {
+        values[column].as_ref().map(|found| {
+            let largest = worst.iter().find(|(of, _)| *of == column).map(|(_, place)| {
+                let Value { value, plane, instant } = found[*place];
+                Largest { value, point: places[*place], plane, at: instant.map(|index| instant_of(index, instants)) }
+            });
+            let margin = limit.zip(largest.as_ref()).and_then(|(limit, largest)| finite(limit / largest.value));
+            Rating { values: found.iter().map(|value| finite(value.value)).collect(), largest, margin }
+        })
+    };
+    let limit = |index: usize| task.criteria[index].as_ref().and_then(|(_, limit)| *limit);
+    let surface = |asked: &Option<stickslip_wire::SurfaceCriterion>| asked.and_then(|asked| asked.limit);
+    let field = work.cycle.states(1, &go_on).map_err(|error| refused(error, stop))?;
+    let depth = field.last().map(|state| state.subsurface(task.body.0, task.body.1));
+    let subsurface_error = depth.transpose().map_err(|error| refused(error, stop))?.map(|field| field.error());
+    let paths = task.stress_paths.iter().map(|place| work.path(instants, *place, places[*place]));
+    Ok(FrettingReply {
+        x: places.iter().map(|place| place[0]).collect(),
+        y: places.iter().map(|place| place[1]).collect(),
+        z: places.iter().map(|place| place[2]).collect(),
+        crossland: rating(0, limit(0)),
+        dang_van: rating(1, limit(1)),
+        findley: rating(2, limit(2)),
+        swt: rating(3, limit(3)),
+        fatemi_socie: rating(4, limit(4)),
+        ruiz: rating(5, surface(&task.ruiz)),
+        ruiz_tension: rating(6, None),
+        friction_work: rating(7, surface(&task.friction_work)),
+        stress_paths: (!task.stress_paths.is_empty()).then(|| paths.collect()).transpose()?,
+        instants,
+        change,
+        warnings: present_warnings(&contact).into_iter().chain(bulk_warning(task.bulk.is_some())).collect(),
+        accuracy: Accuracy { subsurface_error, ..accuracy(&contact, timer, REASON) },
+        contact: contact.summary().into(),
+    })
+}
+
+/// The column and the place of the largest finite value of each criterion.
+fn worst(values: &Values) -> Vec<(usize, usize)> {
+    let largest = |found: &Vec<Value>| {
+        let finite = found.iter().enumerate().filter(|(_, value)| value.value.is_finite());
+        finite.max_by(|one, two| one.1.value.total_cmp(&two.1.value)).map(|(place, _)| place)
+    };
+    values.iter().enumerate().filter_map(|(column, found)| Some((column, largest(found.as_ref()?)?))).collect()
+}
+
+fn value_of(values: &Values, column: usize, place: usize) -> f64 {
+    values[column].as_ref().map_or(0.0, |found| found[place].value)
+}
+
+fn instant_of(index: usize, instants: usize) -> Instant {
+    Instant { step: index / instants, part: (index % instants + 1) as f64 / instants as f64 }
+}
+
+fn refused(error: Error, stop: &Stop) -> Failure {
+    match stop.check() {
+        Err(interrupted) => Failure::interrupted(interrupted, "/path"),
+        Ok(()) => Failure::Refused { pointer: "/path".to_owned(), error },
+    }
+}
+
+/// A cycle, and what is asked of it.
+struct Work<'a> {
+    cycle: &'a Cycle,
+    task: &'a FrettingTask,
+    stop: &'a Stop,
+}
+
+impl Work<'_> {
+    fn go_on(&self) -> bool {
+        self.stop.check().is_ok()
+    }
+
+    /// All values over so many instants of each move.
+    fn values(&self, instants: usize, places: &[[f64; 3]]) -> Result<Values, Failure> {
+        let task = self.task;
+        let mut values: Values = std::array::from_fn(|column| {
+            let asked = match column {
+                5 | 6 => task.ruiz.is_some(),
+                7 => task.friction_work.is_some(),
+                _ => task.criteria[column].is_some(),
+            };
+            asked.then(|| Vec::with_capacity(places.len()))
+        });
+        let states = self.cycle.states(instants, &|| self.go_on()).map_err(|error| refused(error, self.stop))?;
+        for places in places.chunks((STRESSES_HELD / states.len()).max(1)) {
+            let paths = self.stresses(instants, places)?;
+            for path in &paths {
+                self.stop.check()?;
+                for (column, criterion) in task.criteria.iter().enumerate() {
+                    if let (Some((criterion, _)), Some(found)) = (criterion, &mut values[column]) {
+                        found.push(Criterion::of(criterion, path));
+                    }
+                }
+            }
+            if task.ruiz.is_some() || task.friction_work.is_some() {
+                self.surface(&states, places, &paths, &mut values)?;
+            }
+        }
+        Ok(values)
+    }
+
+    /// The stresses at each place over the cycle, with the bulk stress.
+    fn stresses(&self, instants: usize, places: &[[f64; 3]]) -> Result<Vec<Vec<Stress>>, Failure> {
+        let paths = self.cycle.stress_paths(instants, self.task.body, places, &|| self.go_on());
+        let mut paths = paths.map_err(|error| refused(error, self.stop))?;
+        if let Some([mean, amplitude, phase]) = self.task.bulk {
+            for path in &mut paths {
+                let count = path.len() as f64;
+                for (index, stress) in path.iter_mut().enumerate() {
+                    stress.xx += mean + amplitude * (TAU * (index + 1) as f64 / count + phase).cos();
+                }
+            }
+        }
+        Ok(paths)
+    }
+
+    /// What slips at the surface.
+    fn surface(
+        &self,
+        states: &[Contact],
+        places: &[[f64; 3]],
+        paths: &[Vec<Stress>],
+        values: &mut Values,
+    ) -> Result<(), Failure> {
+        for (place, path) in places.iter().zip(paths) {
+            self.stop.check()?;
+            let radius = place[0].hypot(place[1]);
+            // Outside the contact nothing slips; what a ring has slipped starts anew when it touches again.
+            let slips: Vec<f64> = states.iter().map(|state| state.slip(radius).unwrap_or(0.0)).collect();
+            let plain = |value: f64, instant| Value { value, plane: None, instant };
+            if let [_, _, _, _, _, Some(damage), Some(tension), _] = values {
+                let shears: Vec<f64> = states.iter().map(|state| state.shear(radius)).collect();
+                let along: Vec<f64> = path.iter().map(|stress| stress.xx).collect();
+                let ruiz = Ruiz::of(&shears, &slips, &along);
+                damage.push(plain(ruiz.fretting_damage, None));
+                tension.push(plain(ruiz.crack_initiation, None));
+            }
+            if let [.., Some(work)] = values {
+                let bounds: Vec<f64> = states.iter().map(|state| state.friction() * state.pressure(radius)).collect();
+                let last = states.len() - 1;
+                // Slip goes one way within a move, so that its steps add up.
+                let done = (0..states.len()).map(|index| {
+                    let from = if index == 0 { last } else { index - 1 };
+                    let slipped = (slips[index] - slips[from]).abs();
+                    if slipped > 0.0 { 0.5 * (bounds[from] + bounds[index]) * slipped } else { 0.0 }
+                });
+                work.push(plain(done.sum(), None));
+            }
+        }
+        Ok(())
+    }
+
+    /// The stresses at one place over the cycle, as columns.
+    fn path(&self, instants: usize, index: usize, place: [f64; 3]) -> Result<StressPath, Failure> {
+        let stresses = self.stresses(instants, &[place])?.swap_remove(0);
+        let column = |of: fn(&Stress) -> f64| stresses.iter().map(|stress| finite(of(stress))).collect();
+        let at = || (0..stresses.len()).map(|index| instant_of(index, instants));
+        Ok(StressPath {
+            place: index,
+            step: at().map(|instant| instant.step).collect(),
+            part: at().map(|instant| instant.part).collect(),
+            xx: column(|stress| stress.xx),
+            yy: column(|stress| stress.yy),
+            zz: column(|stress| stress.zz),
+            xy: column(|stress| stress.xy),
+            yz: column(|stress| stress.yz),
+            xz: column(|stress| stress.xz),
+        })
+    }
+}

@@ -1,0 +1,166 @@
+//! Fatigue criteria over HTTP: published figures, what follows from them, every fault with its place, and all formats.
+
+use std::f64::consts::PI;
+
+use crate::common;
+
+use common::{Server, good, number, of, problem};
+use serde_json::{Value, json};
+
+/// A sphere with a = d = p_max = 1, G* = E* and mu = 0.5.
+fn unit_sphere() -> Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 1.0},
+        "material": {"effective": {"e_star": 0.5 * PI, "g_star": 0.5 * PI}},
+        "friction": 0.5,
+        "preload": {"indentation": 1.0}
+    })
+}
+
+/// A steel ball on a rigid plane.
+fn ball() -> Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "friction": 0.3,
+        "preload": {"normal_force": 10.0}
+    })
+}
+
+#[tokio::test]
+async fn a_cycle_in_partial_slip_has_its_published_values() {
+    let server = Server::start().await;
+    let asked = json!({
+        // W = 0.6 d up and down.
+        "path": {"cycles": {"displacement": 0.3, "count": 2}},
+        "body": "second", "poisson_ratio": 0.3, "points": [[-0.98, 0.0, 0.02], [0.0, 0.0, 0.5]],
+        "criteria": {"crossland": {"alpha": 0.0, "limit": 0.6}, "dang_van": {"alpha": 0.3}}, "tolerance": 1e-8,
+        "stress_paths": [0]
+    });
+    let reply = good(server.post("/fretting", &of(&unit_sphere(), &asked)).await).await;
+    let crossland = number(&reply["crossland"]["values"][0]);
+    assert!((crossland - 0.303_364_330_750).abs() < 1e-8, "{crossland}");
+    let dang_van = number(&reply["dang_van"]["values"][0]);
+    assert!((dang_van - 0.313_215_178_853).abs() < 1e-8, "{dang_van}");
+    let largest = &reply["crossland"]["largest"];
+    assert_eq!((&largest["point"], number(&largest["value"])), (&json!([-0.98, 0.0, 0.02]), crossland));
+    assert!((number(&reply["crossland"]["margin"]) - 0.6 / crossland).abs() < 1e-12);
+    assert!(reply["dang_van"].get("margin").is_none() && reply.get("findley").is_none());
+    assert!(number(&reply["change"]) <= 1e-8);
+    // The stresses over the cycle are those of the same path by themselves.
+    let path = &reply["stress_paths"][0];
+    let instants = reply["instants"].as_u64().unwrap() as usize;
+    let end = path["part"].as_array().unwrap().iter().position(|part| part == &json!(1.0)).unwrap();
+    assert_eq!(end + 1, instants);
+    let asked = json!({
+        "path": {"displacement": [0.3, -0.3, 0.3]}, "steps": "last",
+        "subsurface": {"body": "second", "poisson_ratio": 0.3, "points": [[-0.98, 0.0, 0.02]]}
+    });
+    let alone = good(server.post("/simulate", &of(&unit_sphere(), &asked)).await).await;
+    for name in ["xx", "yy", "zz", "xy", "yz", "xz"] {
+        let (one, other) = (number(&path[name][end]), number(&alone["subsurface"][name][0]));
+        assert!((one - other).abs() < 1e-12, "{name}: {one} {other}");
+    }
+}
+
+#[tokio::test]
+async fn the_friction_work_of_the_surface_is_that_of_the_steady_cycle() {
+    let server = Server::start().await;
+    let radii = [0.0, 3e-5, 5.5e-5, 6e-5, 6.5e-5];
+    let points: Vec<_> = radii.iter().map(|r| json!([0.8 * r, 0.6 * r, 0.0])).collect();
+    let asked = json!({
+        "path": {"displacement": [1e-7, -1e-7]}, "body": "first", "points": points,
+        "criteria": {"friction_work": {}, "ruiz": {}, "swt": {}}
+    });
+    let reply = good(server.post("/fretting", &of(&ball(), &asked)).await).await;
+    let asked = json!({"drive": {"displacement": 1e-7}, "work_density": {"radii": radii}});
+    let cycle = good(server.post("/cycle", &of(&ball(), &asked)).await).await;
+    let density = &cycle["cycles"][0]["friction_work"]["density"];
+    let largest = number(&density[3]);
+    for index in 0..radii.len() {
+        let (one, other) = (number(&reply["friction_work"]["values"][index]), number(&density[index]));
+        assert!((one - other).abs() < 1e-9 * largest, "{index}: {one:e} {other:e}");
+    }
+    // Where nothing slips Ruiz's parameters are zero.
+    assert_eq!((&reply["ruiz"]["values"][0], &reply["ruiz_tension"]["values"][0]), (&json!(0.0), &json!(0.0)));
+    assert!(number(&reply["ruiz"]["values"][3]) > 0.0 && number(&reply["swt"]["largest"]["value"]) > 0.0);
+    let plane: Vec<f64> = reply["swt"]["largest"]["plane"].as_array().unwrap().iter().map(number).collect();
+    assert!((plane.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-12);
+}
+
+#[tokio::test]
+async fn a_bulk_stress_far_away_is_all_that_there_is() {
+    let server = Server::start().await;
+    let asked = json!({
+        "path": {"displacement": [1e-9, -1e-9]}, "body": "first", "points": [[0.0, 0.0, 1.0]],
+        "bulk": {"mean": 5e7, "amplitude": 1e8, "phase": 0.0},
+        "criteria": {"crossland": {"alpha": 0.3}, "findley": {"k": 0.0}, "fatemi_socie": {"k": 0.0, "yield": 3e8}},
+        "tolerance": 1e-6
+    });
+    let reply = good(server.post("/fretting", &of(&ball(), &asked)).await).await;
+    // Tension that swings by s along one axis: sqrt(J2a) = s/sqrt(3), and the shear amplitude is s/2.
+    let crossland = number(&reply["crossland"]["values"][0]);
+    assert!((crossland / (1e8 / 3.0_f64.sqrt() + 0.3 * 1.5e8 / 3.0) - 1.0).abs() < 1e-6, "{crossland}");
+    assert!((number(&reply["findley"]["values"][0]) / 5e7 - 1.0).abs() < 1e-6);
+    assert!((number(&reply["fatemi_socie"]["values"][0]) / (5e7 * 2.6 / 2.1e11) - 1.0).abs() < 1e-6);
+    let codes: Vec<_> = reply["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].clone()).collect();
+    assert!(codes.contains(&json!("bulk_shift_neglected")), "{codes:?}");
+}
+
+#[tokio::test]
+async fn all_formats_have_the_same_numbers() {
+    let server = Server::start().await;
+    let body = of(
+        &ball(),
+        &json!({
+            "path": {"displacement": [1e-7, -1e-7]}, "body": "first",
+            "plane": {"normal": "y", "offset": 0.0, "x": [-1e-4, 1e-4, 5], "z": [1e-6, 5e-5, 3]},
+            "criteria": {"crossland": {"alpha": 0.3}}
+        }),
+    );
+    let columns = good(server.post("/fretting", &body).await).await;
+    let rows = good(server.post("/fretting?format=rows", &body).await).await;
+    for (index, row) in rows.as_array().unwrap().iter().enumerate() {
+        assert_eq!((&row["x"], &row["crossland"]), (&columns["x"][index], &columns["crossland"]["values"][index]));
+    }
+    assert_eq!(rows.as_array().unwrap().len(), 15);
+    for (format, start) in [("svg", &b"<svg"[..]), ("png", &b"\x89PNG"[..]), ("csv", &b"x,y,z,crossland\n"[..])] {
+        let written = server.post(&format!("/fretting?format={format}"), &body).await;
+        assert!(written.bytes().await.unwrap().starts_with(start), "{format}");
+    }
+}
+
+#[tokio::test]
+async fn every_fault_is_named_with_its_place() {
+    let server = Server::start().await;
+    let cases = [
+        (json!({"path": {"moves": [{"displacement": 1e-9, "relative": true}]}}), "/path", "displacement"),
+        (json!({"path": {"cycles": {"displacement": 1e-8, "count": 101}}}), "/path", "1 to 200"),
+        (json!({"criteria": {}}), "/criteria", "crossland"),
+        (json!({"criteria": {"tresca": {}}}), "/criteria/tresca", ""),
+        (json!({"criteria": {"crossland": {"alpha": -1.0}}}), "/criteria/crossland/alpha", "allowed is 0"),
+        (json!({"criteria": {"fatemi_socie": {"k": 1.0, "yield": 0.0}}}), "/criteria/fatemi_socie/yield", "allowed is"),
+        (json!({"criteria": {"swt": {"youngs_modulus": 1e11}}}), "/criteria/swt/youngs_modulus", "contradicts"),
+        (json!({"criteria": {"ruiz": {}}}), "/criteria/ruiz", "z = 0"),
+        (json!({"stress_paths": [1]}), "/stress_paths/0", "0 to 0"),
+        (json!({"points": [[0.0, 0.0, -1e-6]]}), "/points/0/2", "allowed is 0"),
+        (json!({"body": "second"}), "/body", "rigid"),
+        (json!({"tolerance": 1.0}), "/tolerance", "allowed is"),
+    ];
+    for (change, pointer, detail) in cases {
+        let mut asked = json!({
+            "path": {"displacement": [1e-8, -1e-8]}, "body": "first", "points": [[0.0, 0.0, 1e-5]],
+            "criteria": {"crossland": {"alpha": 0.3}}
+        });
+        asked.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
+        let refused = problem(server.post("/fretting", &of(&ball(), &asked)).await).await;
+        assert_eq!(refused.errors[0].pointer, pointer, "{change}");
+        assert!(refused.errors[0].detail.contains(detail), "{change}: {}", refused.errors[0].detail);
+    }
+    let asked = json!({
+        "path": {"displacement": [0.1, -0.1]}, "body": "first", "poisson_ratio": 0.3, "points": [[0.0, 0.0, 0.1]],
+        "criteria": {"swt": {}}
+    });
+    let refused = problem(server.post("/fretting", &of(&unit_sphere(), &asked)).await).await;
+    assert_eq!(refused.errors[0].pointer, "/criteria/swt/youngs_modulus");
+}
