@@ -69,7 +69,7 @@ function edges(plot, radius) {
     const x = plot.x.at(edge);
     return [
       svg("line", { class: "contact-edge", x1: x, x2: x, y1: plot.box.top, y2: plot.box.bottom }),
-      svg("text", { class: "small over", x: x + 4, y: plot.box.bottom - 6 }, edge < 0 ? "−a" : "a"),
+      svg("text", { class: "small over", x: x + 4, y: plot.box.top + 14 }, edge < 0 ? "−a" : "a"),
     ];
   });
 }

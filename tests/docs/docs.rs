@@ -18,7 +18,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
         ("simulate.md", 3),
         ("cycles.md", 3),
         ("fretting.md", 1),
-        ("contacts.md", 5),
+        ("contacts.md", 6),
         ("gallery.md", 1),
         ("errors.md", 1),
     ] {

@@ -299,6 +299,7 @@ async fn the_steady_cycle_follows_the_slider() {
     let session = ball(&server).await;
     let browser = Browser::start(1280, 900, false).await;
     browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.find("#steady-card").await;
     let card = "document.querySelector('#steady-card').innerText";
     browser.until(&format!("{card}.includes('Pull the displacement')")).await;
     for part in [0.5, -0.9] {

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stickslip_mechanics::cycle::{
     Drive, OscillatingCycle, OscillatingLoad, Oscillation, Resonator, SteadyCycle, best_load,
 };
-use stickslip_mechanics::profile::PowerLaw;
+use stickslip_mechanics::profile::{PowerLaw, TruncatedSphere};
 use stickslip_mechanics::{Contact, Elasticity, Normal, Preload, Profile, Regime, Setup, Sphere};
 
 use crate::support::quadrature::integral;
