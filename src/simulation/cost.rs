@@ -46,6 +46,8 @@ const CRITERION_COST: u64 = 1_000;
 const PLANES_COST: u64 = 20_000;
 /// Stresses that are held at once.
 pub const STRESSES_HELD: usize = 500_000;
+/// Bytes of the states of a cycle, which are held together.
+pub const STATES_HELD: usize = 64 * 1024 * 1024;
 /// One number of a reply, written as JSON.
 const NUMBER_COST: u64 = 60;
 /// The first harmonics of one cycle, and as much again for every eight orders.
@@ -330,7 +332,7 @@ pub fn bytes_of_fretting(task: &FrettingTask) -> usize {
     task.places.count() * columns * (size_of::<mechanics::fatigue::Value>() + 2 * NUMBER_LENGTH)
         + (task.places.count() * states).min(STRESSES_HELD) * size_of::<mechanics::Stress>()
         + task.stress_paths.len() * states * path
-        + states * MOVE_BYTES * 8
+        + STATES_HELD
 }
 
 /// The cost of steady cycles.

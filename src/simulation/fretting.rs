@@ -12,7 +12,7 @@ use stickslip_wire::reply::finite;
 use stickslip_wire::{Accuracy, FrettingReply, Largest, Rating, StressPath};
 
 use super::Failure;
-use super::cost::STRESSES_HELD;
+use super::cost::{STATES_HELD, STRESSES_HELD};
 use super::run::{Timer, accuracy, contact, cycle_moves};
 use super::warnings::{bulk_warning, present_warnings};
 use crate::admission::Stop;
@@ -40,11 +40,12 @@ pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<Fretti
     let work = Work { cycle: &Cycle::new(&contact, &moves, &go_on).map_err(|error| refused(error, stop))?, task, stop };
     let places: Vec<[f64; 3]> = (0..task.places.count()).map(|index| task.places.at(index)).collect();
 
+    let most = most_instants(work.cycle, stop)?;
     let (mut instants, mut change) = (FEWEST, f64::INFINITY);
     let mut values = work.values(instants, &places)?;
     let mut worst = worst(&values);
     let mut before: Vec<f64> = worst.iter().map(|(column, place)| value_of(&values, *column, *place)).collect();
-    while change > task.tolerance && instants < MAX_INSTANTS {
+    while change > task.tolerance && 2 * instants <= most {
         instants *= 2;
         change = 0.0;
         for ((column, place), before) in worst.iter().zip(&mut before) {
@@ -93,6 +94,17 @@ pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<Fretti
         accuracy: Accuracy { subsurface_error, ..accuracy(&contact, timer, REASON) },
         contact: contact.summary().into(),
     })
+}
+
+/// Instants of each move whose states can be held together.
+fn most_instants(cycle: &Cycle, stop: &Stop) -> Result<usize, Failure> {
+    let ends = cycle.states(1, &|| stop.check().is_ok()).map_err(|error| refused(error, stop))?;
+    let largest = ends.iter().map(Contact::memory_bytes).max().unwrap_or(1);
+    let most = (STATES_HELD / largest / ends.len()).min(MAX_INSTANTS);
+    if most < FEWEST {
+        return Err(Failure::CycleTooLarge { pointer: "/path".to_owned() });
+    }
+    Ok(most)
 }
 
 /// The column and the place of the largest finite value of each criterion.

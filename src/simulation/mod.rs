@@ -57,6 +57,14 @@ pub enum Failure {
         /// The pieces that it would have.
         depth: usize,
     },
+    /// The states of a cycle are too many, or too large, to be held together.
+    #[error(
+        "the states of this cycle take too much memory: make it of fewer moves, or straight in displacement and indentation"
+    )]
+    CycleTooLarge {
+        /// JSON pointer to the path.
+        pointer: String,
+    },
     /// The work exceeds the time limit of one request.
     #[error("this takes longer than the {} s that are allowed", allowed.as_secs_f64())]
     TooLong {
@@ -101,7 +109,7 @@ impl Failure {
                 mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },
             Failure::MemoryFull { .. } => Code::Conflict,
-            Failure::TooLong { .. } => Code::TooMuchWork,
+            Failure::TooLong { .. } | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
             Failure::Stopped => Code::Overloaded,
         }
     }
