@@ -172,7 +172,9 @@ fn of_failure(refusal: Failure) -> PointFailure {
     let (code, detail) = (refusal.code(), refusal.to_string());
     match refusal {
         Failure::Refused { pointer, error } => failure(code, pointer, error.to_string()),
-        Failure::MemoryFull { pointer, .. } | Failure::TooLong { pointer, .. } => failure(code, pointer, detail),
+        Failure::MemoryFull { pointer, .. } | Failure::TooLong { pointer, .. } | Failure::CycleTooLarge { pointer } => {
+            failure(code, pointer, detail)
+        }
         Failure::Stopped => failure(code, String::new(), detail),
     }
 }
