@@ -325,8 +325,9 @@ impl FrettingTask {
     /// Whether it is for one criterion over a grid in a plane, which can be drawn.
     #[must_use]
     pub fn is_section(&self) -> bool {
-        let surface = usize::from(self.ruiz.is_some()) + usize::from(self.friction_work.is_some());
-        self.criteria.iter().flatten().count() + surface == 1 && matches!(self.places, Places::Grid(_))
+        let surface = [self.ruiz.is_some(), self.friction_work.is_some()];
+        let asked = self.criteria.iter().map(Option::is_some).chain(surface);
+        asked.filter(|asked| *asked).count() == 1 && matches!(self.places, Places::Grid(_))
     }
 }
 
@@ -384,7 +385,7 @@ impl Document for FrettingRequest {
             self.criteria.check_surface(&asked.places, at("criteria"), &mut faults);
             for (index, place) in stress_paths.iter().enumerate() {
                 if *place >= asked.places.count() {
-                    let most = asked.places.count() - 1;
+                    let most = asked.places.count().saturating_sub(1);
                     let detail = format_args!("{place} is out of range: allowed is 0 to {most}");
                     faults.add(at("stress_paths").index(index), detail);
                 }
@@ -420,7 +421,7 @@ impl Criteria {
         let modulus = |given: Option<f64>, name: &str, faults: &mut Faults| {
             let place = at.member(name);
             match (given, youngs_modulus) {
-                (Some(given), Some(known)) if given != known => {
+                (Some(given), Some(known)) if (given - known).abs() > 0.0 => {
                     let detail = format_args!("{given:?} contradicts the {known:?} of this body: leave this out");
                     faults.add(place.member("youngs_modulus"), detail);
                 }

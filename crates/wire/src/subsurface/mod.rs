@@ -213,9 +213,8 @@ impl SubsurfaceTask {
     pub fn columns(&self) -> usize {
         let of = |field, columns| if self.wants(field) { columns } else { 0 };
         let single = [SubsurfaceField::VonMises, SubsurfaceField::MaxShear, SubsurfaceField::Hydrostatic];
-        3 + of(SubsurfaceField::Tensor, 6)
-            + of(SubsurfaceField::Principal, 3)
-            + single.into_iter().map(|field| of(field, 1)).sum::<usize>()
+        let all = [3, of(SubsurfaceField::Tensor, 6), of(SubsurfaceField::Principal, 3)];
+        all.into_iter().chain(single.into_iter().map(|field| of(field, 1))).sum()
     }
 
     /// Whether a field is asked for.
@@ -292,7 +291,7 @@ impl SubsurfaceRequest {
             },
         };
         match (known, self.poisson_ratio) {
-            (Some(known), Some(given)) if known != given => {
+            (Some(known), Some(given)) if (known - given).abs() > 0.0 => {
                 let detail = format_args!("{given:?} contradicts the {known:?} of this body: leave this out");
                 faults.add(at.member("poisson_ratio"), detail);
                 None

@@ -106,7 +106,7 @@ impl Steps {
         if index == 0 {
             self.from
         } else {
-            self.from + (self.to - self.from) * (index as f64 / (self.count - 1) as f64)
+            self.from + (self.to - self.from) * (index as f64 / self.count.saturating_sub(1) as f64)
         }
     }
 
@@ -147,7 +147,7 @@ impl Places {
                 line.check_members(at, faults);
                 check_depth(&line.from, at.member("from"), faults);
                 check_depth(&line.to, at.member("to"), faults);
-                if line.from == line.to {
+                if line.from.iter().zip(&line.to).all(|(from, to)| from.to_bits() == to.to_bits()) {
                     faults.add(at.member("to"), "the line ends where it begins");
                 }
             })
@@ -226,15 +226,21 @@ impl Places {
         match self {
             Places::Points(points) => points[index],
             Places::Grid([x, y, z]) => {
-                let (rest, last) = (index / z.count, index % z.count);
-                [x.at(rest / y.count), y.at(rest % y.count), z.at(last)]
+                let (rest, last) = split(index, z.count);
+                let (first, middle) = split(rest, y.count);
+                [x.at(first), y.at(middle), z.at(last)]
             }
             Places::Line(line) => {
-                let share = index as f64 / (line.count - 1) as f64;
+                let share = index as f64 / line.count.saturating_sub(1) as f64;
                 std::array::from_fn(|axis| line.from[axis] + (line.to[axis] - line.from[axis]) * share)
             }
         }
     }
+}
+
+/// Row and column of an index into rows of so many columns.
+fn split(index: usize, columns: usize) -> (usize, usize) {
+    (index.checked_div(columns).unwrap_or(0), index.checked_rem(columns).unwrap_or(0))
 }
 
 /// Notes a point above the surface.
