@@ -135,15 +135,15 @@ async fn every_fault_is_named_with_its_place() {
     let server = Server::start().await;
     let cases = [
         (json!({"path": {"moves": [{"displacement": 1e-9, "relative": true}]}}), "/path", "displacement"),
-        (json!({"path": {"cycles": {"displacement": 1e-8, "count": 101}}}), "/path", "1 to 200"),
+        (json!({"path": {"cycles": {"displacement": 1e-8, "count": 101}}}), "/path", "at most 200"),
         (json!({"criteria": {}}), "/criteria", "crossland"),
         (json!({"criteria": {"tresca": {}}}), "/criteria/tresca", ""),
         (json!({"criteria": {"crossland": {"alpha": -1.0}}}), "/criteria/crossland/alpha", "allowed is 0"),
         (json!({"criteria": {"fatemi_socie": {"k": 1.0, "yield": 0.0}}}), "/criteria/fatemi_socie/yield", "allowed is"),
         (json!({"criteria": {"swt": {"youngs_modulus": 1e11}}}), "/criteria/swt/youngs_modulus", "contradicts"),
         (json!({"criteria": {"ruiz": {}}}), "/criteria/ruiz", "z = 0"),
-        (json!({"stress_paths": [1]}), "/stress_paths/0", "0 to 0"),
-        (json!({"points": [[0.0, 0.0, -1e-6]]}), "/points/0/2", "allowed is 0"),
+        (json!({"stress_paths": [1]}), "/stress_paths/0", "the last is 0"),
+        (json!({"points": [[0.0, 0.0, -1e-6]]}), "/points/0/2", "above the surface"),
         (json!({"body": "second"}), "/body", "rigid"),
         (json!({"tolerance": 1.0}), "/tolerance", "allowed is"),
     ];

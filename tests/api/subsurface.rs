@@ -175,7 +175,7 @@ async fn every_fault_is_named_with_its_place() {
     let cases = [
         (json!({"body": "second"}), "/subsurface/body", "rigid"),
         (json!({"poisson_ratio": 0.2}), "/subsurface/poisson_ratio", "contradicts"),
-        (json!({"points": [[0.0, 0.0, -1e-9]]}), "/subsurface/points/0/2", "allowed is 0"),
+        (json!({"points": [[0.0, 0.0, -1e-9]]}), "/subsurface/points/0/2", "above the surface"),
         (json!({"points": []}), "/subsurface/points", "1 to 1000000"),
         (json!({"points": null}), "/subsurface/points", ""),
         (json!({"fields": []}), "/subsurface/fields", "von_mises"),

@@ -358,7 +358,10 @@ impl Document for FrettingRequest {
         let setup = self.contact.check(at("contact"), &mut faults);
         let plan = self.path.check(at("path"), &mut faults);
         if let Some(plan) = &plan {
-            faults.length(at("path"), plan.length(), &FRETTING_MOVES);
+            let most = *FRETTING_MOVES.end();
+            if plan.length() > most {
+                faults.add(at("path"), format_args!("{} moves: at most {most} can be rated", plan.length()));
+            }
         }
         Limit::check(&ToleranceOr(DEFAULT_TOLERANCE), &self.tolerance, at("tolerance"), &mut faults);
         let bulk = self.bulk.map(|bulk| {
@@ -386,7 +389,7 @@ impl Document for FrettingRequest {
             for (index, place) in stress_paths.iter().enumerate() {
                 if *place >= asked.places.count() {
                     let most = asked.places.count().saturating_sub(1);
-                    let detail = format_args!("{place} is out of range: allowed is 0 to {most}");
+                    let detail = format_args!("there is no place {place}: the last is {most}");
                     faults.add(at("stress_paths").index(index), detail);
                 }
             }

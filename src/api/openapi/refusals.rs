@@ -16,7 +16,7 @@ pub fn write(document: &mut Value) {
         let job = path.starts_with("/jobs");
         let changes = ["/move", "/path", "/relax"].iter().any(|end| path.ends_with(end));
         let changes_contact = changes || (method == "delete" && !job);
-        let defines_contact = ["/simulate", "/accuracy", "/protocols", "/cycle", "/sweep"].contains(&path);
+        let defines_contact = ["/simulate", "/accuracy", "/protocols", "/cycle", "/fretting", "/sweep"].contains(&path);
         let about_contacts = path.starts_with("/contacts") || defines_contact || job;
         let refusals = [
             (method == "post", "400", "The body is not JSON"),

@@ -3,13 +3,10 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use stickslip_mechanics::range::{self, Range};
+use stickslip_mechanics::range;
 
 use crate::check::{Faults, JsonPath};
-use crate::limits::{Limit, SUBSURFACE_POINTS, Triple, limits};
-
-/// A depth.
-const DEPTH: Range = Range { min: 0.0, ..range::PLACE };
+use crate::limits::{SUBSURFACE_POINTS, Triple, limits};
 
 /// Points on a straight line, both ends included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -135,7 +132,7 @@ impl Places {
         faults
             .part(|faults| {
                 for (index, point) in points.iter().enumerate() {
-                    check_depth(point, at.index(index), faults);
+                    check_depth(point[2], at.index(index).index(2), faults);
                 }
             })
             .map(|()| Places::Points(points))
@@ -145,8 +142,8 @@ impl Places {
         faults
             .part(|faults| {
                 line.check_members(at, faults);
-                check_depth(&line.from, at.member("from"), faults);
-                check_depth(&line.to, at.member("to"), faults);
+                check_depth(line.from[2], at.member("from").index(2), faults);
+                check_depth(line.to[2], at.member("to").index(2), faults);
                 if line.from.iter().zip(&line.to).all(|(from, to)| from.to_bits() == to.to_bits()) {
                     faults.add(at.member("to"), "the line ends where it begins");
                 }
@@ -163,7 +160,7 @@ impl Places {
                 match (direction == plane.normal, given) {
                     (true, None) => {
                         if direction == Direction::Z {
-                            Limit::check(&DEPTH, &plane.offset, at.member("offset"), faults);
+                            check_depth(plane.offset, at.member("offset"), faults);
                         }
                         Some(Steps::single(plane.offset))
                     }
@@ -176,8 +173,8 @@ impl Places {
                         None
                     }
                     (false, Some(given)) => {
-                        if direction == Direction::Z && given[0] < 0.0 {
-                            faults.number(place.index(0), given[0], &DEPTH);
+                        if direction == Direction::Z {
+                            check_depth(given[0], place.index(0), faults);
                         }
                         Steps::read(given, place, faults)
                     }
@@ -200,7 +197,11 @@ impl Places {
 
     fn grid(steps: [Steps; 3], at: JsonPath<'_>, faults: &mut Faults) -> Option<Places> {
         let count = steps.iter().fold(1_usize, |count, steps| count.saturating_mul(steps.count));
-        faults.length(at, count, &SUBSURFACE_POINTS).then_some(Places::Grid(steps))
+        let most = *SUBSURFACE_POINTS.end();
+        if count > most {
+            faults.add(at, format_args!("{count} places: at most {most} can be asked for"));
+        }
+        (count <= most).then_some(Places::Grid(steps))
     }
 
     /// The values along the three axes, if it is a grid.
@@ -244,8 +245,8 @@ fn split(index: usize, columns: usize) -> (usize, usize) {
 }
 
 /// Notes a point above the surface.
-fn check_depth(&[_, _, z]: &[f64; 3], at: JsonPath<'_>, faults: &mut Faults) {
-    if (range::PLACE.min..0.0).contains(&z) {
-        faults.number(at.index(2), z, &DEPTH);
+fn check_depth(z: f64, at: JsonPath<'_>, faults: &mut Faults) {
+    if z < 0.0 {
+        faults.add(at, format_args!("{z:?} lies above the surface: z is 0 there and grows into the body"));
     }
 }
