@@ -27,7 +27,7 @@ impl Fretting {
         let (_, setup, task) = wire::read::<FrettingRequest>(&read(&self.file)?).map_err(problem)?;
         let format = Format::named(&self.format, &Format::ALL).unwrap_or(Format::Columns);
         if format.is_plot() && !task.is_section() {
-            return Err("a picture is of one criterion over a `plane` or the `surface`".to_owned());
+            return Err(plots::NO_RATED_SECTION.to_owned());
         }
         let reply = simulation::fretting(setup, &task, &Stop::default()).map_err(problem)?;
         let written = format.write(&reply, || plots::fretting(&reply, &task.places), || tables::fretting(&reply));

@@ -31,8 +31,7 @@ impl Subsurface {
             return Err("the file asks for no stress below the surface: give the member `subsurface`".to_owned());
         };
         if format.is_plot() && !task.is_section() {
-            let fields = "`von_mises`, `max_shear` and `hydrostatic`";
-            return Err(format!("a picture is of one of {fields} over a `plane` or the `surface`"));
+            return Err(plots::NO_SECTION.to_owned());
         }
         let reply = simulation::simulate(&simulation, &Stop::default()).map_err(problem)?;
         let stress = reply.subsurface.unwrap_or_default();

@@ -13,8 +13,8 @@ use stickslip_mechanics::Contact;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{
-    CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply, SubsurfaceReply,
-    SubsurfaceRequest,
+    ContactDefinition, CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply,
+    SubsurfaceReply, SubsurfaceRequest,
 };
 
 use super::loaded::table_points;
@@ -124,13 +124,12 @@ impl Sessions {
         write: impl FnOnce(&SubsurfaceReply, &SubsurfaceTask) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let definition = {
-            let mut guard = self.lock(id).await?;
-            Arc::clone(&self.current(&mut guard).await?.session.definition)
+        let prepare = |definition: &ContactDefinition| {
+            let task = request.of_contact(definition)?;
+            let bytes = cost::bytes_of_subsurface(&task) + more(task.places.count());
+            Ok((task, bytes))
         };
-        let task = request.of_contact(&definition)?;
-        let bytes = cost::bytes_of_subsurface(&task) + more(task.places.count());
-        let (contact, sequence, held) = self.copy(id, bytes).await?;
+        let (contact, sequence, held, task) = self.copy_for(id, prepare).await?;
         let cost = cost::of_subsurface(contact.profile(), &task, contact.memory_depth()).saturating_add(longer);
         let work = move || {
             let solve = || simulation::subsurface_reply(&contact, &task, &stop);
@@ -143,10 +142,21 @@ impl Sessions {
     /// A copy of the contact with its sequence, and memory for it and for so many bytes more. The lock is held for the copy
     /// alone, so that the session can move on meanwhile.
     async fn copy(&self, id: Uuid, more: usize) -> Result<(Contact, u64, Reservation), SessionError> {
+        let (contact, sequence, held, ()) = self.copy_for(id, |_| Ok(((), more))).await?;
+        Ok((contact, sequence, held))
+    }
+
+    /// The same for a task that follows from the definition, with the bytes that it takes.
+    async fn copy_for<T>(
+        &self,
+        id: Uuid,
+        prepare: impl FnOnce(&ContactDefinition) -> Result<(T, usize), SessionError>,
+    ) -> Result<(Contact, u64, Reservation, T), SessionError> {
         let mut guard = self.lock(id).await?;
         let live = self.current(&mut guard).await?;
+        let (task, more) = prepare(&live.session.definition)?;
         let held = self.common.pool.reserve(live.contact.memory_bytes() + more).await?;
-        Ok((live.contact.clone(), live.session.sequence, held))
+        Ok((live.contact.clone(), live.session.sequence, held, task))
     }
 
     /// A page of sessions, oldest first.

@@ -16,17 +16,17 @@ use crate::admission::Stop;
 pub fn map_of(setup: Setup, task: &CycleTask, map: FrettingMap, stop: &Stop) -> Result<(Contact, CycleReply), Failure> {
     let timer = Timer::start();
     let contact = contact(setup, "/contact")?;
-    let (mut rows, mut error) = (Vec::new(), 0.0_f64);
-    for load in map.loads() {
-        let mut reply = cycles_under(&contact, load, task, timer, stop)?;
-        rows.append(&mut reply.cycles);
-        error = error.max(reply.accuracy.force_error);
+    let mut loads = map.loads();
+    let first = loads.next().unwrap_or(map.normal_force.from);
+    let mut reply = cycles_under(&contact, first, task, timer, stop)?;
+    for load in loads {
+        let CycleReply { cycles, accuracy, warnings, .. } = cycles_under(&contact, load, task, timer, stop)?;
+        reply.cycles.extend(cycles);
+        // The time is that of all, the warnings are those of the largest load.
+        let force_error = accuracy.force_error.max(reply.accuracy.force_error);
+        (reply.accuracy, reply.warnings) = (Accuracy { force_error, ..accuracy }, warnings);
     }
-    // The time is that of all, the warnings are those of the largest load.
-    let CycleReply { accuracy, warnings, .. } = cycles_under(&contact, map.normal_force.to, task, timer, stop)?;
-    let accuracy = Accuracy { force_error: error, ..accuracy };
-    let reply =
-        CycleReply { contact: contact.summary().into(), cycles: rows, frequency_response: None, accuracy, warnings };
+    reply.contact = contact.summary().into();
     Ok((contact, reply))
 }
 

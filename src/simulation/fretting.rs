@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use stickslip_mechanics::fatigue::{Criterion, Cycle, MAX_INSTANTS, Ruiz, Value};
+use stickslip_mechanics::fatigue::{self, Criterion, Cycle, MAX_INSTANTS, Ruiz, Value};
 use stickslip_mechanics::{Contact, Error, Setup, Stress};
 use stickslip_wire::fretting::{FrettingTask, Instant};
 use stickslip_wire::reply::finite;
@@ -42,22 +42,25 @@ pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<Fretti
 
     let most = most_instants(work.cycle, stop)?;
     let (mut instants, mut change) = (FEWEST, f64::INFINITY);
-    let mut values = work.values(instants, &places)?;
-    let mut worst = worst(&values);
-    let mut before: Vec<f64> = worst.iter().map(|(column, place)| value_of(&values, *column, *place)).collect();
+    let mut states = work.states(instants)?;
+    let mut values = work.values(&states, &places)?;
+    let critical = worst(&values);
+    let critical_places: Vec<[f64; 3]> = critical.iter().map(|(_, place)| places[*place]).collect();
+    let mut before: Vec<f64> = critical.iter().map(|(column, place)| value_of(&values, *column, *place)).collect();
     while change > task.tolerance && 2 * instants <= most {
         instants *= 2;
+        states = work.states(instants)?;
+        let finer = work.values(&states, &critical_places)?;
         change = 0.0;
-        for ((column, place), before) in worst.iter().zip(&mut before) {
-            let finer = value_of(&work.values(instants, &[places[*place]])?, *column, 0);
-            let off = (finer - *before).abs();
-            // Infinite ones do not change.
-            change = f64::max(change, if off > 0.0 { off / finer.abs() } else { 0.0 });
+        for (index, ((column, _), before)) in critical.iter().zip(&mut before).enumerate() {
+            let finer = value_of(&finer, *column, index);
+            let (off, size) = ((finer - *before).abs(), finer.abs().max(before.abs()));
+            change = f64::max(change, if off > 0.0 { off / size } else { 0.0 });
             *before = finer;
         }
     }
-    values = work.values(instants, &places)?;
-    worst = self::worst(&values);
+    values = work.values(&states, &places)?;
+    let worst = worst(&values);
 
     let rating = |column: usize, limit: Option<f64>| {
         values[column].as_ref().map(|found| {
@@ -71,10 +74,8 @@ pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<Fretti
     };
     let limit = |index: usize| task.criteria[index].as_ref().and_then(|(_, limit)| *limit);
     let surface = |asked: &Option<stickslip_wire::SurfaceCriterion>| asked.and_then(|asked| asked.limit);
-    let field = work.cycle.states(1, &go_on).map_err(|error| refused(error, stop))?;
-    let depth = field.last().map(|state| state.subsurface(task.body.0, task.body.1));
-    let subsurface_error = depth.transpose().map_err(|error| refused(error, stop))?.map(|field| field.error());
-    let paths = task.stress_paths.iter().map(|place| work.path(instants, *place, places[*place]));
+    let field = states.last().map(|state| state.subsurface(task.body.0, task.body.1));
+    let subsurface_error = field.transpose().map_err(|error| refused(error, stop))?.map(|field| field.error());
     Ok(FrettingReply {
         x: places.iter().map(|place| place[0]).collect(),
         y: places.iter().map(|place| place[1]).collect(),
@@ -87,7 +88,7 @@ pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<Fretti
         ruiz: rating(5, surface(&task.ruiz)),
         ruiz_tension: rating(6, None),
         friction_work: rating(7, surface(&task.friction_work)),
-        stress_paths: (!task.stress_paths.is_empty()).then(|| paths.collect()).transpose()?,
+        stress_paths: (!task.stress_paths.is_empty()).then(|| work.paths(&states, instants, &places)).transpose()?,
         instants,
         change,
         warnings: present_warnings(&contact).into_iter().chain(bulk_warning(task.bulk.is_some())).collect(),
@@ -101,7 +102,7 @@ fn most_instants(cycle: &Cycle, stop: &Stop) -> Result<usize, Failure> {
     let ends = cycle.states(1, &|| stop.check().is_ok()).map_err(|error| refused(error, stop))?;
     let largest = ends.iter().map(Contact::memory_bytes).max().unwrap_or(1);
     let most = (STATES_HELD / largest / ends.len()).min(MAX_INSTANTS);
-    if most < FEWEST {
+    if most < 2 * FEWEST {
         return Err(Failure::CycleTooLarge { pointer: "/path".to_owned() });
     }
     Ok(most)
@@ -143,8 +144,13 @@ impl Work<'_> {
         self.stop.check().is_ok()
     }
 
-    /// All values over so many instants of each move.
-    fn values(&self, instants: usize, places: &[[f64; 3]]) -> Result<Values, Failure> {
+    /// The contact at so many instants of each move.
+    fn states(&self, instants: usize) -> Result<Vec<Contact>, Failure> {
+        self.cycle.states(instants, &|| self.go_on()).map_err(|error| refused(error, self.stop))
+    }
+
+    /// All values over some states.
+    fn values(&self, states: &[Contact], places: &[[f64; 3]]) -> Result<Values, Failure> {
         let task = self.task;
         let mut values: Values = std::array::from_fn(|column| {
             let asked = match column {
@@ -154,9 +160,8 @@ impl Work<'_> {
             };
             asked.then(|| Vec::with_capacity(places.len()))
         });
-        let states = self.cycle.states(instants, &|| self.go_on()).map_err(|error| refused(error, self.stop))?;
         for places in places.chunks((STRESSES_HELD / states.len()).max(1)) {
-            let paths = self.stresses(instants, places)?;
+            let paths = self.stresses(states, places)?;
             for path in &paths {
                 self.stop.check()?;
                 for (column, criterion) in task.criteria.iter().enumerate() {
@@ -166,15 +171,15 @@ impl Work<'_> {
                 }
             }
             if task.ruiz.is_some() || task.friction_work.is_some() {
-                self.surface(&states, places, &paths, &mut values)?;
+                self.surface(states, places, &paths, &mut values)?;
             }
         }
         Ok(values)
     }
 
     /// The stresses at each place over the cycle, with the bulk stress.
-    fn stresses(&self, instants: usize, places: &[[f64; 3]]) -> Result<Vec<Vec<Stress>>, Failure> {
-        let paths = self.cycle.stress_paths(instants, self.task.body, places, &|| self.go_on());
+    fn stresses(&self, states: &[Contact], places: &[[f64; 3]]) -> Result<Vec<Vec<Stress>>, Failure> {
+        let paths = fatigue::stresses(states, self.task.body, places, &|| self.go_on());
         let mut paths = paths.map_err(|error| refused(error, self.stop))?;
         if let Some([mean, amplitude, phase]) = self.task.bulk {
             for path in &mut paths {
@@ -223,21 +228,24 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// The stresses at one place over the cycle, as columns.
-    fn path(&self, instants: usize, index: usize, place: [f64; 3]) -> Result<StressPath, Failure> {
-        let stresses = self.stresses(instants, &[place])?.swap_remove(0);
-        let column = |of: fn(&Stress) -> f64| stresses.iter().map(|stress| finite(of(stress))).collect();
-        let at = || (0..stresses.len()).map(|index| instant_of(index, instants));
-        Ok(StressPath {
-            place: index,
-            step: at().map(|instant| instant.step).collect(),
-            part: at().map(|instant| instant.part).collect(),
-            xx: column(|stress| stress.xx),
-            yy: column(|stress| stress.yy),
-            zz: column(|stress| stress.zz),
-            xy: column(|stress| stress.xy),
-            yz: column(|stress| stress.yz),
-            xz: column(|stress| stress.xz),
-        })
+    /// The stresses over the cycle at the places that ask for them, as columns.
+    fn paths(&self, states: &[Contact], instants: usize, places: &[[f64; 3]]) -> Result<Vec<StressPath>, Failure> {
+        let asked: Vec<[f64; 3]> = self.task.stress_paths.iter().map(|place| places[*place]).collect();
+        let at = || (0..states.len()).map(|index| instant_of(index, instants));
+        let path = |(place, stresses): (&usize, Vec<Stress>)| {
+            let column = |of: fn(&Stress) -> f64| stresses.iter().map(|stress| finite(of(stress))).collect();
+            StressPath {
+                place: *place,
+                step: at().map(|instant| instant.step).collect(),
+                part: at().map(|instant| instant.part).collect(),
+                xx: column(|stress| stress.xx),
+                yy: column(|stress| stress.yy),
+                zz: column(|stress| stress.zz),
+                xy: column(|stress| stress.xy),
+                yz: column(|stress| stress.yz),
+                xz: column(|stress| stress.xz),
+            }
+        };
+        Ok(self.task.stress_paths.iter().zip(self.stresses(states, &asked)?).map(path).collect())
     }
 }

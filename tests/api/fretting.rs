@@ -1,31 +1,10 @@
 //! Fatigue criteria over HTTP: published figures, what follows from them, every fault with its place, and all formats.
 
-use std::f64::consts::PI;
-
 use crate::common;
 
-use common::{Server, good, number, of, problem};
-use serde_json::{Value, json};
-
-/// A sphere with a = d = p_max = 1, G* = E* and mu = 0.5.
-fn unit_sphere() -> Value {
-    json!({
-        "profile": {"type": "sphere", "radius": 1.0},
-        "material": {"effective": {"e_star": 0.5 * PI, "g_star": 0.5 * PI}},
-        "friction": 0.5,
-        "preload": {"indentation": 1.0}
-    })
-}
-
-/// A steel ball on a rigid plane.
-fn ball() -> Value {
-    json!({
-        "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-        "friction": 0.3,
-        "preload": {"normal_force": 10.0}
-    })
-}
+use crate::subsurface::unit_sphere;
+use common::{Server, ball, good, number, of, problem};
+use serde_json::json;
 
 #[tokio::test]
 async fn a_cycle_in_partial_slip_has_its_published_values() {

@@ -4,27 +4,17 @@ use std::f64::consts::PI;
 
 use crate::common;
 
-use common::{Server, good, number, of, problem};
+use common::{Server, ball, good, number, of, problem};
 use serde_json::{Value, json};
 use stickslip_wire::{BodyName, SubsurfaceRequest};
 
 /// A sphere with a = d = p_max = 1, G* = E* and mu = 0.5.
-fn unit_sphere() -> Value {
+pub fn unit_sphere() -> Value {
     json!({
         "profile": {"type": "sphere", "radius": 1.0},
         "material": {"effective": {"e_star": 0.5 * PI, "g_star": 0.5 * PI}},
         "friction": 0.5,
         "preload": {"indentation": 1.0}
-    })
-}
-
-/// Two bodies, the second of them rigid.
-fn on_rigid() -> Value {
-    json!({
-        "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
-        "friction": 0.3,
-        "preload": {"normal_force": 10.0}
     })
 }
 
@@ -125,7 +115,7 @@ async fn a_contact_tells_its_stress_and_stays_as_it_is() {
 #[tokio::test]
 async fn all_formats_have_the_same_numbers_and_a_section_can_be_drawn() {
     let server = Server::start().await;
-    let id = good(server.post("/contacts", &on_rigid()).await).await["id"].clone();
+    let id = good(server.post("/contacts", &ball()).await).await["id"].clone();
     let place = format!("/contacts/{}/subsurface", id.as_str().unwrap());
     let plane = json!({"normal": "y", "offset": 0.0, "x": [-1e-4, 1e-4, 3], "z": [0.0, 1e-4, 2]});
     let body = json!({"body": "first", "plane": plane, "fields": ["von_mises"]});
@@ -187,7 +177,7 @@ async fn every_fault_is_named_with_its_place() {
         let mut subsurface = json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]});
         subsurface.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
         let asked = json!({"path": {"displacement": [1e-8]}, "subsurface": subsurface});
-        let refused = problem(server.post("/simulate", &of(&on_rigid(), &asked)).await).await;
+        let refused = problem(server.post("/simulate", &of(&ball(), &asked)).await).await;
         assert_eq!(refused.errors[0].pointer, pointer, "{change}");
         assert!(refused.errors[0].detail.contains(detail), "{change}: {}", refused.errors[0].detail);
     }
@@ -203,14 +193,14 @@ async fn every_fault_is_named_with_its_place() {
     ];
     for (plane, place) in planes {
         let asked = json!({"path": {"displacement": [1e-8]}, "subsurface": {"body": "first", "plane": plane}});
-        let refused = problem(server.post("/simulate", &of(&on_rigid(), &asked)).await).await;
+        let refused = problem(server.post("/simulate", &of(&ball(), &asked)).await).await;
         assert_eq!(refused.errors[0].pointer, format!("/subsurface/plane{place}"), "{plane}");
     }
     let springs = json!({
         "path": {"displacement": [1e-8]}, "solver": {"springs": {"count": 100}},
         "subsurface": {"body": "first", "points": [[0.0, 0.0, 1e-5]]}
     });
-    let refused = problem(server.post("/simulate", &of(&on_rigid(), &springs)).await).await;
+    let refused = problem(server.post("/simulate", &of(&ball(), &springs)).await).await;
     assert_eq!(refused.errors[0].pointer, "/subsurface");
     let unknown =
         json!({"path": {"displacement": [0.1]}, "subsurface": {"body": "first", "points": [[0.0, 0.0, 0.1]]}});

@@ -4,7 +4,7 @@
 //! kernel (eq. 19 of Kraft & Pohrt 2016, by parts over the levels). The search for extrema is in `extrema`.
 
 use super::contact::Contact;
-use super::profile::StressRadius;
+use super::profile::{Ring, StressRadius};
 
 /// A local extremum of the shear stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,10 +69,15 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
-        let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
+        let mut rings: Vec<_> = self.shear_rings().collect();
         rings.reverse();
         let unit = self.shear_unit();
         self.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
+    }
+
+    /// The rings of the slip history from the edge inward, each with its -dw/dy.
+    pub(super) fn shear_rings(&self) -> impl Iterator<Item = (Ring, f64)> + '_ {
+        self.history.rings().map(|(ring, line)| (ring, -line.slope.value()))
     }
 
     /// G* m/pi, Pa.

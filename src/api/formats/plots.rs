@@ -11,6 +11,11 @@ use stickslip_wire::{
     Cycle, CyclePage, CycleReply, FrettingReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
 };
 
+/// Why some stresses below the surface have no picture.
+pub const NO_SECTION: &str =
+    "a picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
+/// Why some ratings have none.
+pub const NO_RATED_SECTION: &str = "a picture is of one criterion over a `plane` or the `surface`";
 /// Points of each branch of a steady loop.
 const BRANCH_POINTS: usize = 200;
 

@@ -74,8 +74,7 @@ pub async fn rate_fretting(
     let work = move || {
         let reply = otlp::part!("solve").in_scope(|| simulation::fretting(setup, &task, &stop))?;
         if format.is_plot() && !task.is_section() {
-            let detail = "a picture is of one criterion over a `plane` or the `surface`";
-            return Err(Problem::at(Code::InvalidInput, "/criteria", detail));
+            return Err(Problem::at(Code::InvalidInput, "/criteria", plots::NO_RATED_SECTION));
         }
         format.write(&reply, || plots::fretting(&reply, &task.places), || tables::fretting(&reply))
     };

@@ -71,9 +71,7 @@ pub async fn compute_subsurface_stress(
 /// The stresses in a format.
 fn written(format: Format, reply: &SubsurfaceReply, task: &SubsurfaceTask) -> Result<Vec<u8>, Problem> {
     if format.is_plot() && !task.is_section() {
-        let detail =
-            "a picture is of one of `von_mises`, `max_shear` and `hydrostatic` over a `plane` or the `surface`";
-        return Err(Problem::at(Code::InvalidInput, "/fields", detail));
+        return Err(Problem::at(Code::InvalidInput, "/fields", plots::NO_SECTION));
     }
     format.write(reply, || plots::section(&reply.stress, task), || tables::subsurface(&reply.stress))
 }

@@ -105,22 +105,11 @@ impl Cycle {
     pub fn stress_paths(
         &self,
         instants: usize,
-        (side, poisson): (Side, f64),
+        body: (Side, f64),
         places: &[[f64; 3]],
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Vec<Stress>>, Error> {
-        let states = self.states(instants, keep_going)?;
-        let mut paths = vec![Vec::with_capacity(states.len()); places.len()];
-        for state in &states {
-            if !keep_going() {
-                return Err(Error::Interrupted);
-            }
-            let field = state.subsurface(side, poisson)?;
-            for (path, place) in paths.iter_mut().zip(places) {
-                path.push(field.at(*place));
-            }
-        }
-        Ok(paths)
+        stresses(&self.states(instants, keep_going)?, body, places, keep_going)
     }
 
     /// A criterion at one place, m, over instants that are doubled, from four a move to [`MAX_INSTANTS`], until it
@@ -158,4 +147,28 @@ impl Cycle {
 /// Makes a move, unless the caller has lost interest: a straight move would not ask.
 fn follow(contact: &mut Contact, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
     if keep_going() { contact.apply_while(step, DEFAULT_TOLERANCE, keep_going) } else { Err(Error::Interrupted) }
+}
+
+/// The stresses in some states at each of the places, m, in one of the bodies: axes, Poisson's ratio and infinite stresses as in
+/// [`Contact::subsurface`].
+///
+/// # Errors
+/// [`Error::Interrupted`] if `keep_going` returned false, and [`Error::OutOfRange`] for Poisson's ratio.
+pub fn stresses(
+    states: &[Contact],
+    (side, poisson): (Side, f64),
+    places: &[[f64; 3]],
+    keep_going: &dyn Fn() -> bool,
+) -> Result<Vec<Vec<Stress>>, Error> {
+    let mut paths = vec![Vec::with_capacity(states.len()); places.len()];
+    for state in states {
+        if !keep_going() {
+            return Err(Error::Interrupted);
+        }
+        let field = state.subsurface(side, poisson)?;
+        for (path, place) in paths.iter_mut().zip(places) {
+            path.push(field.at(*place));
+        }
+    }
+    Ok(paths)
 }

@@ -24,7 +24,7 @@ use std::f64::consts::SQRT_2;
 
 use super::{Error, Stress, range};
 pub use ball::{Ball, enclosing_ball};
-pub use cycle::{Cycle, DEFAULT_REFINEMENT, MAX_INSTANTS, Refined};
+pub use cycle::{Cycle, DEFAULT_REFINEMENT, MAX_INSTANTS, Refined, stresses};
 use planes::{Vector, axes, dot, largest, unit};
 pub use ruiz::Ruiz;
 

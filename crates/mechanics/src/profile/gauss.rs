@@ -23,6 +23,12 @@ const TWELVE: [(f64, f64); 6] = [
     (0.437_383_295_744_265_54, 0.124_573_522_906_701_39),
 ];
 
+/// The rule of twelve points over 0..1, in rising order.
+pub(crate) fn twelve() -> impl Iterator<Item = (f64, f64)> {
+    let upper = TWELVE.iter().rev().map(|(at, weight)| (1.0 - at, *weight));
+    TWELVE.iter().copied().chain(upper)
+}
+
 const TWENTY: [(f64, f64); 10] = [
     (0.003_435_700_407_452_537_6, 0.008_807_003_569_576_059),
     (0.018_014_036_361_043_105, 0.020_300_714_900_193_47),

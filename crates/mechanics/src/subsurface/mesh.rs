@@ -7,23 +7,8 @@
 //! Over a tree's node that is half as long as its distance, 16 Chebyshev points stand for all below it: what
 //! they leave is 8^-16.
 
-use crate::profile::{Profile, Ring};
+use crate::profile::{Profile, Ring, gauss};
 
-/// Points of a panel, on 0..1, and weights: Gauss and Legendre's rule of twelve.
-const GAUSS: [(f64, f64); 12] = [
-    (0.009_219_682_876_640_375, 0.023_587_668_193_255_914),
-    (0.047_941_371_814_762_57, 0.053_469_662_997_659_21),
-    (0.115_048_662_902_847_65, 0.080_039_164_271_673_11),
-    (0.206_341_022_856_691_3, 0.101_583_713_361_532_96),
-    (0.316_084_250_500_909_9, 0.116_746_268_269_177_4),
-    (0.437_383_295_744_265_54, 0.124_573_522_906_701_39),
-    (0.562_616_704_255_734_5, 0.124_573_522_906_701_39),
-    (0.683_915_749_499_090_1, 0.116_746_268_269_177_4),
-    (0.793_658_977_143_308_7, 0.101_583_713_361_532_96),
-    (0.884_951_337_097_152_4, 0.080_039_164_271_673_11),
-    (0.952_058_628_185_237_4, 0.053_469_662_997_659_21),
-    (0.990_780_317_123_359_6, 0.023_587_668_193_255_914),
-];
 /// Points that stand for all panels of a node.
 const CHEBYSHEV: usize = 16;
 /// Halvings of a panel at a kink of the profile: what is left of it is too short to matter.
@@ -64,7 +49,7 @@ pub(super) struct Mesh {
 /// Gauss's rule over a panel, in the root of t - low if `rooted`.
 fn rule(low: f64, high: f64, rooted: bool) -> impl Iterator<Item = (f64, f64)> {
     let length = high - low;
-    GAUSS.iter().map(move |&(at, weight)| {
+    gauss::twelve().map(move |(at, weight)| {
         if rooted { (low + length * at * at, 2.0 * length * at * weight) } else { (low + length * at, length * weight) }
     })
 }

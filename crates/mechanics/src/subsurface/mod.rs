@@ -12,6 +12,7 @@ mod sphere;
 mod tensor;
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use super::contact::Contact;
 use super::profile::{Profile, Ring};
@@ -42,23 +43,15 @@ pub enum Side {
 #[derive(Clone, Debug)]
 pub struct Subsurface {
     contact: Contact,
-    loads: Loads,
+    /// The changes of the slopes of pressure and shear stress at the kinks of the slip history, under a parabola alone.
+    kinks: Option<Vec<Source>>,
+    /// The slopes over the radius, made when the first place needs them.
+    mesh: OnceLock<Mesh>,
     poisson: f64,
     /// Pa/m for the slopes of the pressure, and of the shear stress on this body.
     units: (f64, f64),
     /// The radii, m, at which the stress of the surface may be infinite.
     singular: Vec<f64>,
-}
-
-/// The slopes of pressure and shear over the radius.
-#[derive(Clone, Debug)]
-enum Loads {
-    /// No contact.
-    None,
-    /// Those of a parabola by their changes at the kinks of the slip history, and the mesh for distant points.
-    Parabola(Vec<Source>, Mesh),
-    /// Those of any profile.
-    Any(Mesh),
 }
 
 impl Contact {
@@ -84,28 +77,22 @@ impl Contact {
         let (pressed, dragged) = (self.elasticity.e_star(), sign * self.elasticity.g_star() * self.scale());
         let units = (pressed / (PI * radius), dragged / (PI * radius));
         let singular = self.profile.singular_radii().into_iter().chain([0.0, radius]).collect();
-        Ok(Subsurface { contact: self.clone(), loads: self.loads(radius), poisson, units, singular })
+        let kinks = matches!(*self.profile, Profile::Sphere(_)).then(|| self.kinks());
+        Ok(Subsurface { contact: self.clone(), kinks, mesh: OnceLock::new(), poisson, units, singular })
     }
 
-    fn loads(&self, radius: f64) -> Loads {
-        let rings: Vec<(Ring, f64)> = self.history.rings().map(|(ring, line)| (ring, -line.slope.value())).collect();
-        if rings.is_empty() || radius <= 0.0 {
-            return Loads::None;
-        }
-        let mesh = Mesh::new(&self.profile, &rings, radius);
-        if !matches!(*self.profile, Profile::Sphere(_)) {
-            return Loads::Any(mesh);
-        }
-        // y = (t a)^2/R, so that the closed form for g = t^2 counts this many times.
+    /// The changes of the slopes at the kinks, from the edge inward, for g = t^2 over the contact radius.
+    fn kinks(&self) -> Vec<Source> {
+        let radius = self.contact_radius();
+        // y = (t a)^2/R.
         let level = self.profile.level(radius);
-        let mut outer = 0.0;
-        let mut kinks: Vec<Source> = Vec::with_capacity(rings.len());
-        for (ring, share) in rings {
-            let normal = if kinks.is_empty() { level } else { 0.0 };
-            kinks.push(Source { t: ring.outer.radius / radius, normal, tangential: level * (share - outer) });
-            outer = share;
-        }
-        Loads::Parabola(kinks, mesh)
+        let mut outer = None;
+        let kink = |(ring, share): (Ring, f64)| {
+            let (normal, change) = if let Some(outer) = outer { (0.0, share - outer) } else { (level, share) };
+            outer = Some(share);
+            Source { t: ring.outer.radius / radius, normal, tangential: level * change }
+        };
+        self.shear_rings().map(kink).collect()
     }
 }
 
@@ -114,6 +101,9 @@ impl Subsurface {
     #[must_use]
     pub fn at(&self, [x, y, z]: [f64; 3]) -> Stress {
         let radius = self.contact.contact_radius();
+        if radius <= 0.0 {
+            return Stress::default();
+        }
         let r = x.hypot(y);
         let surface = z <= SURFACE * radius;
         let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
@@ -126,18 +116,15 @@ impl Subsurface {
                 *sum += source.tangential * value;
             }
         };
-        match &self.loads {
-            Loads::None => return Stress::default(),
-            Loads::Parabola(kinks, _) if place.r.hypot(place.z) < FAR => {
+        match &self.kinks {
+            Some(kinks) if place.r.hypot(place.z) < FAR => {
                 for kink in kinks {
                     add(kink, sphere::up_to(&place, kink.t));
                 }
             }
-            Loads::Parabola(_, mesh) | Loads::Any(mesh) => {
-                mesh.visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
-                    add(source, place.kernels(offset));
-                });
-            }
+            _ => self.mesh().visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
+                add(source, place.kernels(offset));
+            }),
         }
         let (pressed, dragged) = self.units;
         let stress = Stress::of(
@@ -147,6 +134,11 @@ impl Subsurface {
             &tangential.map(|value| dragged * value),
         );
         if surface { self.of_surface(r, stress) } else { stress }
+    }
+
+    fn mesh(&self) -> &Mesh {
+        let rings = || self.contact.shear_rings().collect::<Vec<_>>();
+        self.mesh.get_or_init(|| Mesh::new(self.contact.profile(), &rings(), self.contact.contact_radius()))
     }
 
     /// Estimated error of any component, relative to [`ContactSummary::unit_pressure`](super::ContactSummary::unit_pressure): that

@@ -1,5 +1,9 @@
 //! The body of `POST /fretting` and its reply: fatigue criteria over the stresses of a closed cycle.
 
+mod reply;
+
+pub use reply::{FrettingReply, Instant, Largest, Rating, StressPath};
+
 use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
 use utoipa::ToSchema;
@@ -15,7 +19,6 @@ use crate::limits::{
 };
 use crate::parse::{Document, Rejection};
 use crate::path::{PHASE, Path, Plan};
-use crate::reply::{Accuracy, ContactSummary, Warning};
 use crate::single_key::not_null;
 use crate::subsurface::{BodyName, Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface};
 
@@ -198,106 +201,6 @@ pub struct SurfaceCriterion {
 }
 limits!(SurfaceCriterion { limit: BEARABLE });
 
-/// The criteria over the steady cycle, each with its values at all places.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FrettingReply {
-    /// What follows from the definition at the preload.
-    pub contact: ContactSummary,
-    /// Place along the motion of the first body, m.
-    pub x: Vec<f64>,
-    /// Place across it, m.
-    pub y: Vec<f64>,
-    /// Depth, m.
-    pub z: Vec<f64>,
-    /// Crossland's criterion, Pa.
-    pub crossland: Option<Rating>,
-    /// Dang Van's criterion, Pa.
-    pub dang_van: Option<Rating>,
-    /// Findley's criterion, Pa.
-    pub findley: Option<Rating>,
-    /// Smith, Watson and Topper's criterion, Pa.
-    pub swt: Option<Rating>,
-    /// Fatemi and Socie's criterion, a pure number.
-    pub fatemi_socie: Option<Rating>,
-    /// Ruiz's first parameter, shear stress times slip, N/m.
-    pub ruiz: Option<Rating>,
-    /// Ruiz's second parameter, that times the largest tension along x, N²/m³; comes with the first.
-    pub ruiz_tension: Option<Rating>,
-    /// Friction work per area and cycle, J/m².
-    pub friction_work: Option<Rating>,
-    /// The stresses over the cycle at the places of `stress_paths`.
-    pub stress_paths: Option<Vec<StressPath>>,
-    /// Instants of each move that the values are of.
-    pub instants: usize,
-    /// Change of the largest values from half as many instants, relative to them.
-    pub change: f64,
-    /// Solver, errors and time.
-    pub accuracy: Accuracy,
-    /// Warnings about the result.
-    pub warnings: Vec<Warning>,
-}
-
-/// A criterion at all places.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Rating {
-    /// Its values, place by place; `null` where a stress is infinite.
-    pub values: Vec<Option<f64>>,
-    /// The largest of them.
-    pub largest: Option<Largest>,
-    /// The limit over the largest value, a pure number, if a limit was given: below 1 the criterion foretells a crack.
-    pub margin: Option<f64>,
-}
-
-/// The place where a criterion is largest.
-#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Largest {
-    /// The value.
-    pub value: f64,
-    /// Its place: x, y, z, m.
-    pub point: [f64; 3],
-    /// Unit normal of the critical plane, if the criterion has one.
-    pub plane: Option<[f64; 3]>,
-    /// The critical instant, if the criterion has one.
-    pub at: Option<Instant>,
-}
-
-/// An instant of the cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Instant {
-    /// Index of the move.
-    #[serde(rename = "move")]
-    pub step: usize,
-    /// The part of the move that has been made, above 0 and up to 1.
-    pub part: f64,
-}
-
-/// The stresses at one place over the cycle, in columns, Pa, tension positive.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StressPath {
-    /// Index of the place.
-    pub place: usize,
-    /// Index of the move.
-    #[serde(rename = "move")]
-    pub step: Vec<usize>,
-    /// The part of the move that has been made.
-    pub part: Vec<f64>,
-    /// Normal stress along x.
-    pub xx: Vec<Option<f64>>,
-    /// Normal stress along y.
-    pub yy: Vec<Option<f64>>,
-    /// Normal stress along z.
-    pub zz: Vec<Option<f64>>,
-    /// Shear stress in the plane of x and y.
-    pub xy: Vec<Option<f64>>,
-    /// Shear stress in the plane of y and z.
-    pub yz: Vec<Option<f64>>,
-    /// Shear stress in the plane of x and z.
-    pub xz: Vec<Option<f64>>,
-}
-
 /// A checked request.
 #[derive(Clone, Debug)]
 pub struct FrettingTask {
@@ -328,24 +231,6 @@ impl FrettingTask {
         let surface = [self.ruiz.is_some(), self.friction_work.is_some()];
         let asked = self.criteria.iter().map(Option::is_some).chain(surface);
         asked.filter(|asked| *asked).count() == 1 && matches!(self.places, Places::Grid(_))
-    }
-}
-
-impl FrettingReply {
-    /// The criteria that there are, with names and units.
-    pub fn ratings(&self) -> impl Iterator<Item = (&'static str, &'static str, &Rating)> {
-        [
-            ("crossland", "Pa", &self.crossland),
-            ("dang_van", "Pa", &self.dang_van),
-            ("findley", "Pa", &self.findley),
-            ("swt", "Pa", &self.swt),
-            ("fatemi_socie", "1", &self.fatemi_socie),
-            ("ruiz", "N/m", &self.ruiz),
-            ("ruiz_tension", "N²/m³", &self.ruiz_tension),
-            ("friction_work", "J/m²", &self.friction_work),
-        ]
-        .into_iter()
-        .filter_map(|(name, unit, rating)| Some((name, unit, rating.as_ref()?)))
     }
 }
 
