@@ -172,6 +172,29 @@ fn depths(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// How the tensor grows with the pieces of the history and with the places.
+fn growth_in_depth(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("tensors under a sphere");
+    group.sample_size(10);
+    for (reversals, places) in [(2, 10_000), (20, 10_000), (200, 10_000), (2_000, 1_000), (20, 1_000), (20, 100_000)] {
+        let mut contact = virgin();
+        let full = contact.gross_slip_displacement();
+        for target in falling_amplitude(reversals, full) {
+            contact.apply(&to(target)).expect("a displacement has no limit");
+        }
+        let a = contact.contact_radius();
+        let share = |index: usize| (index % places) as f64 / places as f64;
+        group.bench_function(format!("{reversals} reversals, {places} places"), |bencher| {
+            bencher.iter(|| {
+                let field = contact.subsurface(Side::Second, 0.3).expect("a Poisson's ratio");
+                let at = |index: usize| [1.5 * a * share(index * 37), 0.3 * a, 1.5 * a * share(index * 101)];
+                (0..places).map(|index| field.at(at(index)).xx).sum::<f64>()
+            });
+        });
+    }
+    group.finish();
+}
+
 fn scenes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("20 reversals and 200 radii");
     group.sample_size(20);
@@ -212,5 +235,5 @@ fn stresses(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, moves, profiles, cycles, depths, scenes, stresses);
+criterion_group!(benches, moves, profiles, cycles, depths, growth_in_depth, scenes, stresses);
 criterion_main!(benches);

@@ -19,6 +19,7 @@ use super::profile::{Profile, Ring};
 use super::{Error, range};
 use kernel::{Normal, Place, Tangential};
 use mesh::{Mesh, Source};
+use sphere::Kinks;
 pub use tensor::Stress;
 
 /// Distance from the centre of the contact, in contact radii, from which the closed form of the parabola would lose digits.
@@ -44,7 +45,7 @@ pub enum Side {
 pub struct Subsurface {
     contact: Contact,
     /// The changes of the slopes of pressure and shear stress at the kinks of the slip history, under a parabola alone.
-    kinks: Option<Vec<Source>>,
+    kinks: Option<Kinks>,
     /// The slopes over the radius, made when the first place needs them.
     mesh: OnceLock<Mesh>,
     poisson: f64,
@@ -82,7 +83,7 @@ impl Contact {
     }
 
     /// The changes of the slopes at the kinks, from the edge inward, for g = t^2 over the contact radius.
-    fn kinks(&self) -> Vec<Source> {
+    fn kinks(&self) -> Kinks {
         let radius = self.contact_radius();
         // y = (t a)^2/R.
         let level = self.profile.level(radius);
@@ -92,7 +93,7 @@ impl Contact {
             outer = Some(share);
             Source { t: ring.outer.radius / radius, normal, tangential: level * change }
         };
-        self.shear_rings().map(kink).collect()
+        Kinks::new(&self.shear_rings().map(kink).collect::<Vec<_>>())
     }
 }
 
@@ -106,26 +107,11 @@ impl Subsurface {
         }
         let r = x.hypot(y);
         let surface = z <= SURFACE * radius;
-        let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
         let place = Place { r: r / radius, z: if surface { 0.0 } else { z / radius }, poisson: self.poisson };
-        let mut add = |source: &Source, (p, q): (Normal, Tangential)| {
-            for (sum, value) in normal.iter_mut().zip(p) {
-                *sum += source.normal * value;
-            }
-            for (sum, value) in tangential.iter_mut().zip(q) {
-                *sum += source.tangential * value;
-            }
+        let (normal, tangential) = match &self.kinks {
+            Some(kinks) if place.r.hypot(place.z) < FAR => kinks.functions(&place),
+            _ => self.integrated(&place),
         };
-        match &self.kinks {
-            Some(kinks) if place.r.hypot(place.z) < FAR => {
-                for kink in kinks {
-                    add(kink, sphere::up_to(&place, kink.t));
-                }
-            }
-            _ => self.mesh().visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
-                add(source, place.kernels(offset));
-            }),
-        }
         let (pressed, dragged) = self.units;
         let stress = Stress::of(
             x / radius,
@@ -134,6 +120,22 @@ impl Subsurface {
             &tangential.map(|value| dragged * value),
         );
         if surface { self.of_surface(r, stress) } else { stress }
+    }
+
+    /// The ten functions by quadrature over the radius.
+    fn integrated(&self, place: &Place) -> (Normal, Tangential) {
+        let (mut normal, mut tangential) = ([0.0; 4], [0.0; 6]);
+        let radius = self.contact.contact_radius();
+        self.mesh().visit(self.contact.profile(), radius, (place.r, place.z), |offset, source| {
+            let (p, q) = place.kernels(offset);
+            for (sum, value) in normal.iter_mut().zip(p) {
+                *sum += source.normal * value;
+            }
+            for (sum, value) in tangential.iter_mut().zip(q) {
+                *sum += source.tangential * value;
+            }
+        });
+        (normal, tangential)
     }
 
     fn mesh(&self) -> &Mesh {

@@ -5,6 +5,7 @@ use crate::support::reference::{found, scenes};
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sphere, Sum, Tabulated, TruncatedSphere,
 };
+use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Tangential};
 
 /// The largest true error over its estimate.
@@ -219,6 +220,7 @@ fn estimates_of_what_tables_leave_open_are_honest() {
     let mut random = Random(5);
     let mut forces = Honesty::new("force of a table");
     let mut stresses = Honesty::new("shear stress of a table");
+    let mut below = Honesty::new("stress under a table");
     for index in 0..500 {
         let body = smooth_body(&mut random);
         let table = measured(&mut random, |r| height(&body, r));
@@ -257,8 +259,19 @@ fn estimates_of_what_tables_leave_open_are_honest() {
             let error = (value - value.clamp(low, high)).abs() / unit;
             stresses.compare(&format!("{name} at {radius:.3}"), error, estimate.stress_error);
         }
+        let poisson = random.within(0.0, 0.5);
+        let fields = [&found, &exact].map(|contact| contact.subsurface(Side::First, poisson).unwrap());
+        for _ in 0..4 {
+            let across = |random: &mut Random| figures.contact_radius * random.within(-1.5, 1.5);
+            let depth = figures.contact_radius * 10_f64.powf(random.within(-2.0, 0.5));
+            let place = [across(&mut random), across(&mut random), depth];
+            let [ours, truth] = fields.each_ref().map(|field| field.at(place).components());
+            let error = ours.iter().zip(truth).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+            below.compare(&format!("{name} at {place:?}"), error / figures.unit_pressure(), fields[0].error());
+        }
     }
     assert!(forces.compared > 400, "only {} tables were followed", forces.compared);
     forces.close();
     stresses.close();
+    below.close();
 }
