@@ -35,9 +35,11 @@ const SEARCH_COST: u64 = 1_000_000;
 /// One steady cycle with its row as JSON.
 const CYCLE_COST: u64 = 2_000;
 /// One kink of the slip history of a sphere in the stress at one place below the surface.
-const KINK_COST: u64 = 100;
+const KINK_COST: u64 = 50;
 /// The stress at one place below the surface of another profile.
 const PLACE_COST: u64 = 20_000;
+/// One instant of a curved move, with the mesh of the many pieces that it leaves.
+const CURVED_INSTANT_COST: u64 = 20_000_000;
 /// Instants of each move that a cycle is assumed to need.
 const ASSUMED_INSTANTS: usize = 64;
 /// One stress in one criterion without planes.
@@ -320,7 +322,9 @@ pub fn of_fretting(profile: &Profile, task: &FrettingTask) -> Nanoseconds {
     };
     let planes = task.criteria[2..].iter().flatten().count() as u64;
     let each = states.saturating_mul(stress + CRITERION_COST + planes * PLANES_COST);
-    (task.places.count() as u64).saturating_mul(each).saturating_add(states * MOVE_COST)
+    let curved = (task.plan.curved() * ASSUMED_INSTANTS) as u64;
+    let followed = (states * MOVE_COST).saturating_add(curved.saturating_mul(CURVED_INSTANT_COST));
+    (task.places.count() as u64).saturating_mul(each).saturating_add(followed)
 }
 
 /// Bytes that they take, with their reply: a part of the stresses at once.

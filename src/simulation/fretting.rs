@@ -68,7 +68,9 @@ pub fn fretting(setup: Setup, task: &FrettingTask, stop: &Stop) -> Result<Fretti
                 let Value { value, plane, instant } = found[*place];
                 Largest { value, point: places[*place], plane, at: instant.map(|index| instant_of(index, instants)) }
             });
-            let margin = limit.zip(largest.as_ref()).and_then(|(limit, largest)| finite(limit / largest.value));
+            // A criterion that nowhere rises above zero has no distance to its limit.
+            let rated = largest.as_ref().map(|largest| largest.value).filter(|value| *value > 0.0);
+            let margin = limit.zip(rated).and_then(|(limit, value)| finite(limit / value));
             Rating { values: found.iter().map(|value| finite(value.value)).collect(), largest, margin }
         })
     };

@@ -68,6 +68,35 @@ async fn the_friction_work_of_the_surface_is_that_of_the_steady_cycle() {
 }
 
 #[tokio::test]
+async fn the_friction_work_of_a_cycle_that_lifts_off_adds_up_to_what_a_lap_dissipates() {
+    let server = Server::start().await;
+    let lap = [
+        json!({"displacement": 1e-7}),
+        json!({"indentation": -1e-8}),
+        json!({"displacement": 0.0}),
+        json!({"indentation": 4e-7}),
+    ];
+    // Rings of equal area; the contact is never larger than at the preload.
+    let (rings, reach) = (400_u32, 7e-5_f64);
+    let area = std::f64::consts::PI * reach * reach / f64::from(rings);
+    let radius = |ring: u32| reach * ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
+    let points: Vec<_> = (0..rings).map(|ring| json!([0.6 * radius(ring), 0.8 * radius(ring), 0.0])).collect();
+    let asked = json!({
+        "path": {"moves": lap}, "body": "first", "points": points, "criteria": {"friction_work": {}}, "tolerance": 1e-3
+    });
+    let reply = good(server.post("/fretting", &of(&ball(), &asked)).await).await;
+    let values = reply["friction_work"]["values"].as_array().unwrap();
+    let work: f64 = values.iter().map(|value| area * number(value)).sum();
+    let twice = [lap.clone(), lap].concat();
+    let laps = json!({"path": {"moves": twice}});
+    let path = good(server.post("/simulate", &of(&ball(), &laps)).await).await;
+    let done = |step: usize| number(&path["steps"][step]["dissipated_energy"]);
+    assert_eq!(path["steps"][5]["regime"], "separated");
+    let expected = done(7) - done(3);
+    assert!((work / expected - 1.0).abs() < 5e-3, "{work:e} {expected:e}");
+}
+
+#[tokio::test]
 async fn a_bulk_stress_far_away_is_all_that_there_is() {
     let server = Server::start().await;
     let asked = json!({

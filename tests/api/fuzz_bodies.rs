@@ -1,4 +1,4 @@
-//! Random bodies of `POST /simulate` and `POST /cycle`: each is answered with a reply that obeys the laws, or refused with the place of the
+//! Random bodies of `POST /simulate`, `POST /cycle` and `POST /fretting`: each is answered with a reply that obeys the laws, or refused with the place of the
 //! fault. None panics.
 //!
 //! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` sets
@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 
 use crate::cycle_laws;
 use crate::cycle_requests::RandomCycle;
+use crate::depth_requests::RandomFretting;
+use crate::fretting_laws;
 use crate::harness::{Outcome, examine};
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -133,4 +135,10 @@ fn sound_requests() {
 fn cycles() {
     let write = |request: &RandomCycle| request.to_json().to_string().into_bytes();
     fuzz(1_000, crate::cycle_requests::random_cycle(), write, cycle_laws::examine);
+}
+
+#[test]
+fn fretting() {
+    let write = |request: &RandomFretting| request.to_json().to_string().into_bytes();
+    fuzz(800, crate::depth_requests::random_fretting(), write, fretting_laws::examine);
 }

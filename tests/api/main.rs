@@ -8,6 +8,10 @@ mod cycle_laws;
 mod cycle_requests;
 #[path = "../harness/damage.rs"]
 mod damage;
+#[path = "../harness/depth_requests.rs"]
+mod depth_requests;
+#[path = "../harness/fretting_laws.rs"]
+mod fretting_laws;
 #[path = "../harness/mod.rs"]
 mod harness;
 #[path = "../harness/requests.rs"]

@@ -5,6 +5,7 @@ use stickslip::simulation::Failure;
 use stickslip_wire::simulate::Simulation;
 use stickslip_wire::{
     Document as _, Move, Path, Plan, Profile, Regime, SimulateReply, SimulateRequest, SolverKind, State, Steps,
+    Subsurface,
 };
 
 use super::{Refusal, balance, run};
@@ -109,6 +110,9 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
                 spiked(edge) || untouched(reply) || unpressed || simulation.setup.friction <= 0.0
             }
             ["stress", "slip", index] => radius(reply, index) > edge || untouched(reply),
+            ["subsurface", _, index] => {
+                spiked(edge) && below(reply).z[index.parse::<usize>().expect("an index")] <= 0.0
+            }
             ["stress", "pressure" | "shear", index] => spike(radius(reply, index), edge),
             _ => false,
         };
@@ -117,6 +121,10 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
     for warning in &reply.warnings {
         assert!(!warning.message.contains("NaN") && !warning.message.contains("inf "), "{warning:?}");
     }
+}
+
+fn below(reply: &SimulateReply) -> &Subsurface {
+    reply.subsurface.as_ref().expect("there are stresses below the surface")
 }
 
 fn radius(reply: &SimulateReply, index: &str) -> f64 {
@@ -308,6 +316,7 @@ fn mirror(request: &SimulateRequest, reply: &SimulateReply) {
         let expected = State { displacement: -state.displacement, force: -state.force, ..*state };
         assert_eq!(*image, expected, "the mirror image of step {index}");
     }
+    mirror_below(reply, &image);
     let (Some(stress), Some(image)) = (&reply.stress, &image.stress) else { return };
     let negative = |field: &Option<Vec<Option<f64>>>| -> Option<Vec<Option<f64>>> {
         field.as_ref().map(|values| values.iter().map(|value| value.map(|value| -value)).collect())
@@ -316,6 +325,25 @@ fn mirror(request: &SimulateRequest, reply: &SimulateReply) {
     assert_eq!(image.shear, negative(&stress.shear), "the mirror image of the shear stress");
     assert_eq!(image.slip, negative(&stress.slip), "the mirror image of the slip");
     assert_eq!(image.displacement, negative(&stress.displacement), "the mirror image of the displacement");
+}
+
+/// Where x is zero, the mirror image turns the signs of the shear stresses along x alone.
+fn mirror_below(reply: &SimulateReply, image: &SimulateReply) {
+    let (Some(stress), Some(image)) = (&reply.subsurface, &image.subsurface) else { return };
+    let columns = |stress: &Subsurface| {
+        let columns = [&stress.xx, &stress.yy, &stress.zz, &stress.xy, &stress.yz, &stress.xz];
+        columns.map(|column| column.clone().expect("the tensor is what is asked for"))
+    };
+    let (ours, theirs) = (columns(stress), columns(image));
+    for (index, x) in stress.x.iter().enumerate() {
+        assert!(ours.iter().all(|column| column.len() == stress.x.len()));
+        if *x == 0.0 {
+            for (component, sign) in [1.0, 1.0, 1.0, -1.0, 1.0, -1.0].into_iter().enumerate() {
+                let expected = ours[component][index].map(|value| sign * value);
+                assert_eq!(theirs[component][index], expected, "the mirror image of component {component} at {index}");
+            }
+        }
+    }
 }
 
 /// Repeating the last move changes nothing.

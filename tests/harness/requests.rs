@@ -8,6 +8,8 @@ use stickslip::simulation::simulate;
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::{SimulateRequest, read};
 
+use super::depth_requests::{RandomDepth, depth};
+
 /// A number of a path.
 #[derive(Clone, Copy, Debug)]
 pub enum Target {
@@ -64,6 +66,7 @@ pub struct RandomRequest {
     /// Radii in units of the contact radius, or a number of points.
     radii: Option<Result<Vec<f64>, usize>>,
     fields: Option<Vec<&'static str>>,
+    subsurface: Option<RandomDepth>,
     residual: bool,
     last: bool,
     solver: Option<Value>,
@@ -231,6 +234,18 @@ fn cycles() -> impl Strategy<Value = RandomCycles> {
     )
 }
 
+/// A path that mostly ends where it began, at least when it is repeated.
+pub fn closed_path() -> impl Strategy<Value = RandomPath> {
+    let absolute = step().prop_map(|step| RandomMove { relative: false, ..step });
+    prop_oneof![
+        4 => prop::collection::vec(target(), 1..5).prop_map(RandomPath::Displacement),
+        3 => cycles().prop_map(RandomPath::Cycles),
+        3 => prop::collection::vec(absolute, 2..5).prop_map(RandomPath::Moves),
+        1 => prop::collection::vec(target(), 1..5).prop_map(RandomPath::Force),
+        1 => path(),
+    ]
+}
+
 fn path() -> impl Strategy<Value = RandomPath> {
     prop_oneof![
         6 => prop::collection::vec(step(), 1..7).prop_map(RandomPath::Moves),
@@ -265,13 +280,15 @@ pub fn random_request() -> impl Strategy<Value = RandomRequest> {
         11 => (-7.0..-2.0_f64).prop_map(|power| Some(10_f64.powf(power))),
         1 => Just(Some(1e-11)),
     ];
-    let asked = (radii, fields, prop::bool::weighted(0.3), any::<bool>());
+    let below = prop::option::weighted(0.2, depth(false));
+    let asked = (radii, fields, below, prop::bool::weighted(0.3), any::<bool>());
     (contact(), path(), asked, solver, tolerance).prop_map(
-        |(contact, path, (radii, fields, residual, last), solver, tolerance)| RandomRequest {
+        |(contact, path, (radii, fields, subsurface, residual, last), solver, tolerance)| RandomRequest {
             contact,
             path,
             radii,
             fields,
+            subsurface,
             residual,
             last,
             solver,
@@ -294,88 +311,93 @@ pub fn units(contact: &Value) -> [f64; 5] {
     units.map(|unit| if unit > 0.0 { unit } else { 1e-6 })
 }
 
+/// A path in SI units, as its JSON document, for a contact of these [`units`].
+pub fn path_to_json(path: &RandomPath, [displacement, force, indentation, normal_force, radius]: [f64; 5]) -> Value {
+    let mut past: Vec<f64> = Vec::new();
+    let mut number = |target: Target, unit: f64| {
+        let ago = |count: usize, past: &[f64]| past.len().checked_sub(count).map_or(unit, |index| past[index]);
+        let value = match target {
+            Target::Scaled(units) => units * unit,
+            Target::Absolute(value) => value,
+            Target::Repeated(count) => ago(count, &past),
+            Target::Negated(count) => -ago(count, &past),
+            Target::Near(count, off) => {
+                let value = ago(count, &past);
+                (0..off.abs()).fold(value, |value, _| if off > 0 { value.next_up() } else { value.next_down() })
+            }
+        };
+        let value = if value.is_finite() { value } else { 0.0 };
+        past.push(value);
+        value
+    };
+    match path {
+        RandomPath::Displacement(targets) => {
+            json!({"displacement": targets.iter().map(|target| number(*target, displacement)).collect::<Vec<_>>()})
+        }
+        RandomPath::Force(targets) => {
+            json!({"force": targets.iter().map(|target| number(*target, force)).collect::<Vec<_>>()})
+        }
+        RandomPath::FallingAmplitude(count, size) => {
+            let mut fall = json!({"reversals": count});
+            if let Some(size) = size {
+                fall["amplitude"] = json!(number(*size, displacement));
+            }
+            json!({"falling_amplitude": fall})
+        }
+        RandomPath::EqualPeaks(count, cutoff) => {
+            let mut equal = json!({"reversals": count});
+            if let Some(part) = cutoff {
+                equal["cutoff_radius"] = json!(part * radius);
+            }
+            json!({"equal_peaks": equal})
+        }
+        RandomPath::Cycles(RandomCycles { amplitude: (is_force, size), mean, count, points, down, load }) => {
+            let (name, unit) = if *is_force { ("force", force) } else { ("displacement", displacement) };
+            let mut cycles = json!({name: number(*size, unit), "count": count});
+            if let Some(mean) = mean {
+                cycles["mean"] = json!(number(*mean, unit));
+            }
+            if let Some(points) = points {
+                cycles["points_per_cycle"] = json!(points);
+            }
+            if *down {
+                cycles["start"] = json!("down");
+            }
+            if let Some((is_force, size, phase)) = load {
+                let (name, unit) =
+                    if *is_force { ("normal_force", normal_force) } else { ("indentation", indentation) };
+                cycles["normal"] = json!({name: number(*size, unit), "phase": phase});
+            }
+            json!({"cycles": cycles})
+        }
+        RandomPath::Moves(steps) => {
+            let moves = steps.iter().map(|step| {
+                let mut written = Map::new();
+                let pairs = [
+                    (step.tangential, ["displacement", "force"], [displacement, force]),
+                    (step.normal, ["indentation", "normal_force"], [indentation, normal_force]),
+                ];
+                for (target, names, units) in pairs {
+                    if let Some((is_force, target)) = target {
+                        let index = usize::from(is_force);
+                        written.insert(names[index].to_owned(), json!(number(target, units[index])));
+                    }
+                }
+                if step.relative {
+                    written.insert("relative".to_owned(), json!(true));
+                }
+                Value::Object(written)
+            });
+            json!({"moves": moves.collect::<Vec<_>>()})
+        }
+    }
+}
+
 impl RandomRequest {
     /// The request in SI units, as its JSON body.
     pub fn to_json(&self) -> Value {
-        let [displacement, force, indentation, normal_force, radius] = units(&self.contact);
-        let mut past: Vec<f64> = Vec::new();
-        let mut number = |target: Target, unit: f64| {
-            let ago = |count: usize, past: &[f64]| past.len().checked_sub(count).map_or(unit, |index| past[index]);
-            let value = match target {
-                Target::Scaled(units) => units * unit,
-                Target::Absolute(value) => value,
-                Target::Repeated(count) => ago(count, &past),
-                Target::Negated(count) => -ago(count, &past),
-                Target::Near(count, off) => {
-                    let value = ago(count, &past);
-                    (0..off.abs()).fold(value, |value, _| if off > 0 { value.next_up() } else { value.next_down() })
-                }
-            };
-            let value = if value.is_finite() { value } else { 0.0 };
-            past.push(value);
-            value
-        };
-        let path = match &self.path {
-            RandomPath::Displacement(targets) => {
-                json!({"displacement": targets.iter().map(|target| number(*target, displacement)).collect::<Vec<_>>()})
-            }
-            RandomPath::Force(targets) => {
-                json!({"force": targets.iter().map(|target| number(*target, force)).collect::<Vec<_>>()})
-            }
-            RandomPath::FallingAmplitude(count, size) => {
-                let mut fall = json!({"reversals": count});
-                if let Some(size) = size {
-                    fall["amplitude"] = json!(number(*size, displacement));
-                }
-                json!({"falling_amplitude": fall})
-            }
-            RandomPath::EqualPeaks(count, cutoff) => {
-                let mut equal = json!({"reversals": count});
-                if let Some(part) = cutoff {
-                    equal["cutoff_radius"] = json!(part * radius);
-                }
-                json!({"equal_peaks": equal})
-            }
-            RandomPath::Cycles(RandomCycles { amplitude: (is_force, size), mean, count, points, down, load }) => {
-                let (name, unit) = if *is_force { ("force", force) } else { ("displacement", displacement) };
-                let mut cycles = json!({name: number(*size, unit), "count": count});
-                if let Some(mean) = mean {
-                    cycles["mean"] = json!(number(*mean, unit));
-                }
-                if let Some(points) = points {
-                    cycles["points_per_cycle"] = json!(points);
-                }
-                if *down {
-                    cycles["start"] = json!("down");
-                }
-                if let Some((is_force, size, phase)) = load {
-                    let (name, unit) =
-                        if *is_force { ("normal_force", normal_force) } else { ("indentation", indentation) };
-                    cycles["normal"] = json!({name: number(*size, unit), "phase": phase});
-                }
-                json!({"cycles": cycles})
-            }
-            RandomPath::Moves(steps) => {
-                let moves = steps.iter().map(|step| {
-                    let mut written = Map::new();
-                    let pairs = [
-                        (step.tangential, ["displacement", "force"], [displacement, force]),
-                        (step.normal, ["indentation", "normal_force"], [indentation, normal_force]),
-                    ];
-                    for (target, names, units) in pairs {
-                        if let Some((is_force, target)) = target {
-                            let index = usize::from(is_force);
-                            written.insert(names[index].to_owned(), json!(number(target, units[index])));
-                        }
-                    }
-                    if step.relative {
-                        written.insert("relative".to_owned(), json!(true));
-                    }
-                    Value::Object(written)
-                });
-                json!({"moves": moves.collect::<Vec<_>>()})
-            }
-        };
+        let units = units(&self.contact);
+        let (path, radius) = (path_to_json(&self.path, units), units[4]);
         let mut request = json!({"contact": self.contact, "path": path, "residual": self.residual});
         if let Some(radii) = &self.radii {
             request["stress"] = match radii {
@@ -385,6 +407,9 @@ impl RandomRequest {
             if let Some(fields) = &self.fields {
                 request["stress"]["fields"] = json!(fields);
             }
+        }
+        if let Some(depth) = &self.subsurface {
+            request["subsurface"] = depth.to_json(&self.contact, radius);
         }
         if self.last {
             request["steps"] = json!("last");

@@ -13,8 +13,10 @@ use crate::profile::{Profile, Ring, gauss};
 const CHEBYSHEV: usize = 16;
 /// Halvings of a panel at a kink of the profile: what is left of it is too short to matter.
 const DEPTH: usize = 44;
-/// Panels at most; a profile that needs more has its error in its g.
-const PANELS: usize = 50_000;
+/// Panels that halving may add at most: where the rule still misses the rise, what it misses is the rounding of g.
+const SPARE: usize = 1_024;
+/// A larger relative error of the stresses leaves no digit to resolve.
+const WORTHLESS: f64 = 1.0;
 
 /// Slopes at one radius: over the contact radius, that of the pressure in m, that of the shear in m of w.
 #[derive(Clone, Copy, Debug)]
@@ -60,9 +62,10 @@ fn distance(low: f64, high: f64, r: f64, z: f64) -> f64 {
 }
 
 impl Mesh {
-    /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m.
-    pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], radius: f64) -> Mesh {
-        let mut panels = Vec::new();
+    /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m, whose stresses are off by
+    /// this relative error.
+    pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], radius: f64, stress_error: f64) -> Mesh {
+        let mut stretches = Vec::new();
         let mut edge = Source { t: 1.0, normal: 0.0, tangential: 0.0 };
         for (ring, share) in rings {
             let above = profile.edge_depth(ring);
@@ -73,11 +76,17 @@ impl Mesh {
             let mut high = outer;
             for low in knots[first..].iter().rev().copied().chain([inner]) {
                 if low < high {
-                    resolve(profile, radius, (low / radius, high / radius), *share, DEPTH, &mut panels);
+                    stretches.push(((low / radius, high / radius), *share));
                     high = low;
                 }
             }
         }
+        let slack = if stress_error > WORTHLESS { f64::INFINITY } else { 0.0 };
+        let mut resolution = Resolution { profile, radius, slack, most: stretches.len() + SPARE, panels: Vec::new() };
+        for (ends, share) in stretches {
+            resolution.resolve(ends, share, DEPTH);
+        }
+        let mut panels = resolution.panels;
         panels.reverse();
         Mesh { root: gather(panels), edge: Some(edge).filter(|edge| edge.normal > 0.0) }
     }
@@ -99,32 +108,48 @@ impl Mesh {
     }
 }
 
-/// Appends the panels of a stretch, from the outer end inward.
-fn resolve(profile: &Profile, radius: f64, (low, high): (f64, f64), share: f64, depth: usize, panels: &mut Vec<Node>) {
-    let top = profile.level(radius * high);
-    let rise = top - profile.level(radius * low);
-    let middle = 0.5 * (low + high);
-    let last = depth == 0 || panels.len() >= PANELS || middle <= low || middle >= high;
-    for rooted in [false, true] {
-        let mut sources = sources(profile, radius, (low, high), rooted, share);
-        let sum: f64 = sources.iter().map(|source| source.normal).sum();
-        // Rounding of the level, and of the radii where g is steep.
-        let steepest = profile.slope(radius * sources[0].t).max(profile.slope(radius * sources[11].t));
-        let noise = 4.0 * f64::EPSILON * (profile.cancellation(radius * high) * top + radius * high * steepest);
-        if last && rise > 0.0 && sum > 0.0 {
-            // Too short for more than the right sum.
-            for source in &mut sources {
-                source.normal *= rise / sum;
-                source.tangential *= rise / sum;
+/// Panels in the making, from the outer end inward.
+struct Resolution<'a> {
+    profile: &'a Profile,
+    /// Of the contact, m.
+    radius: f64,
+    /// What the rule may miss of g beside its rounding, m.
+    slack: f64,
+    /// How many panels there may be.
+    most: usize,
+    panels: Vec<Node>,
+}
+
+impl Resolution<'_> {
+    /// Appends the panels of a stretch.
+    fn resolve(&mut self, (low, high): (f64, f64), share: f64, depth: usize) {
+        let (profile, radius) = (self.profile, self.radius);
+        let top = profile.level(radius * high);
+        let rise = top - profile.level(radius * low);
+        let middle = 0.5 * (low + high);
+        let last = depth == 0 || self.panels.len() >= self.most || middle <= low || middle >= high;
+        for rooted in [false, true] {
+            let mut sources = sources(profile, radius, (low, high), rooted, share);
+            let sum: f64 = sources.iter().map(|source| source.normal).sum();
+            // Rounding of the level, which has no digits left where it underflows, and of the radii where g is steep.
+            let steepest = profile.slope(radius * sources[0].t).max(profile.slope(radius * sources[11].t));
+            let rounding = f64::EPSILON * (profile.cancellation(radius * high) * top + radius * high * steepest);
+            let noise = 4.0 * rounding + self.slack + f64::MIN_POSITIVE;
+            if last && rise > 0.0 && sum > 0.0 {
+                // Too short for more than the right sum.
+                for source in &mut sources {
+                    source.normal *= rise / sum;
+                    source.tangential *= rise / sum;
+                }
+            }
+            if last || (sum - rise).abs() <= 1e-13 * rise + noise {
+                self.panels.push(Node { low, high, share, rooted, sources, below: None });
+                return;
             }
         }
-        if last || (sum - rise).abs() <= 1e-13 * rise + noise {
-            panels.push(Node { low, high, share, rooted, sources, below: None });
-            return;
-        }
+        self.resolve((middle, high), share, depth - 1);
+        self.resolve((low, middle), share, depth - 1);
     }
-    resolve(profile, radius, (middle, high), share, depth - 1, panels);
-    resolve(profile, radius, (low, middle), share, depth - 1, panels);
 }
 
 fn sources(profile: &Profile, radius: f64, (low, high): (f64, f64), rooted: bool, share: f64) -> Vec<Source> {

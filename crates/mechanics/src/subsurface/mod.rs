@@ -139,8 +139,11 @@ impl Subsurface {
     }
 
     fn mesh(&self) -> &Mesh {
-        let rings = || self.contact.shear_rings().collect::<Vec<_>>();
-        self.mesh.get_or_init(|| Mesh::new(self.contact.profile(), &rings(), self.contact.contact_radius()))
+        let contact = &self.contact;
+        let rings = || contact.shear_rings().collect::<Vec<_>>();
+        self.mesh.get_or_init(|| {
+            Mesh::new(contact.profile(), &rings(), contact.contact_radius(), contact.accuracy().stress_error)
+        })
     }
 
     /// Estimated error of any component, relative to [`ContactSummary::unit_pressure`](super::ContactSummary::unit_pressure): that

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use stickslip_mechanics::fatigue::{
     Ball, Criterion, Cycle, DEFAULT_REFINEMENT, MAX_INSTANTS, Ruiz, Value, enclosing_ball,
 };
+use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{Contact, Elasticity, Error, Move, Preload, Setup, Stress};
@@ -424,6 +425,32 @@ fn the_published_figures_of_a_sphere_moved_to_and_fro() {
         let full = criterion.of(path).value;
         assert!((refined.value.value / full - 1.0).abs() < 2e-4, "{refined:?} {full}");
         assert!(refined.change <= DEFAULT_REFINEMENT && refined.instants < MAX_INSTANTS);
+    }
+}
+
+#[test]
+fn what_a_protocol_takes_away_the_next_cycles_of_service_no_longer_carry() {
+    // Service moves by a fifth of gross slip about the place where the ball was left. Deeper history than that stays.
+    let crossland = |history: &[f64]| {
+        let mut contact = unit();
+        let full = contact.gross_slip_displacement();
+        for share in history {
+            contact.apply(&displace(share * full)).unwrap();
+        }
+        let middle = contact.state().displacement;
+        let moves = [displace(middle + 0.2 * full), displace(middle - 0.2 * full)];
+        let places: Vec<[f64; 3]> = (-60..=60).map(|index| [0.02 * f64::from(index), 0.0, 0.0]).collect();
+        let paths = Cycle::new(&contact, &moves, &|| true).unwrap().stress_paths(16, BODY, &places, &|| true).unwrap();
+        paths.iter().map(|path| Criterion::Crossland { alpha: ALPHA }.of(path).value).fold(0.0, f64::max)
+    };
+    // Pushed to gross slip and back to where it began; or moved back and forth at falling amplitude, 20 reversals.
+    let pushed = crossland(&[1.0, 0.0]);
+    let relieved = crossland(&falling_amplitude(20, 1.0).collect::<Vec<_>>());
+    let virgin = crossland(&[]);
+    println!("Crossland over p_max: virgin {virgin:.4}, pushed {pushed:.4}, relieved {relieved:.4}");
+    // The numbers of docs/fretting.md.
+    for (found, published) in [(virgin, 0.2835), (pushed, 0.3042), (relieved, 0.2836)] {
+        assert!((found - published).abs() < 5e-5, "{found} is not {published}");
     }
 }
 

@@ -1,0 +1,68 @@
+//! What must hold for any body of `POST /fretting`.
+
+use stickslip::admission::{Nanoseconds, Stop};
+use stickslip::simulation::{cost, fretting};
+use stickslip_mechanics::fatigue::MAX_INSTANTS;
+use stickslip_wire::fretting::{FrettingRequest, FrettingTask};
+use stickslip_wire::{Document as _, FrettingReply, parse};
+
+use super::harness::{Outcome, refused};
+
+/// The largest estimated cost of a body that is run.
+const MAX_COST: Nanoseconds = 300_000_000;
+
+/// Parses, checks and answers a body.
+///
+/// # Panics
+/// If a law does not hold.
+pub fn examine(body: &[u8]) -> Outcome {
+    let request = match parse::<FrettingRequest>(body) {
+        Ok(request) => request,
+        Err(rejection) => return refused(body, rejection.into()),
+    };
+    let (_, setup, task) = match request.check() {
+        Ok(checked) => checked,
+        Err(rejection) => return refused(body, rejection.into()),
+    };
+    if cost::of_fretting(&setup.profile, &task) > MAX_COST {
+        return Outcome::TooExpensive;
+    }
+    let spiked = setup.profile.rim_radius().is_some() || !setup.profile.singular_radii().is_empty();
+    match fretting(setup, &task, &Stop::default()) {
+        Ok(reply) => {
+            laws(&task, &reply, spiked);
+            Outcome::Answered
+        }
+        Err(failure) => refused(body, failure.into()),
+    }
+}
+
+fn laws(task: &FrettingTask, reply: &FrettingReply, spiked: bool) {
+    let count = task.places.count();
+    assert!([&reply.x, &reply.y, &reply.z].iter().all(|column| column.len() == count));
+    assert!((1..=MAX_INSTANTS).contains(&reply.instants) && reply.change.is_finite(), "{reply:?}");
+    for (name, _, rating) in reply.ratings() {
+        assert_eq!(rating.values.len(), count, "{name}");
+        for (value, z) in rating.values.iter().zip(&reply.z) {
+            assert!(value.is_some() || (spiked && *z <= 0.0), "{name} is null at the depth {z}: {reply:?}");
+        }
+        let found = rating.values.iter().copied().flatten();
+        let never_negative = !matches!(name, "crossland" | "dang_van" | "findley");
+        assert!(!never_negative || found.clone().all(|value| value >= 0.0), "{name}: {rating:?}");
+        let most = found.reduce(f64::max);
+        assert_eq!(rating.largest.as_ref().map(|largest| largest.value), most, "{name}");
+        if let Some(largest) = &rating.largest {
+            let place = (0..count).find(|index| [reply.x[*index], reply.y[*index], reply.z[*index]] == largest.point);
+            assert_eq!(place.and_then(|index| rating.values[index]), Some(largest.value), "{name}: {largest:?}");
+            let length = largest.plane.map(|normal| normal.iter().map(|part| part * part).sum::<f64>());
+            assert!(length.is_none_or(|length| (length - 1.0).abs() < 1e-12), "{name}: {largest:?}");
+            assert!(largest.at.is_none_or(|at| at.part > 0.0 && at.part <= 1.0), "{name}: {largest:?}");
+        }
+    }
+    for path in reply.stress_paths.iter().flatten() {
+        let columns = [&path.xx, &path.yy, &path.zz, &path.xy, &path.yz, &path.xz];
+        assert!(columns.iter().all(|column| column.len() == path.step.len()), "{path:?}");
+        let outside = |stress: &&Option<f64>| stress.is_none() && !(spiked && reply.z[path.place] <= 0.0);
+        assert_eq!(columns.into_iter().flatten().filter(outside).count(), 0, "{path:?}");
+    }
+}
