@@ -5,6 +5,7 @@
 //! whose gaps lie far below the level are summed as the few that [`FarField`] replaces them by: a sum costs the logarithm of
 //! their number.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
@@ -71,25 +72,36 @@ impl Asperities {
         self.0.gaps.len()
     }
 
-    /// The sums over the asperities below a level of what one gives by sqrt(R) and its gap.
-    fn sum<const N: usize>(&self, level: DoubleDouble, term: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
+    /// How many are touched at a level.
+    fn touched(&self, level: DoubleDouble) -> usize {
+        self.0.gaps.partition_point(|&gap| above(level, gap) > 0.0)
+    }
+
+    /// The sums over some asperities of what one gives by sqrt(R) and its gap, which is smooth in the gap up to `level` alone.
+    fn sum<const N: usize>(
+        &self,
+        some: Range<usize>,
+        level: DoubleDouble,
+        term: impl Fn(f64, f64) -> [f64; N],
+    ) -> [f64; N] {
         let set = &*self.0;
-        let touched = set.gaps.partition_point(|&gap| above(level, gap) > 0.0);
         let add = |sum: &mut [f64; N], one: [f64; N]| sum.iter_mut().zip(one).for_each(|(sum, one)| *sum += one);
         let (mut far, mut near) = ([0.0; N], [0.0; N]);
         let here = level.value();
-        set.clusters.visit(
-            0..touched,
-            (here, here),
-            &mut |gap, root| add(&mut far, term(root, gap)),
-            &mut |index| add(&mut near, term(set.roots[index], set.gaps[index])),
-        );
+        set.clusters.visit(some, (here, here), &mut |gap, root| add(&mut far, term(root, gap)), &mut |index| {
+            add(&mut near, term(set.roots[index], set.gaps[index]))
+        });
         std::array::from_fn(|index| far[index] + near[index])
+    }
+
+    /// The same over all that are touched.
+    fn sum_below<const N: usize>(&self, level: DoubleDouble, term: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
+        self.sum(0..self.touched(level), level, term)
     }
 
     /// X and its slope.
     fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2] {
-        self.sum(level, |root, gap| {
+        self.sum_below(level, |root, gap| {
             let depth = above(level, gap).sqrt();
             [root * depth, 0.5 * root / depth]
         })
@@ -97,7 +109,7 @@ impl Asperities {
 
     /// int_0^y X dy, and X.
     fn load_and_radius(&self, level: DoubleDouble) -> [f64; 2] {
-        self.sum(level, |root, gap| {
+        self.sum_below(level, |root, gap| {
             let depth = above(level, gap);
             let radius = root * depth.sqrt();
             [radius * depth / 1.5, radius]
@@ -131,7 +143,7 @@ fn above(level: DoubleDouble, gap: f64) -> f64 {
 
 impl CurveFamily for Asperities {
     fn radius_at(&self, level: DoubleDouble) -> f64 {
-        self.sum(level, |root, gap| [root * above(level, gap).sqrt()])[0]
+        self.sum_below(level, |root, gap| [root * above(level, gap).sqrt()])[0]
     }
 
     fn rate(&self, level: f64) -> f64 {
@@ -145,7 +157,7 @@ impl CurveFamily for Asperities {
 
     fn moments_of(&self, ring: &Ring) -> Moments {
         let (inner, outer) = (ring.inner.level, ring.outer.level);
-        let [width, first, second] = self.sum(outer, |root, gap| {
+        let moments = |root: f64, gap: f64| {
             // The ring of a parabola x^2 = R (y - h), over sqrt(R): see `sphere.rs`.
             let depth = above(outer, gap);
             let edge = depth.sqrt();
@@ -153,7 +165,11 @@ impl CurveFamily for Asperities {
             let area = root * width * width;
             let lever = (4.0 / 3.0 * edge - width) * edge + width * width / 5.0;
             [root * width, area * (edge - width / 3.0), area * width * lever]
-        });
+        };
+        // Of those touched within the ring, only the outer level is seen.
+        let (before, after) = (self.touched(inner), self.touched(outer));
+        let (old, new) = (self.sum(0..before, inner, moments), self.sum(before..after, outer, moments));
+        let [width, first, second] = std::array::from_fn(|index| old[index] + new[index]);
         Moments { width, first, second }
     }
 

@@ -85,7 +85,8 @@ impl LoadCurve {
         if normal_force[1] <= 0.0 {
             return fault(CurveFault::ForceNotRising, 1);
         }
-        let points: Vec<(f64, f64)> = indentation.iter().zip(normal_force).map(|(&d, &force)| (d, force / unit)).collect();
+        let points: Vec<(f64, f64)> =
+            indentation.iter().zip(normal_force).map(|(&d, &force)| (d, force / unit)).collect();
         let slope = |index: usize| secant(points[index], points[index + 1]);
         let falls = |index: &usize| slope(*index) < slope(index - 1) * (1.0 - ROUND_OFF);
         if let Some(index) = (1..points.len() - 1).find(falls) {
@@ -217,7 +218,13 @@ impl Curve {
             return sums;
         }
         let u = low / high;
-        let kept = if low > 0.0 { u.powf(q) } else if q > 0.0 { 0.0 } else { 1.0 };
+        let kept = if low > 0.0 {
+            u.powf(q)
+        } else if q > 0.0 {
+            0.0
+        } else {
+            1.0
+        };
         let [first, second] = [(1.0 - kept * u) / (q + 1.0), (1.0 - kept * u * u) / (q + 2.0)];
         Moments {
             width: outer * (1.0 - kept),

@@ -5,7 +5,9 @@ use crate::support::{Random, Worst, displace, forall, oblique, power, press, pus
 use proptest::prelude::*;
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LoadCurve, PowerLaw, Ring, Sum};
-use stickslip_mechanics::{Body, Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Tangential};
+use stickslip_mechanics::{
+    Body, Contact, DoubleDouble, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Tangential,
+};
 
 const E_STAR: f64 = 1.13e11;
 
@@ -42,7 +44,11 @@ fn one_asperity_is_a_ball() {
         press(1.5e-6),
         oblique(-1e-7, 3e-7),
         oblique(2e-6, 9e-7),
-        Move { normal: Some(Normal::NormalForce(9.0)), tangential: Some(Tangential::Displacement(-1e-7)), relative: false },
+        Move {
+            normal: Some(Normal::NormalForce(9.0)),
+            tangential: Some(Tangential::Displacement(-1e-7)),
+            relative: false,
+        },
     ];
     for preload in [Preload::NormalForce(10.0), Preload::Indentation(2e-6), Preload::ContactRadius(1.6e-4)] {
         let mut pair =
@@ -53,8 +59,8 @@ fn one_asperity_is_a_ball() {
             let unit = 0.31 * ball.normal_force.max(1.0);
             worst.close(one.force, ball.force, unit);
             worst.close(one.normal_force, ball.normal_force, unit);
-            worst.close(one.dissipated_energy, ball.dissipated_energy, unit * 1e-6);
-            worst.close(one.elastic_energy, ball.elastic_energy, unit * 1e-6);
+            worst.close(one.dissipated_energy, ball.dissipated_energy, unit * 1e-5);
+            worst.close(one.elastic_energy, ball.elastic_energy, unit * 1e-5);
             worst.close(one.contact_radius, ball.contact_radius, 1.6e-4);
             assert_eq!((one.regime, one.memory_depth), (ball.regime, ball.memory_depth));
         }
@@ -102,23 +108,23 @@ fn sums_over_asperities_keep_their_digits() {
         // Beginning at one of the gaps, or anywhere.
         for low in [level, gaps[touched.index(gaps.len())]] {
             let depth = 10_f64.powf(thin);
-            let outer = stickslip_mechanics::DoubleDouble::sum(low, depth);
+            let outer = DoubleDouble::sum(low, depth);
             let between = Ring::between(many.point(low.into()), many.point(outer));
             let found = many.moments(&between);
-            let (mut width, mut first, mut second) = (0.0, 0.0, 0.0);
+            let mut sums = [DoubleDouble::ZERO; 3];
             for &gap in gaps.iter().filter(|&&gap| outer.value() > gap) {
                 let [inner, outer] = [low.into(), outer].map(|level| {
-                    let above = level - stickslip_mechanics::DoubleDouble::from(gap);
+                    let above = level - DoubleDouble::from(gap);
                     ball.point(if above.value() > 0.0 { above } else { 0.0.into() })
                 });
                 let one = ball.moments(&Ring::between(inner, outer));
-                width += one.width;
-                first += one.first;
-                second += one.second;
+                for (sum, part) in sums.iter_mut().zip([one.width, one.first, one.second]) {
+                    *sum = *sum + DoubleDouble::from(part);
+                }
             }
-            worst.relative(found.width, width);
-            worst.relative(found.first, first);
-            worst.relative(found.second, second);
+            for (found, sum) in [found.width, found.first, found.second].into_iter().zip(sums) {
+                worst.relative(found, sum.value());
+            }
         }
     });
 }
@@ -140,13 +146,13 @@ fn loads_and_radii_of_asperities_are_inverted() {
 #[test]
 fn exponential_heights_creep_towards_gross_slip_exponentially() {
     // Counts that grow as exp(h/s): F_N ~ exp(d/s), and F = mu (F_N(d) - F_N(d - U/m)).
-    let (scale, count) = (1e-7, 200_000);
+    let (scale, count) = (1e-7, 1_000_000);
     let gaps: Vec<f64> = (0..count).map(|index| scale * (f64::from(index) + 0.5).ln()).collect();
     let profile = asperities(&[1e-4], &gaps);
     let depth = scale * (f64::from(count) / 0.5).ln();
     let mut rough = contact(profile, depth);
     let (limit, m) = (0.31 * rough.normal_force(), rough.gross_slip_displacement() / depth);
-    let worst = Worst::new("Greenwood and Williamson's limit / (mu F_N)", 2e-4);
+    let worst = Worst::new("Greenwood and Williamson's limit / (mu F_N)", 1e-4);
     for part in [0.1, 0.5, 1.0, 2.0, 4.0] {
         let moved = part * m * scale;
         rough.apply(&displace(moved)).unwrap();
@@ -219,7 +225,12 @@ fn curves_that_are_none_are_refused_with_their_place() {
     assert!(of(&[0.0, 1.0, 1.0], &[0.0, 1.0, 3.0]).contains("does not rise at index 2"));
     assert!(of(&[0.0, 1.0, 2.0], &[0.0, 0.0, 3.0]).contains("force does not rise"));
     assert!(of(&[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0, 3.0, 4.9]).contains("falls before the point at index 3"));
-    let beyond = |d| Contact::new(setup(Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 2e-6], &[0.0, 1.0, 3.0], E_STAR).unwrap()), d));
+    let beyond = |d| {
+        Contact::new(setup(
+            Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 2e-6], &[0.0, 1.0, 3.0], E_STAR).unwrap()),
+            d,
+        ))
+    };
     assert!(beyond(Preload::NormalForce(3.0)).is_ok() && beyond(Preload::Indentation(2e-6)).is_ok());
     assert!(matches!(beyond(Preload::NormalForce(3.001)), Err(Error::BeyondProfile { .. })));
     assert!(matches!(beyond(Preload::Indentation(2.001e-6)), Err(Error::BeyondProfile { .. })));

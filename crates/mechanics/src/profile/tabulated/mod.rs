@@ -311,8 +311,7 @@ impl Shape for Tabulated {
             let mut panel = &self.panels[index];
             while index > 0 && panel.square > square {
                 let whole = high >= panel.high;
-                above +=
-                    if whole { self.tree.leaf(index).1 } else { panel.rise_at(panel.low, high, high - panel.low) };
+                above += if whole { self.tree.leaf(index).1 } else { panel.rise_at(panel.low, high, high - panel.low) };
                 index -= 1;
                 panel = &self.panels[index];
                 high = panel.high;
