@@ -384,6 +384,10 @@ fn summary_of(
         contact_radius: edge.radius,
         normal_force,
         max_pressure: normal::max_pressure(profile, elasticity, edge),
+        semi_axes: match profile {
+            Profile::Ellipsoid(ellipsoid) => Some(ellipsoid.semi_axes(indentation)),
+            _ => None,
+        },
         gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
         gross_slip_force: friction * normal_force,
     }

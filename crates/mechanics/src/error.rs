@@ -53,6 +53,9 @@ pub enum Error {
         /// Its index.
         part: usize,
     },
+    /// A stress of a contact that is known by its load curve alone.
+    #[error("this profile is known by its load curve alone: forces and energies follow from it, stresses do not")]
+    NoStressField,
     /// Reduced moduli where the bodies must be known.
     #[error("the tangential compliance of an ellipse depends on Poisson's ratio of each body: name the two bodies")]
     BodiesNeeded,
@@ -111,8 +114,8 @@ pub enum CurveFault {
     /// The first point is not the first touch.
     #[error("the curve does not begin at an indentation and a force of 0")]
     NotFromZero,
-    /// An indentation is not above the one before it.
-    #[error("the indentation does not rise")]
+    /// An indentation is not clearly above the one before it.
+    #[error("the indentation does not rise by 1e-15 m")]
     IndentationNotRising,
     /// The second point carries nothing.
     #[error("the force does not rise")]

@@ -40,6 +40,8 @@ pub struct ContactSummary {
     pub normal_force: f64,
     /// Largest pressure, Pa; `None` where it is infinite, and of a profile without a stress field.
     pub max_pressure: Option<f64>,
+    /// Semi-axes of the contact along x and y, m, of an ellipsoid.
+    pub semi_axes: Option<[f64; 2]>,
     /// Displacement of gross slip on first loading, u_max = mu (E*/G*) d, m.
     pub gross_slip_displacement: f64,
     /// Tangential force of gross slip, mu F_N, N.

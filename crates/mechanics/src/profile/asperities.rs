@@ -17,6 +17,9 @@ use crate::error::CurveFault;
 /// Asperities in the smallest cluster: fewer are summed one by one sooner than as the twenty points of a cluster.
 const LEAF: usize = 32;
 
+/// Asperities that are summed side by side.
+const LANES: usize = 4;
+
 /// A set of asperities; copies share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asperities(Arc<Set>);
@@ -85,13 +88,15 @@ impl Asperities {
         term: impl Fn(f64, f64) -> [f64; N],
     ) -> [f64; N] {
         let set = &*self.0;
-        let add = |sum: &mut [f64; N], one: [f64; N]| sum.iter_mut().zip(one).for_each(|(sum, one)| *sum += one);
-        let (mut far, mut near) = ([0.0; N], [0.0; N]);
+        let (mut far, mut near) = ([[0.0; LANES]; N], [[0.0; LANES]; N]);
         let here = level.value();
-        set.clusters.visit(some, (here, here), &mut |gap, root| add(&mut far, term(root, gap)), &mut |index| {
-            add(&mut near, term(set.roots[index], set.gaps[index]))
-        });
-        std::array::from_fn(|index| far[index] + near[index])
+        set.clusters.visit_clusters(
+            some,
+            (here, here),
+            &mut |gaps, roots| add(&mut far, gaps, roots, &term),
+            &mut |items| add(&mut near, &set.gaps[items.clone()], &set.roots[items], &term),
+        );
+        std::array::from_fn(|index| far[index].iter().sum::<f64>() + near[index].iter().sum::<f64>())
     }
 
     /// The same over all that are touched.
@@ -135,6 +140,27 @@ impl Asperities {
     }
 }
 
+/// Adds the terms side by side, because roots and divisions take long and one need not wait for another's.
+fn add<const N: usize>(
+    sums: &mut [[f64; LANES]; N],
+    gaps: &[f64],
+    roots: &[f64],
+    term: &impl Fn(f64, f64) -> [f64; N],
+) {
+    let (gaps, roots) = (gaps.chunks(LANES), roots.chunks(LANES));
+    for (gaps, roots) in gaps.zip(roots) {
+        // Lanes left over weigh nothing.
+        let (mut gap, mut root) = ([gaps[0]; LANES], [0.0; LANES]);
+        gap[..gaps.len()].copy_from_slice(gaps);
+        root[..roots.len()].copy_from_slice(roots);
+        for lane in 0..LANES {
+            for (sum, one) in sums.iter_mut().zip(term(root[lane], gap[lane])) {
+                sum[lane] += one;
+            }
+        }
+    }
+}
+
 /// How far a level lies above a gap, m: to round-off of itself, however near.
 fn above(level: DoubleDouble, gap: f64) -> f64 {
     let (whole, rest) = level.parts();
@@ -163,8 +189,8 @@ impl CurveFamily for Asperities {
             let edge = depth.sqrt();
             let width = ring.depth.min(depth) / (edge + above(inner, gap).max(0.0).sqrt());
             let area = root * width * width;
-            let lever = (4.0 / 3.0 * edge - width) * edge + width * width / 5.0;
-            [root * width, area * (edge - width / 3.0), area * width * lever]
+            let lever = (4.0 / 3.0 * edge - width) * edge + 0.2 * width * width;
+            [root * width, area * (edge - 1.0 / 3.0 * width), area * width * lever]
         };
         // Of those touched within the ring, only the outer level is seen.
         let (before, after) = (self.touched(inner), self.touched(outer));

@@ -6,6 +6,8 @@
 //! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about). So do the sums over many asperities
 //! (X a level, Y a gap).
 
+use std::ops::Range;
+
 /// Points that replace a cluster.
 const PROXIES: usize = 20;
 
@@ -140,10 +142,24 @@ impl FarField {
     /// item by item, by `near`.
     pub(super) fn visit(
         &self,
-        items: std::ops::Range<usize>,
+        items: Range<usize>,
         from: (f64, f64),
         far: &mut impl FnMut(f64, f64),
         near: &mut impl FnMut(usize),
+    ) {
+        let mut each = |places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
+            places.iter().zip(weights).for_each(|(&place, &weight)| far(place, weight));
+        };
+        self.visit_clusters(items, from, &mut each, &mut |items| items.for_each(&mut *near));
+    }
+
+    /// The same by whole clusters, places and weights together, and by runs of items.
+    pub(super) fn visit_clusters(
+        &self,
+        items: Range<usize>,
+        from: (f64, f64),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        near: &mut impl FnMut(Range<usize>),
     ) {
         if let Some(root) = self.clusters.len().checked_sub(1) {
             self.descend(root, &items, from, far, near);
@@ -153,10 +169,10 @@ impl FarField {
     fn descend(
         &self,
         index: usize,
-        items: &std::ops::Range<usize>,
+        items: &Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(f64, f64),
-        near: &mut impl FnMut(usize),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        near: &mut impl FnMut(Range<usize>),
     ) {
         let cluster = &self.clusters[index];
         let (first, last) = (cluster.first.max(items.start), cluster.last.min(items.end));
@@ -166,14 +182,13 @@ impl FarField {
         let distance = (cluster.low - from.1).max(from.0 - cluster.high);
         let whole = first == cluster.first && last == cluster.last;
         if whole && distance >= (cluster.high - cluster.low).max(from.1 - from.0) {
-            for (index, &weight) in cluster.weights.iter().enumerate() {
-                far(place(cluster.low, cluster.high, index), weight);
-            }
+            let places = std::array::from_fn(|index| place(cluster.low, cluster.high, index));
+            far(&places, &cluster.weights);
         } else if let Some((low, high)) = cluster.children {
             self.descend(low, items, from, far, near);
             self.descend(high, items, from, far, near);
         } else {
-            (first..last).for_each(near);
+            near(first..last);
         }
     }
 }

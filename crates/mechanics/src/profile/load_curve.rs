@@ -13,10 +13,13 @@ use super::curve_family::CurveFamily;
 use super::gauss::Panel;
 use super::moment_tree::MomentTree;
 use super::{DoubleDouble, Error, InterpolationError, Moments, Ring, range};
+use crate::elasticity::Elasticity;
 use crate::error::CurveFault;
 
 /// A fall of the slope up to this, of itself, is rounding.
 const ROUND_OFF: f64 = 1e-12;
+/// The least step of the indentation, m.
+const LEAST_STEP: f64 = 1e-15;
 /// What a contact at the end of the curve lacks of the radius that no contact reaches.
 const END: f64 = 4.0 * f64::EPSILON;
 /// A share of a level from which on the power law is integrated by a rule, because differences of powers cancel.
@@ -50,22 +53,24 @@ struct Knot {
 }
 
 impl LoadCurve {
-    /// The curve through the points (d, F_N), m and N, of bodies of the reduced modulus `e_star`, Pa. Both begin at zero, the
-    /// indentation rises, and F_N is convex.
+    /// The curve through the points (d, F_N), m and N, of these bodies. Both begin at zero, the indentation rises by 1e-15 m from
+    /// point to point at the least, and F_N is convex.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::CURVE_POINTS`], [`range::PRELOAD_INDENTATION`], [`range::NORMAL_FORCE`] and
-    /// [`range::E_STAR`], [`Error::Curve`] for points that are no such curve.
+    /// [`Error::OutOfRange`] by [`range::CURVE_POINTS`], [`range::PRELOAD_INDENTATION`] and [`range::NORMAL_FORCE`],
+    /// [`Error::Curve`] for points that are no such curve.
     ///
     /// ```
+    /// use stickslip_mechanics::Elasticity;
     /// use stickslip_mechanics::profile::{LoadCurve, Profile};
     ///
     /// // A spring: X does not depend on the indentation, as under a flat punch of 5 um.
-    /// let spring = Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 3e-6], &[0.0, 1.0, 3.0], 1e11)?);
+    /// let bodies = Elasticity::effective(1e11, 8e10)?;
+    /// let spring = Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 3e-6], &[0.0, 1.0, 3.0], &bodies)?);
     /// assert!((spring.radius(2e-6) - 5e-6).abs() < 1e-20);
     /// # Ok::<(), stickslip_mechanics::Error>(())
     /// ```
-    pub fn new(indentation: &[f64], normal_force: &[f64], e_star: f64) -> Result<LoadCurve, Error> {
+    pub fn new(indentation: &[f64], normal_force: &[f64], elasticity: &Elasticity) -> Result<LoadCurve, Error> {
         let fault = |fault, index| Err(Error::Curve { fault, index });
         range::CURVE_POINTS.check(indentation.len() as f64)?;
         if indentation.len() != normal_force.len() {
@@ -74,11 +79,11 @@ impl LoadCurve {
         for (numbers, range) in [(indentation, range::PRELOAD_INDENTATION), (normal_force, range::NORMAL_FORCE)] {
             numbers.iter().try_for_each(|&number| range.check(number).map(drop))?;
         }
-        let unit = 2.0 * range::E_STAR.check(e_star)?;
+        let unit = 2.0 * elasticity.e_star();
         if indentation[0] > 0.0 || normal_force[0] > 0.0 {
             return fault(CurveFault::NotFromZero, 0);
         }
-        if let Some(index) = indentation.windows(2).position(|pair| pair[1] <= pair[0]) {
+        if let Some(index) = indentation.windows(2).position(|pair| pair[1] - pair[0] < LEAST_STEP) {
             return fault(CurveFault::IndentationNotRising, index + 1);
         }
         range::check_normal_force(normal_force[1])?;

@@ -11,8 +11,12 @@ use stickslip_mechanics::{
 
 const E_STAR: f64 = 1.13e11;
 
+fn elasticity() -> Elasticity {
+    Elasticity::effective(E_STAR, 8.9e10).unwrap()
+}
+
 fn setup(profile: Profile, preload: Preload) -> Setup {
-    Setup { profile, elasticity: Elasticity::effective(E_STAR, 8.9e10).unwrap(), friction: 0.31, preload }
+    Setup { profile, elasticity: elasticity(), friction: 0.31, preload }
 }
 
 fn contact(profile: Profile, indentation: f64) -> Contact {
@@ -168,7 +172,7 @@ fn sampled(profile: &Profile, levels: &[f64]) -> LoadCurve {
         2.0 * E_STAR * (ring.inner.radius * ring.depth + profile.moments(&ring).first)
     };
     let forces: Vec<f64> = levels.iter().map(force).collect();
-    LoadCurve::new(levels, &forces, E_STAR).unwrap()
+    LoadCurve::new(levels, &forces, &elasticity()).unwrap()
 }
 
 fn even(count: u32, depth: f64) -> Vec<f64> {
@@ -219,15 +223,15 @@ fn the_stated_error_of_a_curve_covers_a_third_of_the_true_one() {
 
 #[test]
 fn curves_that_are_none_are_refused_with_their_place() {
-    let of = |d: &[f64], force: &[f64]| LoadCurve::new(d, force, E_STAR).unwrap_err().to_string();
+    let of = |d: &[f64], force: &[f64]| LoadCurve::new(d, force, &elasticity()).unwrap_err().to_string();
     assert!(of(&[0.0, 1.0, 2.0], &[0.0, 1.0]).contains("differ in length at index 2"));
     assert!(of(&[0.0, 1.0, 2.0], &[0.1, 1.0, 3.0]).contains("does not begin"));
-    assert!(of(&[0.0, 1.0, 1.0], &[0.0, 1.0, 3.0]).contains("does not rise at index 2"));
+    assert!(of(&[0.0, 1.0, 1.0], &[0.0, 1.0, 3.0]).contains("does not rise by 1e-15 m at index 2"));
     assert!(of(&[0.0, 1.0, 2.0], &[0.0, 0.0, 3.0]).contains("force does not rise"));
     assert!(of(&[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0, 3.0, 4.9]).contains("falls before the point at index 3"));
     let beyond = |d| {
         Contact::new(setup(
-            Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 2e-6], &[0.0, 1.0, 3.0], E_STAR).unwrap()),
+            Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 2e-6], &[0.0, 1.0, 3.0], &elasticity()).unwrap()),
             d,
         ))
     };
@@ -243,7 +247,7 @@ fn curves_that_are_none_are_refused_with_their_place() {
 /// A flat stretch at either end of X, where a radius belongs to many levels.
 #[test]
 fn straight_curves_are_springs_up_to_their_end() {
-    let curve = LoadCurve::new(&[0.0, 1e-6, 2e-6, 3e-6], &[0.0, 1.0, 2.0, 3.0], E_STAR).unwrap();
+    let curve = LoadCurve::new(&[0.0, 1e-6, 2e-6, 3e-6], &[0.0, 1.0, 2.0, 3.0], &elasticity()).unwrap();
     let mut spring = contact(Profile::LoadCurve(curve), 3e-6);
     let worst = Worst::new("a linear load curve, relative", 1e-14);
     worst.relative(spring.normal_force(), 3.0);
