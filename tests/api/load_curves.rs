@@ -64,7 +64,7 @@ async fn they_are_stored_moved_swept_and_cycled() {
         assert!(warned, "{made}");
         let place = format!("/contacts/{}", made["id"].as_str().unwrap());
         let (status, moved) = post(&server.base, &format!("{place}/move"), &json!({"force": 1.5})).await;
-        assert_eq!((status, moved["state"]["force"].as_f64()), (200, Some(1.5)), "{moved}");
+        assert!(status == 200 && (moved["state"]["force"].as_f64().unwrap() - 1.5).abs() < 1e-12, "{moved}");
         let body = json!({"contact": contact(profile.clone()), "drive": {"displacement": 1e-7}, "harmonics": 3});
         let (status, cycled) = post(&server.base, "/cycle", &body).await;
         assert_eq!(status, 200, "{cycled}");
@@ -78,7 +78,7 @@ async fn they_are_stored_moved_swept_and_cycled() {
         assert_eq!(status, 200, "{swept}");
         let definition = reqwest::get(format!("{}{place}/definition", server.base)).await.unwrap();
         assert_eq!(definition.status(), 200);
-        let stress = reqwest::get(format!("{}{place}/stress", server.base)).await.unwrap();
+        let stress = reqwest::get(format!("{}{place}/stress?points=3", server.base)).await.unwrap();
         assert_eq!(refusal((stress.status().as_u16(), stress.json().await.unwrap())).1, "no_stress_field");
         for (path, body) in [
             ("move", json!({"force": 1.0, "stress": {"points": 3}})),
@@ -159,7 +159,7 @@ async fn what_is_no_such_profile_is_refused_at_its_place() {
         (ellipsoid(json!([1.0, 2.0, 3.0])), "/radii"),
         (ellipsoid(json!([1.0, 1e-7])), "/radii"),
         (json!({"type": "ellipsoid", "radii": [1.0, 1.0], "direction": "z"}), "/direction"),
-        (json!({"type": "ellipsoid", "radii": [1.0, 1.0]}), ""),
+        (json!({"type": "ellipsoid", "radii": [1.0, 1.0]}), "/direction"),
     ] {
         let body = json!({"contact": contact(profile), "path": {"displacement": [1e-7]}});
         let found = refusal(post(&server.base, "/simulate", &body).await);
@@ -209,5 +209,5 @@ async fn a_hundred_thousand_asperities_are_taken() {
     let place = format!("/contacts/{}/path", made["id"].as_str().unwrap());
     let path = json!({"path": {"force": [2.0, -2.0, 1.0, 2.999]}, "steps": "last"});
     let (status, moved) = post(&server.base, &place, &path).await;
-    assert_eq!((status, moved["steps"][0]["force"].as_f64()), (200, Some(2.999)), "{moved}");
+    assert!(status == 200 && (moved["steps"][0]["force"].as_f64().unwrap() - 2.999).abs() < 1e-12, "{moved}");
 }
