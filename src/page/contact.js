@@ -57,7 +57,11 @@ export async function showContact(main, id, signal) {
     });
   };
   const loadStress = latestOnly(async () => {
-    const stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal);
+    const stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal).catch((error) => {
+      // A contact that is known by its load curve alone has none to draw.
+      if (error.code === "no_stress_field") return null;
+      throw error;
+    });
     model.stress = stress;
     redraw();
   });

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::simulation::{self, present_warnings};
+use crate::simulation::{self, cost::bytes_of_shape, present_warnings};
 use crate::store::{Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
-use stickslip_wire::{ContactDefinition, ContactSummary, Faults, JsonPath, NewSession, Warning};
+use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, Warning};
 
 use super::cycles::CycleLog;
 use super::snapshot::ReplayCost;
@@ -14,9 +14,6 @@ use super::{SessionError, written};
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache.
 const FIXED: usize = 2 * 1024;
-/// Bytes of a point of a table: its two numbers, and the series that the mechanics makes between it and the next. The
-/// process grows by 800 to 950.
-const TABLE_POINT: usize = 1_280;
 
 /// A session with its state.
 #[derive(Clone)]
@@ -65,7 +62,12 @@ impl LoadedSession {
         let label = self.session.label.as_ref().map_or(0, String::capacity);
         let warnings: usize = self.derived.warnings.iter().map(|warning| warning.message.capacity()).sum();
         let cycles: usize = [&self.cycles, &self.past_cycles].into_iter().flatten().map(|cycles| cycles.bytes()).sum();
-        FIXED + self.contact.memory_bytes() + label + warnings + cycles + definition_bytes(&self.session.definition)
+        FIXED
+            + self.contact.memory_bytes()
+            + label
+            + warnings
+            + cycles
+            + bytes_of_shape(&self.session.definition.profile)
     }
 
     /// The reply that presents a session just made.
@@ -83,15 +85,13 @@ impl LoadedSession {
     }
 }
 
-fn definition_bytes(definition: &ContactDefinition) -> usize {
-    table_points(&definition.profile) * TABLE_POINT
-}
-
-/// Points of all tables of a profile.
+/// Points of all tables of a profile, asperities included.
 pub(super) fn table_points(profile: &Profile) -> usize {
     match profile {
         Profile::Tabulated(TabulatedProfile { r, .. }) => r.len(),
         Profile::Sum(SumProfile { parts }) => parts.iter().map(table_points).sum(),
+        Profile::Asperities(asperities) => asperities.gaps.len(),
+        Profile::LoadCurve(curve) => curve.indentation.len(),
         _ => 0,
     }
 }

@@ -84,8 +84,13 @@ const STATE_BYTES: usize = 768;
 const RECORD_BYTES: usize = 512;
 /// One radius with all fields, likewise.
 const RADIUS_BYTES: usize = 320;
-/// One point of a table.
+/// One point of a table: its two numbers, and the series that the mechanics makes between it and the next. The process grows
+/// by 800 to 950.
 const POINT_BYTES: usize = 1_280;
+/// One asperity: its numbers twice, and its share of the clusters.
+const ASPERITY_BYTES: usize = 128;
+/// One point of a load curve: its numbers, and two pieces of the curve with their moments.
+const CURVE_POINT_BYTES: usize = 512;
 /// One point of a table written as JSON, in a text that grows by doubling.
 pub const WRITTEN_POINT_BYTES: usize = 128;
 /// One spring.
@@ -164,8 +169,8 @@ fn on_profile(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanosec
 /// The cost of a profile relative to a sphere: by closed forms, by quadrature, or by the sum of its parts.
 fn relative_cost(profile: &Profile) -> u64 {
     match profile {
-        Profile::Sphere(_) => 1,
-        Profile::Tabulated(_) | Profile::PowerLaw(_) | Profile::ExactSphere(_) => 30,
+        Profile::Sphere(_) | Profile::Ellipsoid(_) => 1,
+        Profile::Asperities(_) | Profile::Tabulated(_) | Profile::PowerLaw(_) | Profile::ExactSphere(_) => 30,
         Profile::Sum(sum) => sum.parts().iter().map(relative_cost).sum(),
         _ => 5,
     }
@@ -183,12 +188,14 @@ fn bytes_of_moves(plan: &Plan, steps: Steps) -> usize {
     plan.length() * (MOVE_BYTES + shown)
 }
 
-/// Bytes that a shape takes: the series that the mechanics makes of tables.
+/// Bytes that a shape takes: the series that the mechanics makes of tables, the clusters of asperities.
 #[must_use]
 pub fn bytes_of_shape(profile: &wire::Profile) -> usize {
     match profile {
         wire::Profile::Tabulated(table) => table.r.len() * POINT_BYTES,
         wire::Profile::Sum(sum) => sum.parts.iter().map(bytes_of_shape).sum(),
+        wire::Profile::Asperities(asperities) => asperities.gaps.len() * ASPERITY_BYTES,
+        wire::Profile::LoadCurve(curve) => curve.indentation.len() * CURVE_POINT_BYTES,
         _ => 0,
     }
 }

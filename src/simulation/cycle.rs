@@ -8,11 +8,11 @@ use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::reply::finite;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
-use super::Failure;
 use super::cycle_map::map_of;
 use super::cycle_studies::{best_load, resonance};
 use super::run::{Timer, accuracy, contact};
 use super::warnings::{excess_error, warnings_at};
+use super::{Failure, needs_stress_field};
 use crate::admission::Stop;
 
 /// Radii between two checks of the flag: each time the contact is copied and turned.
@@ -41,6 +41,9 @@ pub fn cycle_of(setup: Setup, task: &CycleTask, stop: &Stop) -> Result<(Contact,
 /// # Errors
 /// [`Failure::Refused`] for a force of μ F_N or more, [`Failure`] if the work was ended.
 pub fn cycle(contact: &Contact, task: &CycleTask, timer: Timer, stop: &Stop) -> Result<CycleReply, Failure> {
+    if task.density.is_some() {
+        needs_stress_field(contact, "/work_density")?;
+    }
     let radii = task.density.as_ref().map(|points| points.radii(contact.contact_radius()));
     let mut cycles = Vec::with_capacity(task.drives().len());
     // The largest cycle shows the error of the forces.

@@ -101,7 +101,11 @@ impl Failure {
             Failure::Refused { error, .. } => match error {
                 mechanics::Error::OutOfRange { .. }
                 | mechanics::Error::Table { .. }
+                | mechanics::Error::Curve { .. }
+                | mechanics::Error::NoSurface { .. }
+                | mechanics::Error::BodiesNeeded
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
+                mechanics::Error::NoStressField => Code::NoStressField,
                 mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
@@ -113,6 +117,17 @@ impl Failure {
             Failure::Stopped => Code::Overloaded,
         }
     }
+}
+
+/// Refuses what the member at `pointer` asks for, if it needs a stress and the contact is known by its load curve alone.
+///
+/// # Errors
+/// [`Failure::Refused`] with [`Error::NoStressField`](mechanics::Error::NoStressField).
+pub fn needs_stress_field(contact: &mechanics::Contact, pointer: &str) -> Result<(), Failure> {
+    if contact.profile().has_stress_field() {
+        return Ok(());
+    }
+    Err(Failure::Refused { pointer: pointer.to_owned(), error: mechanics::Error::NoStressField })
 }
 
 /// The quantity that an error is about, if it is about one.

@@ -53,6 +53,7 @@ const FIGURES: ContactSummary = ContactSummary {
     contact_radius: 0.0,
     normal_force: 0.0,
     max_pressure: None,
+    semi_axes: None,
     gross_slip_displacement: 0.0,
     gross_slip_force: 0.0,
 };

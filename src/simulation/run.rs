@@ -12,9 +12,9 @@ use stickslip_wire::{
 };
 
 use super::{
-    Failure, Solver, cost, quantity,
+    Failure, Solver, cost, needs_stress_field, quantity,
     subsurface::subsurface,
-    warnings::{Observed, bulk_warning, excess_error, warnings},
+    warnings::{Observed, assumption, bulk_warning, excess_error, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
@@ -89,7 +89,7 @@ pub(super) fn run<S: Solver>(
     let mut estimate = solver.accuracy();
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
-    let accuracy = Accuracy { subsurface_error, ..accuracy_of::<S>(&estimate, timer, reason) };
+    let accuracy = Accuracy { subsurface_error, ..accuracy_of(&solver, &estimate, timer, reason) };
     let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
@@ -242,8 +242,9 @@ const RADII_PER_CHECK: usize = 64;
 /// The requested stresses.
 ///
 /// # Errors
-/// [`Failure::Stopped`] if the client hung up.
+/// [`Failure::Refused`] without a stress field, [`Failure::Stopped`] if the client hung up.
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
+    needs_stress_field(solver.exact(), "/stress")?;
     let radius = sampling.radii(solver.state().contact_radius);
     let along = |field: &dyn Fn(f64) -> f64| -> Result<Vec<Option<f64>>, Failure> {
         let at = |radius: &f64| stop.check().map(|()| finite(field(*radius))).map_err(Failure::from);
@@ -272,6 +273,7 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
 /// # Errors
 /// [`Failure`] if the slip history is so deep that the search would exceed the time limit, or the client hung up.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
+    needs_stress_field(solver.exact(), "/residual")?;
     let cost = Duration::from_nanos(cost::of_search(solver.depth()));
     let allowed = stop.time_limit().unwrap_or(LONGEST_WORK);
     if cost > allowed {
@@ -285,13 +287,14 @@ pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure>
 
 /// Which solver answered, how well, and how long it took.
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer, reason: &str) -> Accuracy {
-    accuracy_of::<S>(&solver.accuracy(), timer, reason)
+    accuracy_of(solver, &solver.accuracy(), timer, reason)
 }
 
-fn accuracy_of<S: Solver>(estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
+fn accuracy_of<S: Solver>(solver: &S, estimate: &ErrorEstimate, timer: Timer, reason: &str) -> Accuracy {
+    let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
     Accuracy {
         solver: S::KIND,
-        reason: reason.to_owned(),
+        reason: format!("{reason}{}", assumed.unwrap_or_default()),
         force_error: estimate.force_error,
         stress_error: estimate.stress_error,
         subsurface_error: None,

@@ -5,9 +5,9 @@ use stickslip_wire::reply::finite;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{Accuracy, Subsurface, SubsurfaceField, SubsurfaceReply};
 
-use super::Failure;
 use super::run::{Timer, accuracy};
 use super::warnings::{bulk_warning, present_warnings};
+use super::{Failure, needs_stress_field};
 use crate::admission::Stop;
 
 const REASON: &str = "the stress below the surface follows from the slip history without a mesh";
@@ -41,6 +41,7 @@ pub fn subsurface(contact: &Contact, task: &SubsurfaceTask, stop: &Stop) -> Resu
 /// As [`subsurface`].
 pub fn subsurface_reply(contact: &Contact, task: &SubsurfaceTask, stop: &Stop) -> Result<SubsurfaceReply, Failure> {
     let timer = Timer::start();
+    needs_stress_field(contact, "")?;
     let (stress, error) = subsurface(contact, task, stop)?;
     let accuracy = Accuracy { subsurface_error: Some(error), ..accuracy(contact, timer, REASON) };
     let warnings = present_warnings(contact).into_iter().chain(bulk_warning(task.bulk.is_some())).collect();

@@ -71,6 +71,26 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
 }
 
+/// What a contact that is known by its load curve alone takes for granted: the code of its warning, and a sentence.
+pub(super) fn assumption(profile: &Profile) -> Option<(&'static str, &'static str)> {
+    match profile {
+        Profile::Asperities(_) => Some((
+            "interaction_neglected",
+            "the asperities are taken not to interact elastically: each is a contact of its own",
+        )),
+        Profile::LoadCurve(_) => Some((
+            "load_curve_alone",
+            "the tangential compliance is taken to be in proportion to that of the load curve (Ciavarella 1998; Jaeger 1998)",
+        )),
+        Profile::Ellipsoid(_) => Some((
+            "elliptic_slip",
+            "partial slip of the ellipse is taken to follow from its load curve (Ciavarella 1998; Jaeger 1998), which is exact \
+             for a circle",
+        )),
+        _ => None,
+    }
+}
+
 /// The warning for a bulk stress.
 pub(super) fn bulk_warning(added: bool) -> Option<Warning> {
     added.then(|| Warning {
@@ -110,7 +130,8 @@ pub(super) fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Ob
     }
     let curvature = profile.curvature_radius();
     let soft_and_huge = observed.e_star < SOFT && curvature.is_some_and(|curvature| curvature >= HUGE_CURVATURE);
-    if observed.contact_radius > HUGE_CONTACT || soft_and_huge {
+    let huge = observed.contact_radius > HUGE_CONTACT && profile.has_stress_field();
+    if huge || soft_and_huge {
         warn(
             "units",
             format!(
@@ -131,6 +152,9 @@ pub(super) fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Ob
                 observed.indentation
             ),
         );
+    }
+    if let Some((code, message)) = assumption(profile) {
+        warn(code, message.to_owned());
     }
     if let Some(error) = observed.excess_error {
         warn(

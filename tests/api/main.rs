@@ -34,6 +34,7 @@ mod fretting;
 mod fuzz_bodies;
 mod fuzz_http;
 mod limiting_cases;
+mod load_curves;
 mod logs;
 mod metrics;
 mod openapi;

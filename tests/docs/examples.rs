@@ -80,6 +80,21 @@ async fn a_dynamics_code_finds_the_response_of_the_service_from_its_table_of_cyc
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn a_curve_of_another_program_becomes_a_contact_and_a_closed_loop() {
+    let server = Process::start("memory:").await;
+    let mut script = program("python");
+    script.arg(file("examples/python/load_curve.py")).arg(file("examples/python/load_curve.csv")).arg(&server.base);
+    let printed = succeed(&mut script, "");
+    assert!(printed.starts_with("displacement,force\n"), "{printed}");
+    let rows = cells(&printed);
+    assert_eq!(rows.len(), 51 + 2 * 100);
+    let (turned, closed) = (&rows[50], &rows[250]);
+    assert!(turned[1] > 0.2 && turned[1] < 0.3, "between three quarters and all of mu F_N: {turned:?}");
+    assert!((closed[0] - turned[0]).abs() < 1e-20 && (closed[1] / turned[1] - 1.0).abs() < 1e-12, "{closed:?}");
+    assert!((rows[150][1] / turned[1] + 1.0).abs() < 1e-12, "the lower end mirrors the upper: {:?}", rows[150]);
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn the_notebook_runs_from_its_first_cell_to_its_last() {
     let server = Process::start("memory:").await;
     let notebook: Value =

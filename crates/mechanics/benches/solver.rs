@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle};
-use stickslip_mechanics::profile::{Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
+use stickslip_mechanics::profile::{Asperities, Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential};
@@ -235,5 +235,25 @@ fn stresses(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, moves, profiles, cycles, depths, growth_in_depth, scenes, stresses);
+/// Random moves of many asperities: their cost grows with the logarithm of the number. Preparation sorts and clusters them.
+fn asperities(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("asperities");
+    for count in [100, 10_000, 1_000_000] {
+        let gaps: Vec<f64> = positions(count, 2e-6);
+        let set = || Profile::Asperities(Asperities::new(&[1e-4], &gaps).expect("valid asperities"));
+        let rough = Setup { profile: set(), preload: Preload::Indentation(2e-6), ..setup() };
+        let mut contact = Contact::new(rough).expect("a valid contact");
+        let targets = positions(1_000, contact.summary().gross_slip_displacement);
+        group.bench_function(format!("1000 moves of {count}"), |bencher| {
+            bencher.iter(|| {
+                targets.iter().for_each(|&target| contact.apply(&to(target)).expect("a displacement has no limit"));
+                black_box(contact.force())
+            });
+        });
+        group.bench_function(format!("preparation of {count}"), |bencher| bencher.iter(|| black_box(set())));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, moves, profiles, asperities, cycles, depths, growth_in_depth, scenes, stresses);
 criterion_main!(benches);

@@ -13,7 +13,8 @@ pub struct ErrorEstimate {
     pub force_error: f64,
     /// The part of it that comes from moves straight in a force.
     pub path_error: f64,
-    /// Error of the shear stress over mu p_max, or over mu times the mean pressure where the former is infinite.
+    /// Error of the shear stress over mu p_max, or over mu times the mean pressure where the former is infinite; of no meaning
+    /// for a profile without a stress field.
     pub stress_error: f64,
 }
 

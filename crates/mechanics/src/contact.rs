@@ -47,7 +47,8 @@ impl Contact {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
-    /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for.
+    /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an ellipsoid and
+    /// bodies that are unknown.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -58,6 +59,10 @@ impl Contact {
     /// ```
     pub fn new(setup: Setup) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup;
+        let elasticity = match &profile {
+            Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
+            _ => elasticity,
+        };
         range::check_friction(friction)?;
         let indentation = match preload {
             Preload::NormalForce(force) => {
@@ -274,7 +279,7 @@ impl Contact {
         self.path_error
     }
 
-    /// Contact radius a, m.
+    /// Contact radius a, m; of a profile without a stress field X(d) = F_N'/(2 E*), which governs the stiffness.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -379,6 +384,10 @@ fn summary_of(
         contact_radius: edge.radius,
         normal_force,
         max_pressure: normal::max_pressure(profile, elasticity, edge),
+        semi_axes: match profile {
+            Profile::Ellipsoid(ellipsoid) => Some(ellipsoid.semi_axes(indentation)),
+            _ => None,
+        },
         gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
         gross_slip_force: friction * normal_force,
     }

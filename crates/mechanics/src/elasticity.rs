@@ -50,6 +50,8 @@ pub struct Elasticity {
     g_star: f64,
     dundurs_beta: Option<f64>,
     poisson: Option<f64>,
+    /// The elastic bodies, where they are known.
+    bodies: [Option<Body>; 2],
 }
 
 impl Elasticity {
@@ -75,6 +77,7 @@ impl Elasticity {
             g_star: 1.0 / (first.tangential_compliance() + second.tangential_compliance()),
             dundurs_beta: Some(beta),
             poisson: Some(nu1.max(nu2)),
+            bodies: [Some(first), Some(second)],
         }
     }
 
@@ -96,6 +99,7 @@ impl Elasticity {
             g_star: 1.0 / body.tangential_compliance(),
             dundurs_beta: Some(-(1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))),
             poisson: Some(nu),
+            bodies: [Some(body), None],
         }
     }
 
@@ -109,7 +113,30 @@ impl Elasticity {
             g_star: range::G_STAR.check(g_star)?,
             dundurs_beta: None,
             poisson: None,
+            bodies: [None; 2],
         })
+    }
+
+    /// The same bodies over an ellipse of contact: 1/G* = sum (1 - nu_i^2)/E_i [1 + nu_i/(1 - nu_i) s], body by body as for a circle,
+    /// where the share s of [`Ellipsoid`](crate::profile::Ellipsoid::shear_share) is one half (Mindlin 1949; Johnson 1985, 7.2).
+    ///
+    /// # Errors
+    /// [`Error::BodiesNeeded`] where only the reduced moduli are known.
+    ///
+    /// ```
+    /// use stickslip_mechanics::{Body, Elasticity};
+    ///
+    /// let ball = Elasticity::against_rigid(Body::new(2.1e11, 0.3)?);
+    /// assert!((ball.along_ellipse(0.5)?.g_star() / ball.g_star() - 1.0).abs() < 1e-15);
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
+    pub fn along_ellipse(self, shear_share: f64) -> Result<Elasticity, Error> {
+        let compliance = |body: Body| {
+            let nu = body.poisson_ratio;
+            body.normal_compliance() * (1.0 + nu / (1.0 - nu) * shear_share)
+        };
+        let compliance: f64 = self.bodies.into_iter().flatten().map(compliance).sum();
+        if compliance > 0.0 { Ok(Elasticity { g_star: compliance.recip(), ..self }) } else { Err(Error::BodiesNeeded) }
     }
 
     /// Reduced modulus E*, Pa.

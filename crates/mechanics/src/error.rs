@@ -39,6 +39,26 @@ pub enum Error {
         /// The first point at which it is.
         index: usize,
     },
+    /// Numbers that are no load curve, or no set of asperities.
+    #[error("the profile is not usable: {fault} at index {index}")]
+    Curve {
+        /// What is wrong.
+        fault: CurveFault,
+        /// The first number at which it is.
+        index: usize,
+    },
+    /// A part of a sum that is known by its load curve alone: only surfaces add up.
+    #[error("part {part} of the sum is known by its load curve alone: only surfaces can be added up")]
+    NoSurface {
+        /// Its index.
+        part: usize,
+    },
+    /// A stress of a contact that is known by its load curve alone.
+    #[error("this profile is known by its load curve alone: forces and energies follow from it, stresses do not")]
+    NoStressField,
+    /// Reduced moduli where the bodies must be known.
+    #[error("the tangential compliance of an ellipse depends on Poisson's ratio of each body: name the two bodies")]
+    BodiesNeeded,
     /// No quasi-static state carries this tangential force: the contact would slide away.
     #[error(
         "friction holds no more than mu F_N = {} N, which the tangential force would meet {:.3} % of the way to {} N",
@@ -83,6 +103,26 @@ pub enum TableFault {
     /// No height is above the one at the centre.
     #[error("z does not rise anywhere")]
     HeightNeverRises,
+}
+
+/// Why columns of numbers are not a load curve, or not a set of asperities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+pub enum CurveFault {
+    /// The columns differ in length.
+    #[error("the columns differ in length")]
+    LengthsDiffer,
+    /// The first point is not the first touch.
+    #[error("the curve does not begin at an indentation and a force of 0")]
+    NotFromZero,
+    /// An indentation is not clearly above the one before it.
+    #[error("the indentation does not rise by 1e-15 m")]
+    IndentationNotRising,
+    /// The second point carries nothing.
+    #[error("the force does not rise")]
+    ForceNotRising,
+    /// The curve is not convex.
+    #[error("the slope of the force over the indentation falls before the point")]
+    SlopeFalls,
 }
 
 /// A pair of targets that the spring foundation has no rule for.

@@ -96,7 +96,7 @@ pub use contact::Contact;
 pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use double_double::DoubleDouble;
 pub use elasticity::{Body, Elasticity};
-pub use error::{Error, TableFault, UnsupportedMove};
+pub use error::{CurveFault, Error, TableFault, UnsupportedMove};
 pub use normal::{ContactSummary, Preload};
 pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};

@@ -38,8 +38,10 @@ pub struct ContactSummary {
     pub contact_radius: f64,
     /// Normal force F_N, N.
     pub normal_force: f64,
-    /// Largest pressure, Pa; `None` where it is infinite.
+    /// Largest pressure, Pa; `None` where it is infinite, and of a profile without a stress field.
     pub max_pressure: Option<f64>,
+    /// Semi-axes of the contact along x and y, m, of an ellipsoid.
+    pub semi_axes: Option<[f64; 2]>,
     /// Displacement of gross slip on first loading, u_max = mu (E*/G*) d, m.
     pub gross_slip_displacement: f64,
     /// Tangential force of gross slip, mu F_N, N.
@@ -143,8 +145,11 @@ pub(super) fn pressures(profile: &Profile, elasticity: &Elasticity, edge: &Point
     profile.kernel_sums(&[(ring, 1.0)], radii).into_iter().map(|sum| unit * sum).collect()
 }
 
-/// The largest pressure, Pa; `None` where it is infinite.
+/// The largest pressure, Pa; `None` where it is infinite or not known.
 pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
+    if !profile.has_stress_field() {
+        return None;
+    }
     let at = |radius: f64| pressure(profile, elasticity, edge, &StressRadius::new(radius));
     let inside = |radius: &f64| *radius <= edge.radius;
     let spikes = profile.singular_radii().into_iter().filter(inside).chain([edge.radius]);

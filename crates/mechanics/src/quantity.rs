@@ -41,6 +41,10 @@ quantities! {
     TablePoints = "points of the table", "Number of points of a tabulated profile.";
     TableRadius = "r", "Radius in a table.";
     TableHeight = "z", "Height in a table.";
+    Asperities = "number of asperities", "Number of asperities in a set.";
+    Gap = "gap", "Gap of an asperity.";
+    CurvePoints = "points of the load curve", "Number of points of a load curve.";
+    RadiusRatio = "ratio of the radii", "Ratio of the radii of curvature of an ellipsoid.";
     Parts = "number of parts", "Number of profiles in a sum.";
     YoungsModulus = "youngs_modulus", "Young's modulus of a body.";
     PoissonRatio = "poisson_ratio", "Poisson's ratio of a body.";

@@ -38,6 +38,14 @@ pub const TABLE_POINTS: Range = Range { quantity: Quantity::TablePoints, unit: "
 pub const TABLE_RADIUS: Range = Range { quantity: Quantity::TableRadius, unit: "m", min: 0.0, max: 1e9 };
 /// A height in a table.
 pub const TABLE_HEIGHT: Range = Range { quantity: Quantity::TableHeight, unit: "m", min: -1e9, max: 1e9 };
+/// How many asperities a set may have.
+pub const ASPERITIES: Range = Range { quantity: Quantity::Asperities, unit: "", min: 1.0, max: 1e6 };
+/// The gap of an asperity above any plane.
+pub const GAP: Range = Range { quantity: Quantity::Gap, unit: "m", min: -1e9, max: 1e9 };
+/// How many points a load curve may have.
+pub const CURVE_POINTS: Range = Range { quantity: Quantity::CurvePoints, unit: "", min: 3.0, max: 100_000.0 };
+/// The larger of the two radii of curvature of an ellipsoid over the smaller.
+pub const RADIUS_RATIO: Range = Range { quantity: Quantity::RadiusRatio, unit: "", min: 1.0, max: 1e6 };
 /// How many profiles a sum may have, sums within it counted by their parts.
 pub const PARTS: Range = Range { quantity: Quantity::Parts, unit: "", min: 1.0, max: 16.0 };
 /// Young's modulus of a body.

@@ -145,6 +145,8 @@ impl Document for AccuracyRequest {
     fn check(self) -> Result<Comparison, Rejection> {
         let mut faults = Faults::default();
         let setup = self.contact.check(JsonPath::Root.member("contact"), &mut faults);
+        // Stresses are always compared.
+        faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member("contact").member("profile"));
         let plan = self.path.check(JsonPath::Root.member("path"), &mut faults);
         let stress = self.stress.unwrap_or_else(|| StressRequest {
             points: Some(COMPARED_RADII),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use stickslip_mechanics::{Error, range::Range};
+use stickslip_mechanics::{Error, Setup, range::Range};
 
 use super::parse::Rejection;
 
@@ -88,6 +88,13 @@ impl Faults {
     /// Notes what the mechanics refuses although every number is in its range.
     pub fn unanswerable(&mut self, at: JsonPath<'_>, error: Error) {
         self.unanswerable.get_or_insert_with(|| (at.to_string(), error));
+    }
+
+    /// Refuses what is asked for at this place if it needs a stress and the contact is known by its load curve alone.
+    pub fn needs_stress_field(&mut self, setup: Option<&Setup>, at: JsonPath<'_>) {
+        if setup.is_some_and(|setup| !setup.profile.has_stress_field()) {
+            self.unanswerable(at, Error::NoStressField);
+        }
     }
 
     /// Checks a number against the range of its quantity.

@@ -140,8 +140,13 @@ impl ContactDefinition {
 
     /// The checked setup; its faults are noted at `at`.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Setup> {
-        let profile = self.profile.check(at.member("profile"), faults);
+        // A load curve is one of certain bodies, whose own faults are noted after those of the profile.
+        let bodies = self.material.check(at, &mut Faults::default());
+        let profile = self.profile.check(bodies.as_ref(), at.member("profile"), faults);
         let elasticity = self.material.check(at.member("material"), faults);
+        if matches!((&self.profile, &self.material), (Profile::Ellipsoid(_), Material::Effective(_))) {
+            faults.add(at.member("material").member("effective"), mechanics::Error::BodiesNeeded);
+        }
         self.check_members(at, faults);
         let preload = self.preload.check(at.member("preload"), faults);
         Some(Setup { profile: profile?, elasticity: elasticity?, friction: self.friction, preload })

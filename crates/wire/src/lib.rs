@@ -17,6 +17,7 @@ pub mod accuracy;
 pub mod check;
 pub mod client;
 pub mod closed_cycle;
+pub mod curve_profiles;
 pub mod cycle;
 pub mod definition;
 pub mod event;

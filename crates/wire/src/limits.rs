@@ -56,6 +56,16 @@ pub const TOLERANCE: RangeInclusive<f64> = 1e-14..=1e-2;
 pub const SUM_PARTS: RangeInclusive<usize> = count(&range::PARTS);
 /// Points of a tabulated profile.
 pub const TABLE_POINTS: RangeInclusive<usize> = count(&range::TABLE_POINTS);
+/// Gaps of a set of asperities.
+pub const ASPERITY_GAPS: Numbers = Numbers(count(&range::ASPERITIES), range::GAP);
+/// Their radii, one for each.
+pub const ASPERITY_RADII: Numbers = Numbers(count(&range::ASPERITIES), range::RADIUS);
+/// Indentations of a load curve.
+pub const CURVE_INDENTATIONS: Numbers = Numbers(count(&range::CURVE_POINTS), range::PRELOAD_INDENTATION);
+/// Its forces.
+pub const CURVE_FORCES: Numbers = Numbers(count(&range::CURVE_POINTS), range::NORMAL_FORCE);
+/// The principal radii of curvature of an ellipsoid.
+pub const ELLIPSOID_RADII: Numbers = Numbers(2..=2, range::RADIUS);
 /// Points without an answer that the reply to a sweep lists; all of them are counted.
 pub const SWEEP_FAILURES: usize = 100;
 

@@ -106,6 +106,9 @@ codes! {
     /// The request is valid, but the contact would outgrow the profile.
     BeyondProfile = 422 "beyond_profile": "The contact outgrows the profile",
         "the contact outgrows the table or the sphere: less load, or a larger profile";
+    /// The request is valid, but asks for a stress of a contact that is known by its load curve alone.
+    NoStressField = 422 "no_stress_field": "The profile has no stress field",
+        "forces and energies follow from a load curve, stresses do not: [rough contacts](rough-contacts.md)";
     /// The request is valid, but the contact area would be a ring.
     ProfileNotConvexEnough = 422 "profile_not_convex_enough": "The contact area would not be a full circle",
         "the contact would be a ring: [limits](limits.md)";

@@ -1,7 +1,8 @@
 //! The profile: which shape touches the flat.
 //!
 //! The families with numbers for parameters, their documents, checks and limits come from the table
-//! [`stickslip_mechanics::for_each_family!`]; the other two, tables of heights and sums, are written out here.
+//! [`stickslip_mechanics::for_each_family!`]; tables of heights and sums are written out here, and contacts that are known by
+//! their load curve alone in [`curve_profiles`](super::curve_profiles).
 
 use std::collections::HashMap;
 use std::fmt;
@@ -13,9 +14,10 @@ use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 
 use stickslip_mechanics::profile::{Profile as Shape, Sum, Tabulated};
-use stickslip_mechanics::{Error, TableFault, for_each_family, profile as families, range, range::Range};
+use stickslip_mechanics::{Elasticity, Error, TableFault, for_each_family, profile as families, range, range::Range};
 
 use super::check::{Faults, JsonPath};
+use super::curve_profiles::{AsperitiesProfile, Direction, EllipsoidProfile, LoadCurveProfile};
 use super::limits;
 
 /// Declares everything that follows from the table of families.
@@ -34,6 +36,12 @@ macro_rules! documents {
             Tabulated(TabulatedProfile),
             /// Several profiles added up, z = Σ zᵢ.
             Sum(SumProfile),
+            /// Hertzian asperities on one rigid motion, which do not interact elastically. No stresses.
+            Asperities(AsperitiesProfile),
+            /// A load curve F_N(d), measured or computed elsewhere. No stresses.
+            LoadCurve(LoadCurveProfile),
+            /// An ellipsoid, or two bodies crossed: Hertz's ellipse of contact. No stresses.
+            Ellipsoid(EllipsoidProfile),
         }
 
         $(
@@ -54,7 +62,15 @@ macro_rules! documents {
             fn named<T: ToSchema>() -> (String, RefOr<Schema>) {
                 (T::name().into_owned(), T::schema())
             }
-            vec![$(named::<$Document>(),)+ named::<TabulatedProfile>(), named::<SumProfile>()]
+            vec![
+                $(named::<$Document>(),)+
+                named::<TabulatedProfile>(),
+                named::<SumProfile>(),
+                named::<AsperitiesProfile>(),
+                named::<LoadCurveProfile>(),
+                named::<EllipsoidProfile>(),
+                named::<Direction>(),
+            ]
         }
 
         /// The names of the families.
@@ -64,44 +80,65 @@ macro_rules! documents {
             $($Family,)+
             Tabulated,
             Sum,
+            Asperities,
+            LoadCurve,
+            Ellipsoid,
         }
 
         impl Kind {
-            /// The members beside `type`, all of which are needed.
+            /// The members beside `type`, all of which are needed, but for one of the radii of asperities.
             fn members(self) -> &'static [&'static str] {
                 match self {
                     $(Kind::$Family => &[$(stringify!($number)),+],)+
                     Kind::Tabulated => &["r", "z"],
                     Kind::Sum => &["parts"],
+                    Kind::Asperities => &["radii", "radius", "gaps"],
+                    Kind::LoadCurve => &["indentation", "normal_force"],
+                    Kind::Ellipsoid => &["radii", "direction"],
                 }
             }
         }
 
         impl Profile {
-            /// The checked profile; its faults are noted at `at`.
-            pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+            /// The checked profile of these bodies, `None` if they are at fault; its own faults are noted at `at`.
+            pub fn check(&self, bodies: Option<&Elasticity>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
                 match self {
                     $(Profile::$Family($Document { $($number),+ }) => {
                         $(faults.number(at.member(stringify!($number)), *$number, &range::$RANGE);)+
                         accepted(families::$Family::new($(*$number),+).map(Shape::$Family), at, faults)
                     })+
                     Profile::Tabulated(TabulatedProfile { r, z }) => check_table(r, z, Tabulated::new, at, faults),
-                    Profile::Sum(SumProfile { parts }) => check_sum(parts, at, faults),
+                    Profile::Sum(SumProfile { parts }) => check_sum(parts, bodies, at, faults),
+                    Profile::Asperities(asperities) => asperities.check(at, faults),
+                    Profile::LoadCurve(curve) => curve.check(bodies?, at, faults),
+                    Profile::Ellipsoid(ellipsoid) => ellipsoid.check(at, faults),
                 }
             }
         }
 
         impl<'de> Deserialize<'de> for Profile {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let members = deserializer.deserialize_struct("Members", &[], MembersVisitor)?;
+                let mut members = deserializer.deserialize_struct("Members", &[], MembersVisitor)?;
                 Ok(match members.kind()? {
                     $(Kind::$Family => Profile::$Family($Document { $($number: members.number(stringify!($number))?),+ }),)+
-                    Kind::Tabulated => Profile::Tabulated(TabulatedProfile {
-                        r: members.r.ok_or_else(|| D::Error::missing_field("r"))?,
-                        z: members.z.ok_or_else(|| D::Error::missing_field("z"))?,
-                    }),
+                    Kind::Tabulated => {
+                        Profile::Tabulated(TabulatedProfile { r: members.column("r")?, z: members.column("z")? })
+                    }
                     Kind::Sum => Profile::Sum(SumProfile {
                         parts: members.parts.ok_or_else(|| D::Error::missing_field("parts"))?,
+                    }),
+                    Kind::Asperities => Profile::Asperities(AsperitiesProfile {
+                        radii: members.columns.remove("radii"),
+                        radius: members.numbers.get("radius").copied(),
+                        gaps: members.column("gaps")?,
+                    }),
+                    Kind::LoadCurve => Profile::LoadCurve(LoadCurveProfile {
+                        indentation: members.column("indentation")?,
+                        normal_force: members.column("normal_force")?,
+                    }),
+                    Kind::Ellipsoid => Profile::Ellipsoid(EllipsoidProfile {
+                        radii: members.column("radii")?,
+                        direction: members.direction.ok_or_else(|| D::Error::missing_field("direction"))?,
                     }),
                 })
             }
@@ -142,22 +179,28 @@ fn check_table(r: &[f64], z: &[f64], through: Through, at: JsonPath<'_>, faults:
     accepted(through(r, z).map(Shape::Tabulated), at, faults)
 }
 
-fn check_sum(parts: &[Profile], at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+fn check_sum(parts: &[Profile], bodies: Option<&Elasticity>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     let place = at.member("parts");
     if !faults.length(place, parts.len(), &limits::SUM_PARTS) {
         return None;
     }
     let mut check = |(index, part): (usize, &Profile)| match part {
         Profile::Tabulated(TabulatedProfile { r, z }) => check_table(r, z, Tabulated::part, place.index(index), faults),
-        part => part.check(place.index(index), faults),
+        part => part.check(bodies, place.index(index), faults),
     };
     let shapes: Vec<_> = parts.iter().enumerate().map(&mut check).collect();
     let shapes: Option<Vec<Shape>> = shapes.into_iter().collect();
-    accepted(Sum::new(shapes?).map(Shape::Sum), at, faults)
+    match Sum::new(shapes?) {
+        Err(error @ Error::NoSurface { part }) => {
+            faults.add(place.index(part), error);
+            None
+        }
+        sum => accepted(sum.map(Shape::Sum), at, faults),
+    }
 }
 
 /// The shape, unless the mechanics refuses it although each number is in its range: then a fault is added.
-fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+pub(super) fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
     match shape {
         Ok(shape) => return Some(shape),
         // It follows from a fault that has been noted already.
@@ -181,15 +224,18 @@ fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &mut Faults) 
 struct Members {
     kind: Option<Kind>,
     numbers: HashMap<&'static str, f64>,
-    r: Option<Vec<f64>>,
-    z: Option<Vec<f64>>,
+    columns: HashMap<&'static str, Vec<f64>>,
+    direction: Option<Direction>,
     parts: Option<Vec<Profile>>,
 }
+
+/// The names of the members that are arrays of numbers.
+const COLUMNS: [&str; 6] = ["r", "z", "radii", "gaps", "indentation", "normal_force"];
 
 /// The names of all members, each once.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let mut names = vec!["type"];
-    for name in NUMBERS.iter().map(|(_, name, _)| *name).chain(["r", "z", "parts"]) {
+    for name in NUMBERS.iter().map(|(_, name, _)| *name).chain(COLUMNS).chain(["direction", "parts"]) {
         if !names.contains(&name) {
             names.push(name);
         }
@@ -201,10 +247,9 @@ impl Members {
     fn has(&self, name: &str) -> bool {
         match name {
             "type" => self.kind.is_some(),
-            "r" => self.r.is_some(),
-            "z" => self.z.is_some(),
             "parts" => self.parts.is_some(),
-            number => self.numbers.contains_key(number),
+            "direction" => self.direction.is_some(),
+            name => self.numbers.contains_key(name) || self.columns.contains_key(name),
         }
     }
 
@@ -216,6 +261,10 @@ impl Members {
             Some(foreign) => Err(E::unknown_field(foreign, kind.members())),
             None => Ok(kind),
         }
+    }
+
+    fn column<E: serde::de::Error>(&mut self, name: &'static str) -> Result<Vec<f64>, E> {
+        self.columns.remove(name).ok_or_else(|| E::missing_field(name))
     }
 
     fn number<E: serde::de::Error>(&self, name: &'static str) -> Result<f64, E> {
@@ -252,9 +301,9 @@ impl<'de> Visitor<'de> for MembersVisitor {
             // `null` is not a value.
             match name {
                 "type" => members.kind = Some(map.next_value()?),
-                "r" => members.r = Some(map.next_value()?),
-                "z" => members.z = Some(map.next_value()?),
                 "parts" => members.parts = Some(map.next_value()?),
+                "direction" => members.direction = Some(map.next_value()?),
+                column if COLUMNS.contains(&column) => drop(members.columns.insert(column, map.next_value()?)),
                 number => drop(members.numbers.insert(number, map.next_value()?)),
             }
         }

@@ -15,12 +15,16 @@ pub struct ContactSummary {
     pub g_star: f64,
     /// Indentation d, m.
     pub indentation: f64,
-    /// Contact radius a, m.
+    /// Contact radius a, m; of a profile without a stress field F_N′/(2 E*), which governs the stiffness.
     pub contact_radius: f64,
     /// Normal force F_N, N.
     pub normal_force: f64,
-    /// Largest pressure, Pa; `null` where it is infinite.
+    /// Largest pressure, Pa; `null` where it is infinite, and of a profile without a stress field.
     pub max_pressure: Option<f64>,
+    /// Semi-axes of the contact along x and y, m: of an ellipsoid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub semi_axes: Option<[f64; 2]>,
     /// Displacement at which a virgin contact just slips as a whole, μ (E*/G*) d, m.
     pub gross_slip_displacement: f64,
     /// Tangential force then, μ F_N, N.
@@ -38,7 +42,7 @@ pub struct State {
     pub indentation: f64,
     /// Normal force F_N, N.
     pub normal_force: f64,
-    /// Contact radius a, m.
+    /// Contact radius a, m; of a profile without a stress field F_N′/(2 E*).
     pub contact_radius: f64,
     /// Radius inside which the last move did not slip, m: the contact radius if nothing slipped, zero in gross slip.
     pub stick_radius: f64,
@@ -116,7 +120,8 @@ pub struct Accuracy {
     /// Estimated error of the forces, relative to the friction limit μ F_N: of rounding, of curved paths, of the
     /// interpolation of a table, of springs.
     pub force_error: f64,
-    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean).
+    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean); of no
+    /// meaning for a profile without a stress field.
     pub stress_error: f64,
     /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), if it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -149,7 +154,8 @@ pub struct Protocol {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning {
-    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`, `units`.
+    /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`, `units`,
+    /// `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`.
     pub code: String,
     /// An explanation for people.
     pub message: String,
@@ -170,6 +176,7 @@ impl From<mechanics::ContactSummary> for ContactSummary {
             contact_radius: figures.contact_radius,
             normal_force: figures.normal_force,
             max_pressure: figures.max_pressure,
+            semi_axes: figures.semi_axes,
             gross_slip_displacement: figures.gross_slip_displacement,
             gross_slip_force: figures.gross_slip_force,
         }

@@ -141,7 +141,16 @@ impl Document for SimulateRequest {
         if subsurface.is_some() && matches!(self.solver, Some(Solver::Springs(_))) {
             faults.add(at, "springs have no stress below the surface: leave this or `solver` out");
         }
+        let needing = [("stress", stress.is_some()), ("residual", self.residual), ("subsurface", subsurface.is_some())];
+        for (name, _) in needing.into_iter().filter(|(_, asked)| *asked) {
+            faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
+        }
         let tolerance = Tolerance::of(self.tolerance, &mut faults);
+        let no_surface = setup.as_ref().is_some_and(|setup| !setup.profile.has_stress_field());
+        if matches!(self.solver, Some(Solver::Springs(_))) && no_surface {
+            let detail = "springs stand under a surface, which this profile has not: leave `solver` out";
+            faults.add(JsonPath::Root.member("solver"), detail);
+        }
         if let Some(solver) = &self.solver {
             let search = if self.residual { SPRING_SEARCH } else { 0 };
             let moves = plan.as_ref().map_or(0, Plan::length);

@@ -45,6 +45,12 @@ fn profile_limits() -> Vec<(&'static str, &'static str, Value)> {
             ("TabulatedProfile", "r", column(range::TABLE_RADIUS)),
             ("TabulatedProfile", "z", column(range::TABLE_HEIGHT)),
             ("SumProfile", "parts", limits::Items(limits::SUM_PARTS).keywords()),
+            ("AsperitiesProfile", "radii", limits::ASPERITY_RADII.keywords()),
+            ("AsperitiesProfile", "radius", range::RADIUS.keywords()),
+            ("AsperitiesProfile", "gaps", limits::ASPERITY_GAPS.keywords()),
+            ("LoadCurveProfile", "indentation", limits::CURVE_INDENTATIONS.keywords()),
+            ("LoadCurveProfile", "normal_force", limits::CURVE_FORCES.keywords()),
+            ("EllipsoidProfile", "radii", limits::ELLIPSOID_RADII.keywords()),
         ])
         .collect()
 }

@@ -89,7 +89,8 @@ impl SteadyCycle<'_> {
         let rim = profile.rim_radius();
         let inside = |radius: &f64| *radius > ring.inner.radius && *radius <= ring.outer.radius;
         let kinks: Vec<f64> = profile.knots_below(ring.outer.radius).into_iter().chain(rim).filter(inside).collect();
-        if kinks.len() > MOST_KINKS {
+        // The kinks of a load curve are at levels.
+        if kinks.len() > MOST_KINKS || !profile.has_stress_field() {
             let mut ends = vec![0.0, PI];
             split(&mut ends, widest.min(PI / PANELS));
             return (ends, false);

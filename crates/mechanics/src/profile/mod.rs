@@ -7,16 +7,22 @@
 //!
 //! A family is a struct with a checked constructor and its `shape::Shape`, and an entry of
 //! [`for_each_family!`](crate::for_each_family), from which the JSON documents and their checks follow. `ARCHITECTURE.md`
-//! has the recipe for another one.
+//! has the recipe for another one. Contacts that are known by their load curve alone have `curve_family::CurveFamily` instead.
 
 mod angle;
+mod asperities;
 #[cfg(test)]
 pub(crate) mod call_count;
 mod cone;
+mod curve_family;
+mod ellipsoid;
 mod exact_sphere;
+mod far_field;
 mod flat_punch;
 pub(super) mod gauss;
 mod kernel_sums;
+mod load_curve;
+mod moment_tree;
 mod power_law;
 mod ring;
 pub(super) mod ring_quadrature;
@@ -33,6 +39,9 @@ mod tabulated;
 mod truncated_cone;
 mod truncated_sphere;
 
+pub use asperities::Asperities;
+pub use ellipsoid::{Direction, Ellipsoid};
+pub use load_curve::LoadCurve;
 pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
@@ -48,7 +57,7 @@ use span::Span;
 ///
 /// An entry is a description, `module::Family`, the description and the name of its JSON document, and the parameters in the
 /// order of the constructor: a description with the unit, the name and the constant of [`range`](crate::range) that bounds it.
-/// The `type` in JSON is the name of the family in snake case. The two families made of other things, [`Tabulated`] and
+/// The `type` in JSON is the name of the family in snake case. The families made of other things, such as [`Tabulated`] and
 /// [`Sum`], are not in the table.
 #[macro_export]
 macro_rules! for_each_family {
@@ -160,6 +169,12 @@ macro_rules! profile {
             Tabulated(Tabulated),
             /// Several profiles added up, z = Σ zᵢ.
             Sum(Sum),
+            /// Hertzian asperities on one rigid motion.
+            Asperities(Asperities),
+            /// A load curve, measured or computed elsewhere.
+            LoadCurve(LoadCurve),
+            /// Hertz's ellipse of contact.
+            Ellipsoid(Ellipsoid),
         }
 
         macro_rules! each {
@@ -168,6 +183,9 @@ macro_rules! profile {
                     $(Profile::$Family($dollar shape) => $dollar value,)+
                     Profile::Tabulated($dollar shape) => $dollar value,
                     Profile::Sum($dollar shape) => $dollar value,
+                    Profile::Asperities($dollar shape) => $dollar value,
+                    Profile::LoadCurve($dollar shape) => $dollar value,
+                    Profile::Ellipsoid(Ellipsoid { ball: $dollar shape, .. }) => $dollar value,
                 }
             };
         }
@@ -176,6 +194,13 @@ macro_rules! profile {
 for_each_family!(profile $);
 
 impl Profile {
+    /// Whether the contact has a surface that stresses are known on. Without one it is known by its load curve alone: the
+    /// kernels, slopes and stresses of such a profile are those of a body of revolution with the same curve, or NaN.
+    #[must_use]
+    pub fn has_stress_field(&self) -> bool {
+        !matches!(self, Profile::Asperities(_) | Profile::LoadCurve(_) | Profile::Ellipsoid(_))
+    }
+
     /// g(x), m, for a radius x >= 0, m.
     #[must_use]
     pub fn level(&self, radius: f64) -> f64 {
@@ -212,10 +237,7 @@ impl Profile {
     pub fn moments(&self, ring: &Ring) -> Moments {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.moments);
-        each!(self, shape => {
-            let span = shape.span(ring);
-            Moments::stack(shape.moments(&span), Moments::default(), span.edge)
-        })
+        each!(self, shape => shape.ring_moments(ring))
     }
 
     /// The levels of a ring that lie on a vertical edge, m.
@@ -226,7 +248,7 @@ impl Profile {
     /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer level and
     /// of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
     pub(super) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
-        each!(self, shape => ring_quadrature::nodes(shape, ring, total, turns))
+        each!(self, shape => shape.ring_nodes(ring, total, turns))
     }
 
     /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share of a

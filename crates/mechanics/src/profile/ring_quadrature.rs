@@ -48,7 +48,7 @@ pub(crate) enum RingNodes {
 }
 
 /// The nodes of a ring for roots of h and of `total` - h, and waves up to cos(`turns` th), cos(th) = 1 - 2 h/total.
-pub(super) fn nodes(shape: &impl Shape, ring: &Ring, total: f64, turns: usize) -> RingNodes {
+pub(super) fn nodes(shape: &(impl Shape + ?Sized), ring: &Ring, total: f64, turns: usize) -> RingNodes {
     let span = shape.span(ring);
     let kink_below = |radius: f64| Some(shape.kink_below(radius)).filter(|kink| *kink > 0.0);
     let kinks = || std::iter::successors(kink_below(ring.outer.radius), |&kink| kink_below(kink));
@@ -82,7 +82,7 @@ pub(super) fn nodes(shape: &impl Shape, ring: &Ring, total: f64, turns: usize) -
 }
 
 /// The nodes of a span as if it had no kinks, by panels no wider than `widest`, and by halves of them.
-fn across(shape: &impl Shape, span: &Span, total: f64, widest: f64) -> RingNodes {
+fn across(shape: &(impl Shape + ?Sized), span: &Span, total: f64, widest: f64) -> RingNodes {
     let interval = SmoothInterval::new(span, 0.0, f64::INFINITY, f64::INFINITY, shape.power());
     let depth = shape.rise(span);
     let mut ends = panels(shape, &interval, [span.edge, depth, total - span.edge - depth], true);
@@ -116,7 +116,7 @@ fn angular_nodes<'a>(
 
 /// The ends of the panels of the angle from zero, the outer end, to pi. `levels` are the depth above the interval, that of
 /// the interval, and what `total` has left below it.
-fn panels(shape: &impl Shape, interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
+fn panels(shape: &(impl Shape + ?Sized), interval: &SmoothInterval, levels: [f64; 3], innermost: bool) -> Vec<f64> {
     let [above, depth, left] = levels;
     let SmoothInterval { base, high, drop, singular, power, low, .. } = *interval;
     let angle = |distance: f64| 2.0 * (distance.max(0.0) / drop).sqrt().asinh();

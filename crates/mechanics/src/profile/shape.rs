@@ -1,5 +1,6 @@
 //! The functions that a family must provide, and those that follow for all families.
 
+use super::ring_quadrature::{self, RingNodes};
 use super::roots::increasing;
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, InterpolationError, Moments, Ring, Span, StressRadius};
@@ -130,6 +131,17 @@ pub(super) trait Shape {
             rest = inner;
         }
         sum
+    }
+
+    /// The moments of a ring, with the levels that it crosses at a vertical edge.
+    fn ring_moments(&self, ring: &Ring) -> Moments {
+        let span = self.span(ring);
+        Moments::stack(self.moments(&span), Moments::default(), span.edge)
+    }
+
+    /// The nodes of a quadrature over the radii of a ring: see [`Profile::ring_nodes`](super::Profile).
+    fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
+        ring_quadrature::nodes(self, ring, total, turns)
     }
 
     /// The rise from a node of an interval up to the outer end of its span.

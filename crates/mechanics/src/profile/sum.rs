@@ -37,7 +37,8 @@ impl Sum {
     /// The sum of `parts`; sums among them are taken apart.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen.
+    /// [`Error::OutOfRange`] by [`range::PARTS`], [`Error::NotConvexEnough`] if g falls before it has risen,
+    /// [`Error::NoSurface`] for a part that is known by its load curve alone.
     pub fn new(parts: Vec<Profile>) -> Result<Sum, Error> {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
@@ -47,6 +48,9 @@ impl Sum {
             }
         }
         range::PARTS.check(flat.len() as f64)?;
+        if let Some(part) = flat.iter().position(|part| !part.has_stress_field()) {
+            return Err(Error::NoSurface { part });
+        }
         let mut kinks: Vec<f64> = flat.iter().flat_map(|part| part.knots_below(f64::INFINITY)).collect();
         kinks.sort_by(f64::total_cmp);
         kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());

@@ -17,6 +17,7 @@ mod fatigue;
 mod few_springs;
 mod hard_cases;
 mod laws;
+mod load_curves;
 mod minimax;
 mod packed;
 mod paper;

@@ -1,5 +1,5 @@
 //! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
-//! and 11 about steady cycles, and figures 12 and 13 about fretting fatigue: SVG, and CSV with the data.
+//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, and figure 14 about rough contacts: SVG, and CSV with the data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
@@ -7,6 +7,7 @@
 mod cycles;
 mod fretting;
 mod protocols;
+mod rough;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -26,17 +27,20 @@ const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
 const MAX_REVERSALS: usize = 40;
 
-/// Writes `figure1.svg` to `figure13.svg` and the CSV file of each into `dir`, which is created if it does not exist.
+/// Writes `figure1.svg` to `figure14.svg` and the CSV file of each into `dir`, which is created if it does not exist.
 ///
 /// # Errors
 /// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
 pub fn write(dir: &Path) -> io::Result<()> {
     fs::create_dir_all(dir)?;
     let charts = charts().map_err(io::Error::other)?;
-    for (index, chart) in charts.iter().enumerate() {
-        let name = format!("figure{}", index + 1);
+    let draw = |number: usize, chart: &Chart| -> io::Result<()> {
+        let name = format!("figure{number}");
         fs::write(dir.join(format!("{name}.svg")), chart.svg().map_err(io::Error::other)?)?;
-        fs::write(dir.join(format!("{name}.csv")), csv(chart))?;
+        fs::write(dir.join(format!("{name}.csv")), csv(chart))
+    };
+    for (index, chart) in charts.iter().enumerate() {
+        draw(index + 1, chart)?;
     }
     let sections = fretting::sections().map_err(io::Error::other)?;
     for (index, section) in sections.iter().enumerate() {
@@ -44,7 +48,7 @@ pub fn write(dir: &Path) -> io::Result<()> {
         fs::write(dir.join(format!("{name}.svg")), section.svg().map_err(io::Error::other)?)?;
         fs::write(dir.join(format!("{name}.csv")), section_csv(section))?;
     }
-    Ok(())
+    draw(charts.len() + sections.len() + 1, &rough::chart().map_err(io::Error::other)?)
 }
 
 fn charts() -> Result<Vec<Chart>, Error> {
@@ -237,7 +241,8 @@ mod tests {
     fn the_figures_of_the_documentation_are_those_that_are_drawn() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures");
         let (paper, cycles) = (super::paper().unwrap(), super::cycles::charts().unwrap());
-        for (number, chart) in (1..).zip(&paper).chain((10..).zip(&cycles)) {
+        let rough = [super::rough::chart().unwrap()];
+        for (number, chart) in (1..).zip(&paper).chain((10..).zip(&cycles)).chain((14..).zip(&rough)) {
             let name = format!("figure{number}.svg");
             let kept = std::fs::read_to_string(folder.join(&name)).unwrap();
             assert!(chart.svg().unwrap() == kept, "{name} has changed");

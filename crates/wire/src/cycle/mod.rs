@@ -374,6 +374,9 @@ impl Document for CycleRequest {
                 faults.add(at(name), "not in a fretting map: leave this or `map` out");
             }
         }
+        if task.as_ref().is_some_and(|task| task.radii() > 0) {
+            faults.needs_stress_field(setup.as_ref(), at("work_density"));
+        }
         let normal = load.map(|load| (load, tolerance.unwrap_or(DEFAULT_TOLERANCE)));
         let task = task.map(|task| CycleTask { normal, response, best_load, map, ..task });
         faults.done(setup.zip(task).map(|(setup, task)| (contact, setup, task)))

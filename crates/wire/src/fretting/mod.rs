@@ -241,6 +241,7 @@ impl Document for FrettingRequest {
         let mut faults = Faults::default();
         let at = |name| JsonPath::Root.member(name);
         let setup = self.contact.check(at("contact"), &mut faults);
+        faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
         let plan = self.path.check(at("path"), &mut faults);
         if let Some(plan) = &plan {
             let most = *FRETTING_MOVES.end();

@@ -221,6 +221,8 @@ impl Document for ProtocolRequest {
         let mut faults = Faults::default();
         let at = |name| JsonPath::Root.member(name);
         let setup = self.contact.as_ref().and_then(|contact| contact.check(at("contact"), &mut faults));
+        // Protocols are judged by the stress that they leave.
+        faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
         let subject = match (self.start, self.contact, setup) {
             (Some(ProtocolStart::ContactId(id)), definition, _) => {
                 if self.robustness.is_some_and(|robustness| robustness.friction_error > 0.0) {

@@ -3,7 +3,8 @@
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
 //! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
 
-use super::far_field::{FarField, Sampled};
+use super::super::far_field::{FarField, Sampled};
+use super::LEAF;
 use super::panel::{self, Panel};
 use super::spline::Knot;
 use super::{DoubleDouble, gauss};
@@ -39,7 +40,7 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
         })
         .collect();
     let bounds: Vec<f64> = knots.iter().map(|knot| knot.radius * knot.radius).collect();
-    let far = FarField::new(&bounds, |index, add| {
+    let far = FarField::new(&bounds, LEAF, |index, add| {
         let (segment, width) = (&segments[index], knots[index + 1].radius - knots[index].radius);
         gauss::Panel::fine(width).visit(|step, weight| {
             let r = segment.start + step;

@@ -8,7 +8,6 @@
 //! first at which g falls, exist: but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
-mod far_field;
 mod interpolation_error;
 mod panel;
 mod spline;
@@ -16,14 +15,18 @@ mod spline;
 mod tests;
 
 use super::super::error::TableFault;
+use super::far_field::FarField;
+use super::moment_tree::MomentTree;
 use super::shape::{self, End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
-use far_field::FarField;
 pub use interpolation_error::InterpolationError;
 use panel::Panel;
 use spline::Knot;
+
+/// Panels in the smallest cluster of the kernel's sources.
+const LEAF: usize = 4;
 
 /// A tabulated profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,8 +38,8 @@ pub struct Tabulated {
     /// The interpolation error at increasing radii.
     interpolation_errors: Vec<(f64, InterpolationError)>,
     panels: Vec<Panel>,
-    /// Moments and depth of all runs of panels, as a binary tree with the leaves in its second half.
-    tree: Vec<(Moments, f64)>,
+    /// Moments and depth of all runs of panels.
+    tree: MomentTree,
     /// The kernel's sources.
     sources: FarField,
     knots: Vec<f64>,
@@ -100,17 +103,11 @@ impl Tabulated {
             });
         };
         let end = (last.end().1, level, load);
-        let leaves = panels.len().next_power_of_two();
-        let mut tree = vec![(Moments::default(), 0.0); 2 * leaves];
-        for (index, panel) in panels.iter().enumerate() {
-            tree[leaves + index] = (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
-        }
-        for index in (1..leaves).rev() {
-            tree[index] = join(tree[2 * index], tree[2 * index + 1]);
-        }
+        let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
+        let tree = MomentTree::new(panels.iter().map(leaf));
         let mut bounds: Vec<f64> = panels.iter().map(|panel| panel.square.value()).collect();
         bounds.push(last.end().0.value());
-        let sources = FarField::new(&bounds, |index, add| {
+        let sources = FarField::new(&bounds, LEAF, |index, add| {
             let panel = &panels[index];
             gauss::Panel::fine(panel.high - panel.low).visit(|below, weight| {
                 let t = panel.high - below;
@@ -170,25 +167,6 @@ impl Tabulated {
         (self.find(span.inner_radius).min(outer), outer)
     }
 
-    /// Moments and depth of the panels first..last.
-    fn run(&self, first: usize, last: usize) -> (Moments, f64) {
-        let leaves = self.tree.len() / 2;
-        let (mut low, mut high) = (first + leaves, last + leaves);
-        let (mut inner, mut outer) = ((Moments::default(), 0.0), (Moments::default(), 0.0));
-        while low < high {
-            if low % 2 == 1 {
-                inner = join(inner, self.tree[low]);
-                low += 1;
-            }
-            if high % 2 == 1 {
-                high -= 1;
-                outer = join(self.tree[high], outer);
-            }
-            (low, high) = (low / 2, high / 2);
-        }
-        join(inner, outer)
-    }
-
     /// The parts of a span in its innermost and its outermost panel, and the whole panels between.
     fn parts(&self, span: &Span) -> (Option<Piece>, std::ops::Range<usize>, Option<Piece>) {
         let (inner, outer) = self.ends(span);
@@ -231,11 +209,6 @@ impl Tabulated {
 
 /// A stretch within the panel of this index.
 type Piece = (usize, Span);
-
-/// Two adjacent runs as one.
-fn join(inner: (Moments, f64), outer: (Moments, f64)) -> (Moments, f64) {
-    (Moments::stack(inner.0, outer.0, outer.1), inner.1 + outer.1)
-}
 
 /// What third divided differences say about the noise of single heights.
 fn noise(radii: &[f64], heights: &[f64]) -> f64 {
@@ -311,7 +284,7 @@ impl Shape for Tabulated {
 
     fn rise(&self, span: &Span) -> f64 {
         let (low, whole, high) = self.parts(span);
-        let between = self.run(whole.start, whole.end).1;
+        let between = self.tree.run(whole.start, whole.end).1;
         [low, high]
             .into_iter()
             .flatten()
@@ -331,7 +304,6 @@ impl Shape for Tabulated {
     }
 
     fn rises(&self, span: &Span, below: &[f64]) -> Vec<f64> {
-        let leaves = self.tree.len() / 2;
         let (_, mut index) = self.ends(span);
         let (mut above, mut high) = (0.0, self.panels[index].t_of(span.outer));
         let rise = |&below: &f64| {
@@ -339,8 +311,7 @@ impl Shape for Tabulated {
             let mut panel = &self.panels[index];
             while index > 0 && panel.square > square {
                 let whole = high >= panel.high;
-                above +=
-                    if whole { self.tree[leaves + index].1 } else { panel.rise_at(panel.low, high, high - panel.low) };
+                above += if whole { self.tree.leaf(index).1 } else { panel.rise_at(panel.low, high, high - panel.low) };
                 index -= 1;
                 panel = &self.panels[index];
                 high = panel.high;
@@ -387,7 +358,7 @@ impl Shape for Tabulated {
 
     fn moments(&self, span: &Span) -> Moments {
         let (low, whole, high) = self.parts(span);
-        let mut sum = self.run(whole.start, whole.end);
+        let mut sum = self.tree.run(whole.start, whole.end);
         if let Some((index, span)) = low {
             sum.0 = Moments::stack(smooth_coordinate::moments(&self.panels[index], &span), sum.0, sum.1);
         }

@@ -1,14 +1,15 @@
-//! Sums of w/sqrt(|X - Y|) over many sources Y, far from X: sources in clusters, each replaced by a few at fixed
-//! points.
+//! Sums of w/sqrt(|X - Y|), or of another power, over many sources Y, far from X: sources in clusters, each replaced by a few at
+//! fixed points.
 //!
 //! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
 //! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table
-//! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about).
+//! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about). So do the sums over many asperities
+//! (X a level, Y a gap).
+
+use std::ops::Range;
 
 /// Points that replace a cluster.
 const PROXIES: usize = 20;
-/// Items in the smallest clusters.
-const LEAF: usize = 4;
 
 /// Sources of the items `first..last`.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,8 @@ struct Cluster {
 /// A tree of clusters over items in rising order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FarField {
+    /// Items in the smallest clusters.
+    leaf: usize,
     clusters: Vec<Cluster>,
 }
 
@@ -69,8 +72,13 @@ fn place(low: f64, high: f64, index: usize) -> f64 {
 
 /// The values at `place` of the polynomials that are one at one Chebyshev point of the interval and zero at the others.
 fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
-    let u = (at - 0.5 * (low + high)) / (0.5 * (high - low));
     let mut shares = [0.0; PROXIES];
+    if high <= low {
+        shares[0] = 1.0;
+        return shares;
+    }
+    // An interval of a few units in the last place has no centre of its own, and beyond its ends the shares grow fast.
+    let u = ((at - 0.5 * (low + high)) / (0.5 * (high - low))).clamp(-1.0, 1.0);
     let mut total = 0.0;
     for (index, share) in shares.iter_mut().enumerate() {
         let distance = u - POINTS[index];
@@ -86,10 +94,10 @@ fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
 }
 
 impl FarField {
-    /// The clusters of items that fill the intervals between consecutive `bounds`; `sources` gives an item's sources, place and
-    /// weight each.
-    pub(super) fn new(bounds: &[f64], sources: impl Fn(usize, &mut dyn FnMut(f64, f64))) -> FarField {
-        let mut far = FarField { clusters: Vec::new() };
+    /// The clusters of items that fill the intervals between consecutive `bounds`, the smallest of `leaf` items; `sources` gives an
+    /// item's sources, place and weight each.
+    pub(super) fn new(bounds: &[f64], leaf: usize, sources: impl Fn(usize, &mut dyn FnMut(f64, f64))) -> FarField {
+        let mut far = FarField { leaf, clusters: Vec::new() };
         if bounds.len() > 1 {
             far.build(bounds, &sources, 0, bounds.len() - 1);
         }
@@ -110,7 +118,7 @@ impl FarField {
                 *sum += weight * share;
             }
         };
-        let children = if last - first <= LEAF {
+        let children = if last - first <= self.leaf {
             for item in first..last {
                 sources(item, &mut add);
             }
@@ -134,10 +142,24 @@ impl FarField {
     /// item by item, by `near`.
     pub(super) fn visit(
         &self,
-        items: std::ops::Range<usize>,
+        items: Range<usize>,
         from: (f64, f64),
         far: &mut impl FnMut(f64, f64),
         near: &mut impl FnMut(usize),
+    ) {
+        let mut each = |places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
+            places.iter().zip(weights).for_each(|(&place, &weight)| far(place, weight));
+        };
+        self.visit_clusters(items, from, &mut each, &mut |items| items.for_each(&mut *near));
+    }
+
+    /// The same by whole clusters, places and weights together, and by runs of items.
+    pub(super) fn visit_clusters(
+        &self,
+        items: Range<usize>,
+        from: (f64, f64),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        near: &mut impl FnMut(Range<usize>),
     ) {
         if let Some(root) = self.clusters.len().checked_sub(1) {
             self.descend(root, &items, from, far, near);
@@ -147,10 +169,10 @@ impl FarField {
     fn descend(
         &self,
         index: usize,
-        items: &std::ops::Range<usize>,
+        items: &Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(f64, f64),
-        near: &mut impl FnMut(usize),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        near: &mut impl FnMut(Range<usize>),
     ) {
         let cluster = &self.clusters[index];
         let (first, last) = (cluster.first.max(items.start), cluster.last.min(items.end));
@@ -160,14 +182,13 @@ impl FarField {
         let distance = (cluster.low - from.1).max(from.0 - cluster.high);
         let whole = first == cluster.first && last == cluster.last;
         if whole && distance >= (cluster.high - cluster.low).max(from.1 - from.0) {
-            for (index, &weight) in cluster.weights.iter().enumerate() {
-                far(place(cluster.low, cluster.high, index), weight);
-            }
+            let places = std::array::from_fn(|index| place(cluster.low, cluster.high, index));
+            far(&places, &cluster.weights);
         } else if let Some((low, high)) = cluster.children {
             self.descend(low, items, from, far, near);
             self.descend(high, items, from, far, near);
         } else {
-            (first..last).for_each(near);
+            near(first..last);
         }
     }
 }
@@ -199,7 +220,7 @@ mod tests {
     fn far_and_near_together_are_the_whole() {
         let bounds: Vec<f64> = (0..=100u32).map(|i| f64::from(i * i)).collect();
         let source = |item: usize| (0.3 * bounds[item] + 0.7 * bounds[item + 1], 1.0 + bounds[item].sin());
-        let far = FarField::new(&bounds, |item, add| {
+        let far = FarField::new(&bounds, 4, |item, add| {
             let (at, weight) = source(item);
             add(at, weight);
         });

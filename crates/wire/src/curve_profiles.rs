@@ -1,0 +1,124 @@
+//! Profiles of contacts that are known by their load curve alone: asperities, measured curves, Hertz's ellipse.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::profile::{self as families, Asperities, Ellipsoid, LoadCurve, Profile as Shape};
+use stickslip_mechanics::{CurveFault, Elasticity, Error, range, range::Range};
+
+use super::check::{Faults, JsonPath};
+use super::limits::{self, Limit as _};
+use super::profile::accepted;
+
+/// Hertzian asperities between two rigid bodies, of which each is an elastic contact of its own.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct AsperitiesProfile {
+    /// Radii of curvature, m, one for each gap; or give one `radius` for all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub radii: Option<Vec<f64>>,
+    /// Radius of curvature of all asperities, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub radius: Option<f64>,
+    /// Distances of the tips from the flat before the load, m, in any order; an offset does not matter, because the indentation
+    /// counts from the first touch.
+    pub gaps: Vec<f64>,
+}
+
+/// A load curve from the first touch on. Its slope must not fall.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct LoadCurveProfile {
+    /// Indentations d, m: from 0 on, increasing. The indentation never exceeds the last.
+    pub indentation: Vec<f64>,
+    /// The normal force F_N at each, N: from 0 on.
+    pub normal_force: Vec<f64>,
+}
+
+/// A gap x²/(2 R_x) + y²/(2 R_y); `material` must name the bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct EllipsoidProfile {
+    /// The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most.
+    pub radii: Vec<f64>,
+    /// The axis along which the indenter moves.
+    pub direction: Direction,
+}
+
+/// The axis of the tangential motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// Along x, whose radius is R_x.
+    X,
+    /// Along y, whose radius is R_y.
+    Y,
+}
+
+impl AsperitiesProfile {
+    /// The checked profile; its faults are noted at `at`.
+    pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+        faults.part(|faults| {
+            limits::ASPERITY_GAPS.check(&self.gaps, at.member("gaps"), faults);
+            match (&self.radii, self.radius) {
+                (Some(radii), None) => limits::ASPERITY_RADII.check(radii, at.member("radii"), faults),
+                (None, Some(radius)) => faults.number(at.member("radius"), radius, &range::RADIUS),
+                _ => faults.add(at, "give either `radii`, one for each gap, or one `radius` for all"),
+            }
+        })?;
+        let radii = self.radii.as_deref().unwrap_or(self.radius.as_slice());
+        if self.radii.is_some() && radii.len() != self.gaps.len() {
+            let (radii, gaps) = (radii.len(), self.gaps.len());
+            faults.add(at.member("gaps"), format_args!("{gaps} gaps for {radii} radii: there must be as many"));
+            return None;
+        }
+        accepted(Asperities::new(radii, &self.gaps).map(Shape::Asperities), at, faults)
+    }
+}
+
+impl LoadCurveProfile {
+    /// The checked profile of these bodies; its faults are noted at `at`.
+    pub(super) fn check(&self, bodies: &Elasticity, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+        let LoadCurveProfile { indentation, normal_force } = self;
+        faults.part(|faults| {
+            limits::CURVE_INDENTATIONS.check(indentation, at.member("indentation"), faults);
+            limits::CURVE_FORCES.check(normal_force, at.member("normal_force"), faults);
+        })?;
+        let curve = LoadCurve::new(indentation, normal_force, bodies);
+        if let Err(Error::Curve { fault, index }) = curve {
+            let (member, whole) = match fault {
+                CurveFault::LengthsDiffer => ("normal_force", true),
+                CurveFault::IndentationNotRising => ("indentation", false),
+                CurveFault::NotFromZero if indentation.first().is_some_and(|first| *first > 0.0) => {
+                    ("indentation", false)
+                }
+                CurveFault::NotFromZero | CurveFault::ForceNotRising | CurveFault::SlopeFalls => {
+                    ("normal_force", false)
+                }
+            };
+            let place = at.member(member);
+            faults.add(if whole { place } else { place.index(index) }, fault);
+            return None;
+        }
+        accepted(curve.map(Shape::LoadCurve), at, faults)
+    }
+}
+
+impl EllipsoidProfile {
+    /// The checked profile; its faults are noted at `at`.
+    pub(super) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<Shape> {
+        let place = at.member("radii");
+        faults.part(|faults| limits::ELLIPSOID_RADII.check(&self.radii, place, faults))?;
+        let &[x, y] = self.radii.as_slice() else { return None };
+        let ratio = x.max(y) / x.min(y);
+        let Range { max, .. } = range::RADIUS_RATIO;
+        if ratio > max {
+            faults.add(place, format_args!("one radius is {ratio:e} times the other: {max:e} times is the most"));
+            return None;
+        }
+        let direction = match self.direction {
+            Direction::X => families::Direction::X,
+            Direction::Y => families::Direction::Y,
+        };
+        accepted(Ellipsoid::new([x, y], direction).map(Shape::Ellipsoid), at, faults)
+    }
+}
