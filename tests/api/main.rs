@@ -32,6 +32,7 @@ mod fuzz_http;
 mod limiting_cases;
 mod logs;
 mod metrics;
+mod newest_moves;
 mod openapi;
 mod otlp;
 mod profiles;
