@@ -9,6 +9,8 @@ use axum::extract::{FromRequestParts, Query};
 use axum::http::HeaderMap;
 use axum::http::request::Parts;
 
+use utoipa::IntoParams;
+
 use stickslip_wire::{Fault, Faults, JsonPath, Rejection};
 
 use super::formats::Format;
@@ -22,13 +24,53 @@ pub const DEFAULT_PAGE: usize = 100;
 
 /// What [`QueryReader::number`] expects of a count.
 pub const COUNT: &str = "a whole number, not negative";
-/// What [`QueryReader::number`] expects of the place after which a page of moves begins.
-pub const SEQUENCE: &str = "the number of a move";
+/// What is expected of the place after which a page of moves begins.
+const SEQUENCE: &str = "the number of a move";
 
 /// The parameters of an operation.
 pub trait QueryParams: Sized {
     /// Takes its parameters out of the query; `None` if it has noted a fault without which there would be a value.
     fn take(query: &mut QueryReader, headers: &HeaderMap) -> Option<Self>;
+}
+
+/// Which moves of a contact a reply is of, as the query has it.
+#[derive(Clone, Copy, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct MovesQuery {
+    /// The `next` of the previous page.
+    #[param(nullable = false)]
+    after: Option<u64>,
+    /// How many moves at most. Without `after`, `limit` and `last`, `csv`, `ndjson` and `arrow` are of all moves.
+    #[param(nullable = false)]
+    limit: Option<usize>,
+    /// The newest moves, so many; in place of `after` and `limit`. A plot shows the newest unless `after` is given.
+    #[param(nullable = false)]
+    last: Option<usize>,
+}
+
+/// Which moves of a contact a reply is of.
+#[derive(Clone, Copy)]
+pub enum Moves {
+    /// At most so many after this one.
+    Page(u64, usize),
+    /// So many, up to the last one.
+    Newest(usize),
+    /// All of them, piece by piece.
+    All,
+}
+
+impl MovesQuery {
+    /// The moves for a reply in a format. If the query does not say, a plot shows the newest moves, and a table that programs
+    /// read row by row has all of them.
+    #[must_use]
+    pub fn of(&self, format: Format) -> Moves {
+        match *self {
+            MovesQuery { last: Some(last), .. } => Moves::Newest(last),
+            MovesQuery { after: None, limit, .. } if format.is_plot() => Moves::Newest(limit.unwrap_or(DEFAULT_PAGE)),
+            MovesQuery { after: None, limit: None, .. } if format.is_stream() => Moves::All,
+            MovesQuery { after, limit, .. } => Moves::Page(after.unwrap_or(0), limit.unwrap_or(DEFAULT_PAGE)),
+        }
+    }
 }
 
 /// For operations without parameters.
@@ -102,6 +144,19 @@ impl QueryReader {
         let limit = self.number("limit", COUNT).unwrap_or(DEFAULT_PAGE);
         self.faults.count(JsonPath::Root.member("limit"), limit, &PAGE);
         (after, limit)
+    }
+
+    /// The parameters `after`, `limit` and `last`: which moves of a contact.
+    pub fn moves(&mut self) -> MovesQuery {
+        let after = self.number("after", SEQUENCE);
+        let [limit, last] = ["limit", "last"].map(|name| {
+            let count = self.number(name, COUNT);
+            count.inspect(|count| self.faults.count(JsonPath::Root.member(name), *count, &PAGE))
+        });
+        if last.is_some() && (after.is_some() || limit.is_some()) {
+            self.faults.add(JsonPath::Root.member("last"), "the newest moves need no `after` and no `limit`");
+        }
+        MovesQuery { after, limit, last }
     }
 
     /// The parameter `format`, one of `formats`.

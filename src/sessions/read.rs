@@ -172,6 +172,17 @@ impl Sessions {
         Ok(SessionPage { items: found, next })
     }
 
+    /// The number of moves of a session.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
+    pub async fn sequence(&self, id: Uuid) -> Result<u64, SessionError> {
+        if !self.common.cache.holds(&self.tenant, id) {
+            return Ok(self.find_own(id).await?.sequence);
+        }
+        self.common.store.sequence(id).await.map_err(|error| self.store_error(id, error))
+    }
+
     /// A page of a session's moves, oldest first.
     ///
     /// # Errors

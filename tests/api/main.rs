@@ -37,6 +37,7 @@ mod limiting_cases;
 mod load_curves;
 mod logs;
 mod metrics;
+mod newest_moves;
 mod openapi;
 mod otlp;
 mod profiles;

@@ -20,7 +20,7 @@ use stickslip_report::plot::Picture;
 use super::problem::Problem;
 use super::reply;
 
-pub use table::Table;
+pub use table::{Table, TableStream};
 
 /// Bytes of a row of stresses in the longest of the formats.
 pub const STRESS_ROW: usize = 256;
@@ -93,6 +93,12 @@ impl Format {
         matches!(self, Format::Svg | Format::Png)
     }
 
+    /// Whether it is a table that is read row by row, and can be sent piece by piece.
+    #[must_use]
+    pub fn is_stream(self) -> bool {
+        matches!(self, Format::Csv | Format::Ndjson | Format::Arrow)
+    }
+
     /// Bytes that writing takes beyond the columns, for `rows` rows of `row` bytes each.
     #[must_use]
     pub fn bytes(self, rows: usize, row: usize) -> usize {
@@ -148,6 +154,7 @@ impl Format {
     }
 }
 
-fn unwritable(error: impl Display) -> Problem {
+/// The problem of a reply that cannot be written.
+pub fn unwritable(error: impl Display) -> Problem {
     Problem::internal(format!("a reply cannot be written: {error}"))
 }

@@ -115,7 +115,7 @@ pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
         }],
     };
     Plot {
-        title: format!("Contact {id}: history"),
+        title: format!("Contact {id}: history{}", shown(page.items.iter().map(|item| item.sequence))),
         x: Axis { name: "move", unit: None },
         panels: vec![
             panel("displacement", "m", Colour::Blue, |state| state.displacement),
@@ -131,13 +131,22 @@ pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
 pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
     let points = page.displacement.iter().copied().zip(page.force.iter().copied()).collect();
     Plot {
-        title: format!("Contact {id}: hysteresis loop"),
+        title: format!("Contact {id}: hysteresis loop{}", shown(page.sequence.iter().copied())),
         x: Axis { name: "displacement U", unit: Some("m") },
         panels: vec![Panel {
             y: Axis { name: "tangential force F", unit: Some("N") },
             curves: vec![Curve { name: "", points, colour: Colour::Blue, silent: true }],
         }],
         bands: Vec::new(),
+    }
+}
+
+/// Which moves a plot shows, for its title.
+fn shown(mut moves: impl DoubleEndedIterator<Item = u64>) -> String {
+    let Some(last) = moves.next_back() else { return String::new() };
+    match moves.next() {
+        Some(first) if first < last => format!(", moves {first} to {last}"),
+        _ => format!(", move {last}"),
     }
 }
 

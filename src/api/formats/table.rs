@@ -164,19 +164,12 @@ impl<'a> Table<'a> {
         blocks: usize,
         range: impl Fn(usize) -> Range<usize> + Send + 'a,
     ) -> impl Iterator<Item = Block> + Send + 'a {
-        let schema = Arc::new(Schema::new(self.columns.iter().map(Column::field).collect::<Vec<_>>()));
-        let mut writer = StreamWriter::try_new(Vec::new(), &schema);
-        (0..=blocks).map(move |block| {
-            let writer = writer.as_mut().map_err(|error| ArrowError::IpcError(error.to_string()))?;
-            if block < blocks {
-                let arrays = self.columns.iter().map(|column| column.array(range(block)));
-                writer.write(&RecordBatch::try_new(Arc::clone(&schema), arrays.collect())?)?;
-            } else {
-                // A reader detects a truncated stream by the absence of this mark.
-                writer.finish()?;
-            }
-            Ok(std::mem::take(writer.get_mut()))
-        })
+        let mut stream = TableStream::new(Format::Arrow);
+        (0..=blocks).map(
+            move |block| {
+                if block < blocks { stream.push_rows(&self, range(block)) } else { stream.finish() }
+            },
+        )
     }
 
     fn write_column(&self, index: usize, rows: Range<usize>, text: &mut String) -> fmt::Result {
@@ -201,12 +194,19 @@ impl<'a> Table<'a> {
         let (is_first, is_last) = (rows.start == 0, rows.end == self.rows);
         match format {
             Format::Rows if is_first => text.push('['),
-            Format::Csv if is_first => {
-                let names: Vec<_> = self.columns.iter().map(|column| csv_name(&column.name)).collect();
-                *text = names.join(",") + "\n";
-            }
+            Format::Csv if is_first => *text = self.csv_names(),
             _ => {}
         }
+        self.write_cells(rows, format, text)?;
+        text.push_str(if is_last && format == Format::Rows { "]" } else { "" });
+        Ok(())
+    }
+
+    fn csv_names(&self) -> String {
+        self.columns.iter().map(|column| csv_name(&column.name)).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    fn write_cells(&self, rows: Range<usize>, format: Format, text: &mut String) -> fmt::Result {
         let (between, end) = match format {
             Format::Csv => ("", "\n"),
             Format::Rows => (",", "}"),
@@ -224,8 +224,63 @@ impl<'a> Table<'a> {
             }
             text.push_str(end);
         }
-        text.push_str(if is_last && format == Format::Rows { "]" } else { "" });
         Ok(())
+    }
+}
+
+/// A table that is written from several of the same columns, one after another: only the rows differ.
+pub struct TableStream {
+    format: Format,
+    begun: bool,
+    /// The writer of [`Format::Arrow`], from the first rows on.
+    arrow: Option<StreamWriter<Vec<u8>>>,
+}
+
+impl TableStream {
+    /// An empty one, in a format that [is read row by row](Format::is_stream).
+    #[must_use]
+    pub fn new(format: Format) -> TableStream {
+        TableStream { format, begun: false, arrow: None }
+    }
+
+    /// The next rows, after what the format begins with.
+    ///
+    /// # Errors
+    /// The error of the Arrow library; none for columns of different names.
+    pub fn push(&mut self, table: &Table<'_>) -> Block {
+        self.push_rows(table, 0..table.rows)
+    }
+
+    fn push_rows(&mut self, table: &Table<'_>, rows: Range<usize>) -> Block {
+        if self.format == Format::Arrow {
+            let schema = Arc::new(Schema::new(table.columns.iter().map(Column::field).collect::<Vec<_>>()));
+            let writer = match &mut self.arrow {
+                Some(writer) => writer,
+                none => none.insert(StreamWriter::try_new(Vec::new(), &schema)?),
+            };
+            let arrays = table.columns.iter().map(|column| column.array(rows.clone()));
+            writer.write(&RecordBatch::try_new(schema, arrays.collect())?)?;
+            return Ok(std::mem::take(writer.get_mut()));
+        }
+        let mut text = String::new();
+        if self.format == Format::Csv && !self.begun {
+            text = table.csv_names();
+        }
+        self.begun = true;
+        // Writing to a string cannot fail.
+        let _ = table.write_cells(rows, self.format, &mut text);
+        Ok(text.into_bytes())
+    }
+
+    /// What the format ends with.
+    ///
+    /// # Errors
+    /// As [`TableStream::push`].
+    pub fn finish(&mut self) -> Block {
+        let Some(writer) = &mut self.arrow else { return Ok(Vec::new()) };
+        // A reader detects a truncated stream by the absence of this mark.
+        writer.finish()?;
+        Ok(std::mem::take(writer.get_mut()))
     }
 }
 

@@ -14,7 +14,7 @@ use crate::api::resources::stress::QUERY_RADII;
 pub fn write(document: &mut Value) {
     for (_, path, operation) in operations(document) {
         for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
-            write_parameter(parameter);
+            write_parameter(parameter, path);
         }
         if path == "/contacts/{id}/fork" {
             operation["requestBody"]["required"] = json!(false);
@@ -23,7 +23,7 @@ pub fn write(document: &mut Value) {
 }
 
 /// The limits, and the form of lists and of headers.
-fn write_parameter(parameter: &mut Value) {
+fn write_parameter(parameter: &mut Value, path: &str) {
     let name = parameter["name"].as_str().unwrap_or_default().to_owned();
     let schema = &mut parameter["schema"];
     let is_integer = schema["type"] == "integer";
@@ -34,7 +34,9 @@ fn write_parameter(parameter: &mut Value) {
         }
         "last" => {
             set_range(schema, &limits::CYCLES);
-            schema["default"] = json!(DEFAULT_PAGE);
+            if path.ends_with("/cycles") {
+                schema["default"] = json!(DEFAULT_PAGE);
+            }
         }
         "points_per_move" => set_range(schema, &limits::LOOP_POINTS),
         "points" => set_range(schema, &limits::STRESS_POINTS),

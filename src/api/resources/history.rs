@@ -1,17 +1,21 @@
 //! `/contacts/{id}/history`: the moves that a contact has made.
 
+use std::sync::Arc;
+
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
 use utoipa::IntoParams;
+use uuid::Uuid;
 
 use stickslip_wire::HistoryPage;
 
-use crate::api::formats::{Format, plots, tables};
+use super::whole_history;
+use crate::api::formats::{Format, TableStream, plots, tables, unwritable};
 use crate::api::params::ContactPath;
 use crate::api::problem::Problem;
-use crate::api::query::{CheckedQuery, QueryParams, QueryReader, SEQUENCE};
+use crate::api::query::{CheckedQuery, Moves, MovesQuery, QueryParams, QueryReader};
 use crate::api::reply;
-use crate::api::state::TenantApp;
+use crate::api::state::{App, TenantApp};
 
 /// Bytes of an item of a history.
 pub(super) const ITEM_BYTES: usize = 1_792;
@@ -20,12 +24,8 @@ pub(super) const ITEM_BYTES: usize = 1_792;
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct HistoryQuery {
-    /// The `next` of the previous page.
-    #[param(value_type = Option<u64>, nullable = false)]
-    after: u64,
-    /// How many moves at most.
-    #[param(value_type = Option<usize>, nullable = false)]
-    limit: usize,
+    #[param(ignore)]
+    moves: MovesQuery,
     /// Whether to add the cycle that a move closed to it. This needs the moves before the page too, once: without it
     /// nothing but the page is read.
     #[param(value_type = Option<bool>, nullable = false, default = true)]
@@ -38,17 +38,17 @@ pub struct HistoryQuery {
 
 impl QueryParams for HistoryQuery {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<HistoryQuery> {
-        let (after, limit) = query.page(SEQUENCE);
+        let moves = query.moves();
         let cycles = query.number("cycles", "true or false").unwrap_or(true);
-        Some(HistoryQuery { after: after.unwrap_or(0), limit, cycles, format: query.format(&Format::ALL) })
+        Some(HistoryQuery { moves, cycles, format: query.format(&Format::ALL) })
     }
 }
 
 /// Get the history of a contact
 ///
-/// A page of its moves with the states after them and the cycles that they closed, oldest first.
+/// Moves with the states after them and the cycles that they closed, oldest first: a page, the newest, or all of them.
 #[utoipa::path(
-    get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, HistoryQuery),
+    get, path = "/contacts/{id}/history", tag = "contacts", params(ContactPath, MovesQuery, HistoryQuery),
     responses((status = 200, description = "A page of moves", body = HistoryPage,
         headers(("ETag" = String, description = "The version of this page, in quotes"))))
 )]
@@ -58,11 +58,27 @@ pub async fn get_history(
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<HistoryQuery>,
 ) -> Result<Response, Problem> {
-    let HistoryQuery { after, limit, cycles, format } = query;
+    let HistoryQuery { moves, cycles, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
+    let unmarked = if cycles { "" } else { "-unmarked" };
+    let (after, limit) = match moves.of(format) {
+        Moves::Page(after, limit) => (after, limit),
+        Moves::Newest(limit) => (newest(&app, id, limit).await?, limit),
+        Moves::All => {
+            let end = app.sessions.sequence(id).await?;
+            let tag = format.tag(&format!("{end}-all{unmarked}"));
+            if reply::is_current(&headers, &tag) {
+                return Ok(reply::not_modified(&tag));
+            }
+            let memory = app.pool.reserve(whole_history::PAGE * ITEM_BYTES).await?;
+            let table = whole_history::table(format, end, move |table, after, limit| {
+                write_page(Arc::clone(&app), id, (after, limit), cycles, table)
+            });
+            return Ok(reply::holding(reply::tagged(format.reply(table), &tag), memory));
+        }
+    };
     let memory = app.pool.reserve(limit * ITEM_BYTES + format.bytes(0, 0)).await?;
     let mut page = app.sessions.history(id, after, limit).await?;
-    let unmarked = if cycles { "" } else { "-unmarked" };
     let tag = format.tag(&(version(&page, after) + unmarked));
     if reply::is_current(&headers, &tag) {
         return Ok(reply::not_modified(&tag));
@@ -77,6 +93,26 @@ pub async fn get_history(
     let query = |next| format!("after={next}&limit={limit}{choice}&format={}", format.name());
     let next = next.map(|next| format!("/contacts/{id}/history?{}", query(next)));
     Ok(reply::holding(with_next(response, next), memory))
+}
+
+/// The move after which the newest moves begin, so many of them.
+pub(super) async fn newest(app: &App, id: Uuid, limit: usize) -> Result<u64, Problem> {
+    Ok(app.sessions.sequence(id).await?.saturating_sub(limit as u64))
+}
+
+async fn write_page(
+    app: Arc<App>,
+    id: Uuid,
+    (after, limit): (u64, usize),
+    cycles: bool,
+    mut table: TableStream,
+) -> Result<(TableStream, Vec<u8>), Problem> {
+    let mut page = app.sessions.history(id, after, limit).await?;
+    if cycles {
+        app.sessions.mark(id, &mut page).await?;
+    }
+    let block = table.push(&tables::history(&page)).map_err(unwritable)?;
+    Ok((table, block))
 }
 
 /// The version of a page. Moves never change, so that the last one and whether more follow determine a page.

@@ -1,30 +1,30 @@
 //! `/contacts/{id}/loop`: the tangential force over the displacement along the moves of a contact.
 
+use std::sync::Arc;
+
 use axum::http::HeaderMap;
 use axum::response::Response;
 use utoipa::IntoParams;
+use uuid::Uuid;
 
 use crate::sessions::Sessions;
 use stickslip_wire::{JsonPath, LoopPage, limits};
 
-use super::history::{ITEM_BYTES, version, with_next};
-use crate::api::formats::{Format, plots, tables};
+use super::history::{ITEM_BYTES, newest, version, with_next};
+use super::whole_history;
+use crate::api::formats::{Format, TableStream, plots, tables, unwritable};
 use crate::api::params::ContactPath;
 use crate::api::problem::Problem;
-use crate::api::query::{COUNT, CheckedQuery, QueryParams, QueryReader, SEQUENCE};
+use crate::api::query::{COUNT, CheckedQuery, Moves, MovesQuery, QueryParams, QueryReader};
 use crate::api::reply;
-use crate::api::state::TenantApp;
+use crate::api::state::{App, TenantApp};
 
 /// Which part of a loop to trace.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct LoopQuery {
-    /// The `next` of the previous page.
-    #[param(value_type = Option<u64>, nullable = false)]
-    after: u64,
-    /// How many moves at most.
-    #[param(value_type = Option<usize>, nullable = false)]
-    limit: usize,
+    #[param(ignore)]
+    moves: MovesQuery,
     /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
     /// states; with more, the moves are repeated in small steps on a copy of the contact.
     #[param(value_type = Option<usize>, nullable = false, default = 1)]
@@ -37,18 +37,18 @@ pub struct LoopQuery {
 
 impl QueryParams for LoopQuery {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<LoopQuery> {
-        let (after, limit) = query.page(SEQUENCE);
+        let moves = query.moves();
         let points_per_move = query.number("points_per_move", COUNT).unwrap_or(1);
         query.faults.count(JsonPath::Root.member("points_per_move"), points_per_move, &limits::LOOP_POINTS);
-        Some(LoopQuery { after: after.unwrap_or(0), limit, points_per_move, format: query.format(&Format::ALL) })
+        Some(LoopQuery { moves, points_per_move, format: query.format(&Format::ALL) })
     }
 }
 
 /// Get the hysteresis loop of a contact
 ///
-/// Tangential force and displacement along a page of its moves, oldest first.
+/// Tangential force and displacement along moves, oldest first: a page, the newest, or all of them.
 #[utoipa::path(
-    get, path = "/contacts/{id}/loop", tag = "contacts", params(ContactPath, LoopQuery),
+    get, path = "/contacts/{id}/loop", tag = "contacts", params(ContactPath, MovesQuery, LoopQuery),
     responses((status = 200, description = "A page of the loop", body = LoopPage,
         headers(("ETag" = String, description = "The version of this page, in quotes"))))
 )]
@@ -58,10 +58,26 @@ pub async fn get_loop(
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<LoopQuery>,
 ) -> Result<Response, Problem> {
-    let LoopQuery { after, limit, points_per_move: points, format } = query;
+    let LoopQuery { moves, points_per_move: points, format } = query;
     let format = Format::chosen(format, &headers, &Format::ALL)?;
-    let bytes = limit * ITEM_BYTES + Sessions::bytes_of_trace(limit * points) + format.bytes(0, 0);
-    let memory = app.pool.reserve(bytes).await?;
+    let bytes = |moves: usize| moves * ITEM_BYTES + Sessions::bytes_of_trace(moves * points) + format.bytes(0, 0);
+    let (after, limit) = match moves.of(format) {
+        Moves::Page(after, limit) => (after, limit),
+        Moves::Newest(limit) => (newest(&app, id, limit).await?, limit),
+        Moves::All => {
+            let end = app.sessions.sequence(id).await?;
+            let tag = format.tag(&format!("{end}-all"));
+            if reply::is_current(&headers, &tag) {
+                return Ok(reply::not_modified(&tag));
+            }
+            let memory = app.pool.reserve(bytes(whole_history::PAGE)).await?;
+            let table = whole_history::table(format, end, move |table, after, limit| {
+                write_page(Arc::clone(&app), id, (after, limit), points, table)
+            });
+            return Ok(reply::holding(reply::tagged(format.reply(table), &tag), memory));
+        }
+    };
+    let memory = app.pool.reserve(bytes(limit)).await?;
     let past = app.sessions.history(id, after, limit).await?;
     let tag = format.tag(&version(&past, after));
     if reply::is_current(&headers, &tag) {
@@ -76,4 +92,17 @@ pub async fn get_loop(
         format!("/contacts/{id}/loop?{query}")
     });
     Ok(reply::holding(with_next(response, next), memory))
+}
+
+async fn write_page(
+    app: Arc<App>,
+    id: Uuid,
+    (after, limit): (u64, usize),
+    points: usize,
+    mut table: TableStream,
+) -> Result<(TableStream, Vec<u8>), Problem> {
+    let past = app.sessions.history(id, after, limit).await?;
+    let page = app.sessions.trace(id, after, &past.items, points).await?;
+    let block = table.push(&tables::hysteresis_loop(&page)).map_err(unwritable)?;
+    Ok((table, block))
 }

@@ -18,3 +18,4 @@ pub mod simulate;
 pub mod stress;
 pub mod subsurface;
 pub mod sweep;
+mod whole_history;
