@@ -1,0 +1,5 @@
+//! What a scan says, against shapes whose contact is known.
+
+mod coverage;
+mod debug;
+mod synthetic;
