@@ -60,8 +60,8 @@ impl Symmetric {
             let row = &mut rest[..size];
             // Row by row, so that the inner products run along them.
             for earlier in 0..column {
-                row[earlier] =
-                    (row[earlier] - dot(&row[..earlier], &above[earlier * size..][..earlier])) / above[earlier * size + earlier];
+                row[earlier] = (row[earlier] - dot(&row[..earlier], &above[earlier * size..][..earlier]))
+                    / above[earlier * size + earlier];
             }
             let pivot = row[column] - dot(&row[..column], &row[..column]);
             if pivot <= 1e-14 * self.at(column, column) {

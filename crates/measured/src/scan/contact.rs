@@ -32,7 +32,8 @@ fn functionals(b: f64, a: f64, at: f64) -> Result<[f64; 3], Error> {
     if a <= b {
         return Ok([0.0; 3]);
     }
-    let shape = if b > 0.0 { Profile::RoundedPunch(RoundedPunch::new(b, 1.0)?) } else { Profile::Sphere(Sphere::new(1.0)?) };
+    let shape =
+        if b > 0.0 { Profile::RoundedPunch(RoundedPunch::new(b, 1.0)?) } else { Profile::Sphere(Sphere::new(1.0)?) };
     let level = shape.level(a);
     let whole = Ring::between(shape.point(0.0.into()), shape.point(level.into()));
     let load = whole.inner.radius * whole.depth + shape.moments(&whole).first;
@@ -51,10 +52,14 @@ impl ScanFit {
         let (a, e_star) = (summary.contact_radius, elasticity.e_star());
         let radii: Vec<f64> = (0..PLACES).map(|index| a * index as f64 / PLACES as f64).collect();
         let pressures = contact.pressures(&radii);
-        let at = (0..PLACES).max_by(|&one, &other| pressures[one].total_cmp(&pressures[other])).map_or(0.0, |index| radii[index]);
+        let at = (0..PLACES)
+            .max_by(|&one, &other| pressures[one].total_cmp(&pressures[other]))
+            .map_or(0.0, |index| radii[index]);
 
         let count = self.curve.curvatures.len();
-        let from = (0..=count).map(|index| functionals(index as f64 * self.curve.width, a, at)).collect::<Result<Vec<_>, _>>()?;
+        let from = (0..=count)
+            .map(|index| functionals(index as f64 * self.curve.width, a, at))
+            .collect::<Result<Vec<_>, _>>()?;
         let slope = self.profile.slope(a);
         let edge = slope / ((a - at) * (a + at)).sqrt();
         // Per curvature: the change of radius, then those of all else.
@@ -96,7 +101,9 @@ impl ScanFit {
         let Ok([level, load, _]) = self.at_end(reach) else { return error.into() };
         let s = self.profile.slope(reach * (1.0 - 1e-9)) / reach;
         let needed = match preload {
-            Preload::NormalForce(force) => (reach.powi(3) + 3.0 * (force / (2.0 * elasticity.e_star()) - load) / s).cbrt(),
+            Preload::NormalForce(force) => {
+                (reach.powi(3) + 3.0 * (force / (2.0 * elasticity.e_star()) - load) / s).cbrt()
+            }
             Preload::Indentation(depth) => (reach * reach + 2.0 * (depth - level) / s).sqrt(),
             Preload::ContactRadius(radius) => radius,
         };
@@ -106,7 +113,9 @@ impl ScanFit {
     /// g, L and pressure of the whole curve at its end.
     fn at_end(&self, reach: f64) -> Result<[f64; 3], Error> {
         let count = self.curve.curvatures.len();
-        let from = (0..=count).map(|index| functionals(index as f64 * self.curve.width, reach, 0.0)).collect::<Result<Vec<_>, _>>()?;
+        let from = (0..=count)
+            .map(|index| functionals(index as f64 * self.curve.width, reach, 0.0))
+            .collect::<Result<Vec<_>, _>>()?;
         let sum = |which: usize| {
             let shares: Vec<f64> = from.windows(2).map(|pair| pair[0][which] - pair[1][which]).collect();
             dot(&shares, &self.curve.curvatures)

@@ -4,12 +4,12 @@
 //! -f'(r) s . e_r to first order: a further column, so that each solution moves the axis by a step of Gauss and Newton. Residuals are weighted
 //! by Huber at first; then those beyond [`OUTLIER`] robust standard deviations are left out.
 
+use super::Error;
 use super::curve::Curve;
 use super::noise::{self, OUTLIER};
 use super::normal_equations::{Equations, MOST_COLUMNS, Solution, Statistics};
 use super::smoothing::{self, Smoothing};
 use super::start;
-use super::Error;
 
 /// Intervals of the curve, at most; and how many points each is to have.
 const INTERVALS: std::ops::RangeInclusive<usize> = 6..=80;
@@ -156,7 +156,14 @@ impl Turns<'_> {
     }
 
     /// The last solution: with the smoothness that the correlation of the noise asks for.
-    fn finish(&self, axis: [f64; 2], weights: &[f64], curve: Option<Curve>, parabola: f64, deviation: f64) -> Result<Fitted, Error> {
+    fn finish(
+        &self,
+        axis: [f64; 2],
+        weights: &[f64],
+        curve: Option<Curve>,
+        parabola: f64,
+        deviation: f64,
+    ) -> Result<Fitted, Error> {
         let mut equations = self.equations(axis, weights, curve.as_ref(), parabola, deviation)?;
         let kept: Vec<bool> = weights.iter().map(|weight| *weight > 0.5).collect();
         let (mut inflation, mut turn) = (1.0, 0);
@@ -201,7 +208,14 @@ impl Turns<'_> {
     }
 
     /// Leaves out what is far off, unless its whole ring is: there the curve is at fault, at an edge for example.
-    fn leave_out_outliers(&self, weights: &mut [f64], residuals: &[f64], deviation: f64, axis: [f64; 2], curve: &Curve) {
+    fn leave_out_outliers(
+        &self,
+        weights: &mut [f64],
+        residuals: &[f64],
+        deviation: f64,
+        axis: [f64; 2],
+        curve: &Curve,
+    ) {
         let last = curve.curvatures.len() - 1;
         let rings: Vec<usize> = self.places(axis).map(|(r, _)| ((r / curve.width) as usize).min(last)).collect();
         let mut sizes = vec![Vec::new(); last + 1];
@@ -234,7 +248,14 @@ impl Turns<'_> {
     }
 
     /// The equations about an axis, for heights without the parabola.
-    fn equations(&self, axis: [f64; 2], weights: &[f64], curve: Option<&Curve>, parabola: f64, deviation: f64) -> Result<Equations, Error> {
+    fn equations(
+        &self,
+        axis: [f64; 2],
+        weights: &[f64],
+        curve: Option<&Curve>,
+        parabola: f64,
+        deviation: f64,
+    ) -> Result<Equations, Error> {
         let end = self.places(axis).zip(weights).filter(|(_, weight)| **weight > 0.0);
         let (end, used) = end.fold((0.0, 0usize), |(end, used), ((r, _), _)| (f64::max(end, r), used + 1));
         if used < super::FEWEST_POINTS || end <= 0.0 {

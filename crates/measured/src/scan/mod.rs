@@ -33,6 +33,11 @@ pub const FEWEST_POINTS: usize = 12;
 pub const DRAWN_POINTS: usize = 4_000;
 /// Parabolas added to a curve whose table does not rise, as shares of its mean curvature.
 const LIFTS: [f64; 8] = [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
+/// Half the width of a scan, m.
+const EXTENT: std::ops::Range<f64> = 1e-9..1e3;
+/// Range of the heights over half the width.
+const LEAST_RISE: f64 = 1e-12;
+const MOST_RISE: f64 = 1e3;
 /// Intervals between neighbouring points of the table.
 const TABLE_STEP: f64 = 0.5;
 
@@ -51,8 +56,24 @@ pub enum Error {
         /// Place or height.
         what: &'static str,
     },
+    /// The scan is too large or too small for an instrument.
+    #[error("the scan is {} wide: from 2 nm to 2 km can be fitted; check `units`", micrometres(*width))]
+    Extent {
+        /// Its width, m.
+        width: f64,
+    },
+    /// The heights are out of proportion.
+    #[error("the scan is {} wide and {} high: check `units`", micrometres(*width), micrometres(*height))]
+    Steep {
+        /// Its width, m.
+        width: f64,
+        /// The range of its heights, m.
+        height: f64,
+    },
     /// No axis about which the surface falls away to all sides.
-    #[error("about no axis does the surface fall away from a peak: is it a hollow, or the other way up than `orientation` says?")]
+    #[error(
+        "about no axis does the surface fall away from a peak: is it a hollow, or the other way up than `orientation` says?"
+    )]
     Hollow,
     /// The axis given is not in the scan.
     #[error("the scan has no points near this axis: the nearest is {} away, the farthest {}", micrometres(*nearest), micrometres(*farthest))]
@@ -181,7 +202,9 @@ pub struct ScanFit {
     pub rms: f64,
     /// How far the residual is correlated along the scan, m: to 1/e.
     pub correlation_length: f64,
-    /// How many points were left out.
+    /// How many points have a height.
+    pub used: usize,
+    /// How many of them were left out.
     pub outliers: usize,
     /// The points that were fitted, thinned to [`DRAWN_POINTS`].
     pub raw: Column,
@@ -207,7 +230,8 @@ impl ScanFit {
         let axis = options.centre.map(|centre| units.place(centre, scan.plane));
         if let Some([x, y]) = axis {
             let distances = scaled.points.iter().map(|point| (point[0] - x).hypot(point[1] - y));
-            let (nearest, farthest) = distances.fold((f64::INFINITY, 0.0), |(a, b), r| (f64::min(a, r), f64::max(b, r)));
+            let (nearest, farthest) =
+                distances.fold((f64::INFINITY, 0.0), |(a, b), r| (f64::min(a, r), f64::max(b, r)));
             if nearest > 0.5 * farthest {
                 let [nearest, farthest] = [nearest, farthest].map(|distance| distance * units.length);
                 return Err(Error::AxisOutside { nearest, farthest });
@@ -255,14 +279,22 @@ fn scaled(scan: &Scan, orientation: Option<Orientation>) -> Result<(Scaled, Unit
     if length <= 0.0 {
         return Err(Error::NoExtent { what: "place" });
     }
+    if !EXTENT.contains(&length) {
+        return Err(Error::Extent { width: 2.0 * length });
+    }
     let place = |point: &[f64; 3]| [(point[0] - middle[0]) / length, (point[1] - middle[1]) / length];
     let mut placed: Vec<[f64; 3]> = points.iter().map(|point| [place(point)[0], place(point)[1], point[2]]).collect();
     // The range of the medians: an instrument's mark of a missing height must not be the unit of all others.
     let thinned = start::medians(&placed, scan.plane);
-    let (low, high) = thinned.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| (low.min(point[2]), high.max(point[2])));
+    let (low, high) = thinned
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| (low.min(point[2]), high.max(point[2])));
     let height = high - low;
-    if height <= 0.0 {
+    if height <= LEAST_RISE * length {
         return Err(Error::NoExtent { what: "height" });
+    }
+    if height > MOST_RISE * length {
+        return Err(Error::Steep { width: 2.0 * length, height });
     }
     let opens = |up: f64| if up > 0.0 { Orientation::PeakDown } else { Orientation::PeakUp };
     let orientation = orientation.unwrap_or_else(|| opens(start::curvature(&thinned, scan.plane)));
@@ -284,7 +316,6 @@ fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Units) -> Res
     let width = curve.width * units.length;
     let reach = width * curvatures.len() as f64;
     let mean = 2.0 * (curve.height(curve.end()) - curve.offset) / curve.end().powi(2) * bend;
-    let noise = fitted.variance.sqrt() * units.height;
     if mean * reach * reach <= 0.0 {
         return Err(Error::Hollow);
     }
@@ -300,13 +331,11 @@ fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Units) -> Res
         }
     }
     let apex = Estimate { value: curvatures[0], standard_error: covariance.at(0, 0).sqrt() };
-    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > covariance.at(0, 0)).then(|| Estimate {
-        value: 1.0 / apex.value,
-        standard_error: apex.standard_error / (apex.value * apex.value),
-    });
+    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > covariance.at(0, 0))
+        .then(|| Estimate { value: 1.0 / apex.value, standard_error: apex.standard_error / (apex.value * apex.value) });
     let (raw, left_out) = drawn(fitted, scaled, units);
-    let residuals: Vec<f64> = fitted.residuals.iter().zip(&fitted.kept).filter(|(_, kept)| **kept).map(|(e, _)| *e).collect();
-    let _ = noise;
+    let residuals: Vec<f64> =
+        fitted.residuals.iter().zip(&fitted.kept).filter(|(_, kept)| **kept).map(|(e, _)| *e).collect();
     let sign = if units.orientation == Orientation::PeakDown { 1.0 } else { -1.0 };
     Ok(ScanFit {
         table,
@@ -316,6 +345,7 @@ fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Units) -> Res
         orientation: units.orientation,
         rms: (dot(&residuals, &residuals) / residuals.len() as f64).sqrt() * units.height,
         correlation_length: noise::correlation_lag(&residuals) * step(scan),
+        used: fitted.kept.len(),
         outliers: fitted.kept.iter().filter(|kept| !**kept).count(),
         raw,
         left_out,
@@ -340,7 +370,8 @@ fn table(width: f64, curvatures: &[f64], mean: f64) -> Result<(Column, Profile, 
             Ok(profile) if profile.check_radius(end * (1.0 - 1e-9)).is_ok() => {
                 return Ok((Column { radius, height }, profile, curve));
             }
-            Ok(_) | Err(stickslip_mechanics::Error::NotConvexEnough { .. } | stickslip_mechanics::Error::Table { .. }) => {}
+            Ok(_)
+            | Err(stickslip_mechanics::Error::NotConvexEnough { .. } | stickslip_mechanics::Error::Table { .. }) => {}
             Err(error) => refused = error.into(),
         }
     }
@@ -354,13 +385,15 @@ fn g_margin(curve: &Curve) -> f64 {
         let x = end * index as f64 / count as f64;
         (x, curve.g_slope(x) / x)
     });
-    let (least, sum, all) = ratios.fold((f64::INFINITY, 0.0, 0.0), |(least, sum, all), (x, ratio)| (least.min(ratio), sum + ratio * x, all + x));
+    let (least, sum, all) = ratios
+        .fold((f64::INFINITY, 0.0, 0.0), |(least, sum, all), (x, ratio)| (least.min(ratio), sum + ratio * x, all + x));
     (least * all / sum).max(0.0)
 }
 
 /// The median distance of neighbouring points, m.
 fn step(scan: &Scan) -> f64 {
-    let mut steps: Vec<f64> = scan.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect();
+    let mut steps: Vec<f64> =
+        scan.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect();
     let middle = steps.len() / 2;
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
@@ -381,7 +414,10 @@ fn drawn(fitted: &Fitted, scaled: &Scaled, units: &Units) -> (Column, Column) {
         chosen.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let stride = chosen.len().div_ceil(DRAWN_POINTS).max(1);
         let kept: Vec<&[f64; 2]> = chosen.iter().step_by(stride).collect();
-        Column { radius: kept.iter().map(|point| point[0]).collect(), height: kept.iter().map(|point| point[1]).collect() }
+        Column {
+            radius: kept.iter().map(|point| point[0]).collect(),
+            height: kept.iter().map(|point| point[1]).collect(),
+        }
     };
     (column(true), column(false))
 }

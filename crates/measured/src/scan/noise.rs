@@ -52,10 +52,12 @@ pub(super) fn inflation(residuals: &[Residual], curve: &Curve, variance: f64) ->
         ring[2 + side] += 1.0;
     }
     let two_sided = sums.iter().filter(|ring| ring[2] > 0.0 && ring[3] > 0.0).count() > rings / 2;
-    let mut blocks: Vec<[f64; 2]> = sums
-        .iter()
-        .map(|ring| if two_sided { [ring[1] - ring[0], ring[2] + ring[3]] } else { [ring[1] + ring[0], ring[2] + ring[3]] })
-        .collect();
+    let mut blocks: Vec<[f64; 2]> =
+        sums.iter()
+            .map(|ring| {
+                if two_sided { [ring[1] - ring[0], ring[2] + ring[3]] } else { [ring[1] + ring[0], ring[2] + ring[3]] }
+            })
+            .collect();
     let mut largest = 1.0f64;
     while blocks.len() >= FEWEST_BLOCKS {
         let filled = blocks.iter().filter(|block| block[1] > 0.0);

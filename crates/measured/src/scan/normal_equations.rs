@@ -10,6 +10,9 @@ use crate::linear::{Symmetric, dot};
 /// Columns beside the curve that a fit can have: tilt along x and y, shift of the axis along x and y.
 pub(super) const MOST_COLUMNS: usize = 4;
 
+/// The curvatures found lack what the penalty takes, about half of it in a step that is half smoothed away: so it counts as often.
+const LACKING: f64 = 2.0;
+
 /// Sums over the points of one interval.
 #[derive(Clone, Copy, Default)]
 struct Sums {
@@ -85,9 +88,8 @@ impl Statistics {
                 continue;
             }
             // What one unit of each curvature adds, as a quadratic in S.
-            let mut rows: Vec<(usize, [f64; 3])> = (0..index)
-                .map(|inner| (inner, [area * ((index - inner) as f64 - 0.5), area, 0.0]))
-                .collect();
+            let mut rows: Vec<(usize, [f64; 3])> =
+                (0..index).map(|inner| (inner, [area * ((index - inner) as f64 - 0.5), area, 0.0])).collect();
             rows.push((index, [0.0, 0.0, 0.5 * area]));
             rows.push((intervals, [1.0, 0.0, 0.0]));
             for (place, &(row, quadratic)) in rows.iter().enumerate() {
@@ -113,7 +115,16 @@ impl Statistics {
         }
         let scale = (0..intervals).map(|index| matrix.at(index, index)).sum::<f64>() / intervals as f64;
         let stiffness = vec![1.0; intervals - 1];
-        Equations { width: self.width, intervals, matrix, right, square: self.square, count: self.count, scale, stiffness }
+        Equations {
+            width: self.width,
+            intervals,
+            matrix,
+            right,
+            square: self.square,
+            count: self.count,
+            scale,
+            stiffness,
+        }
     }
 }
 
@@ -160,7 +171,8 @@ impl Equations {
     /// Lets the curvature step where it does in a solution: beside an edge a uniform penalty would smooth it away, and elsewhere
     /// leave noise in.
     pub(super) fn adapt(&mut self, solution: &Solution) {
-        let steps: Vec<f64> = solution.unknowns[..self.intervals].windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).collect();
+        let steps: Vec<f64> =
+            solution.unknowns[..self.intervals].windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).collect();
         let typical = steps.iter().sum::<f64>() / steps.len() as f64;
         if typical > 0.0 {
             self.stiffness = steps.iter().map(|step| 1.0 / (1.0 + step / typical)).collect();
@@ -184,7 +196,7 @@ impl Equations {
         let mut pull = self.penalised(solution.penalty);
         pull.subtract(&self.matrix);
         let pulled: Vec<f64> = (0..found.len()).map(|row| dot(pull.row(row), found)).collect();
-        let taken = (0..count).map(|row| dot(solution.inverse.row(row), &pulled)).collect();
+        let taken = (0..count).map(|row| LACKING * dot(solution.inverse.row(row), &pulled)).collect();
 
         let pair_of = |row: usize| if row < count { row / 2 } else { row - count + count.div_ceil(2) };
         let size = pair_of(found.len() - 1) + 1;

@@ -18,7 +18,9 @@ pub(super) fn constrained(equations: &Equations, plain: &Solution, parabola: f64
     let (width, intervals) = (equations.width, equations.intervals);
     let places = (0..intervals).flat_map(|index| PLACES.map(|share| (index as f64 + share) * width));
     let rows: Vec<(f64, Vec<f64>)> = places.map(|x| (x, g_slopes(width, intervals, x))).collect();
-    let rises = |(_, row): &(f64, Vec<f64>)| row.iter().zip(&plain.unknowns).map(|(a, k)| a * (k + parabola)).sum::<f64>() >= 0.0;
+    let rises = |(_, row): &(f64, Vec<f64>)| {
+        row.iter().zip(&plain.unknowns).map(|(a, k)| a * (k + parabola)).sum::<f64>() >= 0.0
+    };
     if rows.iter().all(rises) {
         return Some(plain.unknowns.clone());
     }
@@ -27,9 +29,8 @@ pub(super) fn constrained(equations: &Equations, plain: &Solution, parabola: f64
     // Unknowns in units of their own make all diagonals one.
     let units: Vec<f64> = (0..size).map(|index| 1.0 / matrix.at(index, index).sqrt()).collect();
     let upper = (0..size).flat_map(|column| (0..=column).map(move |row| (row, column)));
-    let (at, (across, values)): (Vec<usize>, (Vec<usize>, Vec<f64>)) = upper
-        .map(|(row, column)| (row, (column, matrix.at(row, column) * units[row] * units[column])))
-        .unzip();
+    let (at, (across, values)): (Vec<usize>, (Vec<usize>, Vec<f64>)) =
+        upper.map(|(row, column)| (row, (column, matrix.at(row, column) * units[row] * units[column]))).unzip();
     let quadratic = CscMatrix::new_from_triplets(size, size, at, across, values);
     // The step from the plain solution, which has no linear term: the digits of the heights do not enter.
     let linear = vec![0.0; size];

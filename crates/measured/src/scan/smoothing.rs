@@ -8,8 +8,8 @@ use super::normal_equations::{Equations, Solution};
 
 /// How much a degree of freedom counts in cross-validation.
 const CAUTION: f64 = 1.4;
-/// Penalties tried, as powers of ten of the half.
-const HALF_POWERS: std::ops::RangeInclusive<i32> = -18..=12;
+/// Penalties tried, as powers of ten; then half a power to either side of the best.
+const POWERS: std::ops::RangeInclusive<i32> = -9..=6;
 /// The penalty that only keeps the equations solvable.
 const NO_PENALTY: f64 = 1e-9;
 
@@ -40,14 +40,11 @@ pub(super) fn choose(equations: &Equations, smoothing: Smoothing, inflation: f64
     if let Smoothing::Knots(_) = smoothing {
         return equations.solve(NO_PENALTY);
     }
-    let mut best: Option<(f64, Solution)> = None;
-    for half in HALF_POWERS {
-        let Some(solution) = equations.solve(10f64.powf(0.5 * f64::from(half))) else { continue };
-        let score = score(&solution);
-        // Of equals the smoother one.
-        if best.as_ref().is_none_or(|(least, _)| score <= *least) {
-            best = Some((score, solution));
-        }
-    }
-    best.map(|(_, solution)| solution)
+    let scored = |power: f64| equations.solve(10f64.powf(power)).map(|solution| (score(&solution), power, solution));
+    let best = |powers: &mut dyn Iterator<Item = f64>| powers.filter_map(scored).min_by(|a, b| a.0.total_cmp(&b.0));
+    // From the smoothest on, so that of equals it counts.
+    let coarse = best(&mut POWERS.rev().map(f64::from))?;
+    let finer = best(&mut [coarse.1 + 0.5, coarse.1 - 0.5].into_iter());
+    let (_, _, solution) = finer.filter(|finer| finer.0 < coarse.0).unwrap_or(coarse);
+    Some(solution)
 }

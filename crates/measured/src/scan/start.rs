@@ -95,7 +95,8 @@ fn cost(points: &[[f64; 3]], [x0, y0]: [f64; 2]) -> Option<f64> {
     let equations = statistics.equations();
     let solution = equations.solve(PENALTY)?;
     let curve = equations.curve(&solution.unknowns, 0.0);
-    let heights = || (0..=4 * INTERVALS).map(|index| curve.height(end * index as f64 / (4 * INTERVALS) as f64) - curve.offset);
+    let heights =
+        || (0..=4 * INTERVALS).map(|index| curve.height(end * index as f64 / (4 * INTERVALS) as f64) - curve.offset);
     let (low, high) = heights().fold((0.0f64, 0.0f64), |(low, high), height| (low.min(height), high.max(height)));
     if -low > DIP * (high - low) {
         return None;

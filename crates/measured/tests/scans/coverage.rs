@@ -42,8 +42,18 @@ fn standard_errors_cover_the_truth() {
         let mut lean = || 1e-3 * (2.0 * random.f64() - 1.0);
         let tilt = [lean(), if map { lean() } else { 0.0 }];
         let sign = if random.bool() { 1.0 } else { -1.0 };
-        let instrument =
-            Instrument { half: reach, points, map, axis, tilt, noise, correlation, outliers: 0.01, missing: 0.02, sign };
+        let instrument = Instrument {
+            half: reach,
+            points,
+            map,
+            axis,
+            tilt,
+            noise,
+            correlation,
+            outliers: 0.01,
+            missing: 0.02,
+            sign,
+        };
         let scan = instrument.scan(&shape, &mut random);
         let truth = Contact::new(Setup {
             profile: shape.profile(2.0 * reach),
@@ -53,7 +63,11 @@ fn standard_errors_cover_the_truth() {
         })
         .unwrap()
         .summary();
-        if let Ok(only) = std::env::var("ONLY") && !only.split(',').any(|o| o == index.to_string()) { continue; }
+        if let Ok(only) = std::env::var("ONLY")
+            && !only.split(',').any(|o| o == index.to_string())
+        {
+            continue;
+        }
         all += 1;
         let found = ScanFit::new(&scan, &Options::default(), &|| true)
             .and_then(|fit| Ok((fit.contact(steel(), 0.3, Preload::NormalForce(truth.normal_force))?, fit)));
@@ -76,13 +90,22 @@ fn standard_errors_cover_the_truth() {
         }
         println!(
             "{index:3} kind {kind} map {map} noise {:.1} nm corr {correlation} n {points} f(a) {:.0} nm: p {:+.2} SE ({:+.2} % +- {:.2} %), d {:+.2}, a {:+.2}; edf {} tilt {:?}/{:?} axis err {:.2} um rms {:.2} nm outl {} g {:.2} {} o {:?}",
-            noise * 1e9, shape.height(a) * 1e9,
+            noise * 1e9,
+            shape.height(a) * 1e9,
             offs[0],
             100.0 * (found.max_pressure.value / truth.max_pressure.unwrap() - 1.0),
             100.0 * found.max_pressure.standard_error / truth.max_pressure.unwrap(),
             offs[1],
             offs[2],
-            0, fit.tilt[0] * sign, tilt[0], 1e6 * (fit.centre[0] - axis[0]).hypot(fit.centre[1] - axis[1]), fit.rms * 1e9, fit.outliers, fit.g_margin, fit.constrained, fit.orientation,
+            0,
+            fit.tilt[0] * sign,
+            tilt[0],
+            1e6 * (fit.centre[0] - axis[0]).hypot(fit.centre[1] - axis[1]),
+            fit.rms * 1e9,
+            fit.outliers,
+            fit.g_margin,
+            fit.constrained,
+            fit.orientation,
         );
     }
     println!("{covered:?} of {all}, refused {refused}");

@@ -28,7 +28,11 @@ impl Shape {
                 if r < outer { over_rim(r) } else { over_rim(outer) + (r * r - outer * outer) / (2.0 * radius) }
             }
             Shape::Cone(slope, tip) => {
-                if r < tip { slope * r * r / (2.0 * tip) } else { slope * (r - 0.5 * tip) }
+                if r < tip {
+                    slope * r * r / (2.0 * tip)
+                } else {
+                    slope * (r - 0.5 * tip)
+                }
             }
             Shape::Punch(flat, edge) => (r - flat).max(0.0).powi(2) / (2.0 * edge),
         }
@@ -77,7 +81,8 @@ impl Instrument {
     pub fn heights(&self, shape: &Shape, random: &mut fastrand::Rng) -> Vec<[f64; 3]> {
         let at = |index: usize| self.half * (2.0 * index as f64 / (self.points - 1) as f64 - 1.0);
         let rows = if self.map { self.points } else { 1 };
-        let noise = correlated(rows, self.points, if self.map { self.correlation } else { 1 }, self.correlation, random);
+        let noise =
+            correlated(rows, self.points, if self.map { self.correlation } else { 1 }, self.correlation, random);
         let mut points = Vec::new();
         for row in 0..rows {
             for column in 0..self.points {
@@ -86,7 +91,8 @@ impl Instrument {
                 let mut height = shape.height(u.hypot(v)) + self.tilt[0] * u + self.tilt[1] * v;
                 height += self.noise * noise[row * self.points + column];
                 if random.f64() < self.outliers {
-                    height += self.noise.max(1e-9) * (20.0 + 1000.0 * random.f64()) * if random.bool() { 1.0 } else { -1.0 };
+                    height +=
+                        self.noise.max(1e-9) * (20.0 + 1000.0 * random.f64()) * if random.bool() { 1.0 } else { -1.0 };
                 }
                 let height = if random.f64() < self.missing { f64::NAN } else { self.sign * height + 3e-6 };
                 points.push([x, y, height]);
@@ -116,7 +122,5 @@ fn correlated(rows: usize, columns: usize, down: usize, along: usize, random: &m
         }
     }
     let scale = 1.0 / ((down * along) as f64).sqrt();
-    (0..rows * columns)
-        .map(|index| scale * (0..down).map(|step| across[index + step * columns]).sum::<f64>())
-        .collect()
+    (0..rows * columns).map(|index| scale * (0..down).map(|step| across[index + step * columns]).sum::<f64>()).collect()
 }
