@@ -39,6 +39,7 @@ pub fn fit_profile(task: ProfileFitTask, stop: &Stop) -> Result<ProfileFitReply,
     let failed = |error: Error| match (&error, stop.check()) {
         (Error::Interrupted, Err(interrupted)) => Failure::interrupted(interrupted, "/scan"),
         (Error::AxisOutside { .. }, _) => Failure::Scan { pointer: "/centre", error },
+        (Error::Rough, _) => Failure::Scan { pointer: "/smoothing", error },
         (Error::TooShort { .. }, _) => Failure::Scan { pointer: "/load/preload", error },
         _ => Failure::Scan { pointer, error },
     };

@@ -34,6 +34,7 @@ mod logs;
 mod metrics;
 mod openapi;
 mod otlp;
+mod profile_fit;
 mod profiles;
 mod protocols;
 mod schema;

@@ -11,103 +11,34 @@
 
 mod contact;
 mod curve;
+mod error;
 mod fit;
 mod noise;
 mod normal_equations;
 mod programme;
+mod result;
 mod smoothing;
 mod start;
 
 pub use contact::ContactEstimate;
+pub use error::Error;
 pub use smoothing::Smoothing;
 
 use curve::Curve;
-use fit::{Fitted, Scaled, Sought};
-use stickslip_mechanics::profile::{Profile, Tabulated};
+use fit::{Scaled, Sought};
+use stickslip_mechanics::profile::Profile;
 
-use crate::linear::{Symmetric, dot};
+use crate::linear::Symmetric;
 
 /// Points that a fit needs.
 pub const FEWEST_POINTS: usize = 12;
 /// Points of the columns of a fit that are drawn.
 pub const DRAWN_POINTS: usize = 4_000;
-/// Parabolas added to a curve whose table does not rise, as shares of its mean curvature.
-const LIFTS: [f64; 8] = [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
 /// Half the width of a scan, m.
 const EXTENT: std::ops::Range<f64> = 1e-9..1e3;
 /// Range of the heights over half the width.
 const LEAST_RISE: f64 = 1e-12;
 const MOST_RISE: f64 = 1e3;
-/// Intervals between neighbouring points of the table.
-const TABLE_STEP: f64 = 0.5;
-
-/// Why a scan yields no profile.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Error {
-    /// Too few points with a height are left.
-    #[error("{used} points with a height can be used: at least {FEWEST_POINTS} are needed")]
-    TooFewPoints {
-        /// How many there are.
-        used: usize,
-    },
-    /// All points are at one place, or all have one height.
-    #[error("all points have the same {what}: nothing can be fitted")]
-    NoExtent {
-        /// Place or height.
-        what: &'static str,
-    },
-    /// The scan is too large or too small for an instrument.
-    #[error("the scan is {} wide: from 2 nm to 2 km can be fitted; check `units`", micrometres(*width))]
-    Extent {
-        /// Its width, m.
-        width: f64,
-    },
-    /// The heights are out of proportion.
-    #[error("the scan is {} wide and {} high: check `units`", micrometres(*width), micrometres(*height))]
-    Steep {
-        /// Its width, m.
-        width: f64,
-        /// The range of its heights, m.
-        height: f64,
-    },
-    /// No axis about which the surface falls away to all sides.
-    #[error(
-        "about no axis does the surface fall away from a peak: is it a hollow, or the other way up than `orientation` says?"
-    )]
-    Hollow,
-    /// The axis given is not in the scan.
-    #[error("the scan has no points near this axis: the nearest is {} away, the farthest {}", micrometres(*nearest), micrometres(*farthest))]
-    AxisOutside {
-        /// Distance of the nearest point, m.
-        nearest: f64,
-        /// Distance of the farthest, m.
-        farthest: f64,
-    },
-    /// The equations have no solution: points lie at too few radii.
-    #[error("the points lie at too few distances from the axis to determine a profile")]
-    Scattered,
-    /// The contact under the load would be larger than the scan.
-    #[error("the scan does not reach the edge of the contact: {} of about {}", micrometres(*reach), micrometres(*needed))]
-    TooShort {
-        /// Radius that the scan reaches, m.
-        reach: f64,
-        /// Radius of the contact if the shape goes on as it ends, m.
-        needed: f64,
-    },
-    /// The mechanics refuses the load.
-    #[error(transparent)]
-    Refused(#[from] stickslip_mechanics::Error),
-    /// The work was ended.
-    #[error("stopped")]
-    Interrupted,
-}
-
-/// A length of the bench: in micrometres, with three digits.
-fn micrometres(length: f64) -> String {
-    let value = length * 1e6;
-    let digits = (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-    if value.abs() >= 1e6 || value.abs() < 1e-3 { format!("{length:.2e} m") } else { format!("{value:.digits$} um") }
-}
 
 /// Which way the heights count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -239,7 +170,7 @@ impl ScanFit {
         }
         let sought = Sought { axis, tilt: options.level, smoothing: options.smoothing };
         let fitted = fit::fit(&scaled, &sought, keep_going)?;
-        finished(scan, &fitted, &scaled, &units)
+        result::finished(scan, &fitted, &scaled, &units)
     }
 
     /// The profile.
@@ -302,122 +233,4 @@ fn scaled(scan: &Scan, orientation: Option<Orientation>) -> Result<(Scaled, Unit
     placed.iter_mut().for_each(|point| point[2] = sign * (point[2] - low) / height);
     let units = Units { middle: [middle[0], middle[1]], length, height, orientation };
     Ok((Scaled { points: placed, plane: scan.plane, height }, units))
-}
-
-/// The fit in m, with its table.
-fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Units) -> Result<ScanFit, Error> {
-    let Fitted { equations, solution, parabola, .. } = fitted;
-    let unknowns = programme::constrained(equations, solution, *parabola);
-    let unknowns = unknowns.unwrap_or_else(|| solution.unknowns.clone());
-    let constrained = unknowns != solution.unknowns;
-    let bend = units.height / (units.length * units.length);
-    let curve = equations.curve(&unknowns, *parabola);
-    let curvatures: Vec<f64> = curve.curvatures.iter().map(|curvature| curvature * bend).collect();
-    let width = curve.width * units.length;
-    let reach = width * curvatures.len() as f64;
-    let mean = 2.0 * (curve.height(curve.end()) - curve.offset) / curve.end().powi(2) * bend;
-    if mean * reach * reach <= 0.0 {
-        return Err(Error::Hollow);
-    }
-    let (table, profile, curve) = table(width, &curvatures, mean)?;
-    let intervals = curvatures.len();
-    let variance = fitted.variance * fitted.inflation * bend * bend;
-    let systematic = equations.systematic(solution);
-    let mut covariance = Symmetric::zero(intervals);
-    for row in 0..intervals {
-        for column in 0..=row {
-            let off: f64 = systematic.iter().map(|off| off[row] * off[column]).sum();
-            covariance.add(row, column, variance * solution.inverse.at(row, column) + bend * bend * off);
-        }
-    }
-    let apex = Estimate { value: curvatures[0], standard_error: covariance.at(0, 0).sqrt() };
-    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > covariance.at(0, 0))
-        .then(|| Estimate { value: 1.0 / apex.value, standard_error: apex.standard_error / (apex.value * apex.value) });
-    let (raw, left_out) = drawn(fitted, scaled, units);
-    let residuals: Vec<f64> =
-        fitted.residuals.iter().zip(&fitted.kept).filter(|(_, kept)| **kept).map(|(e, _)| *e).collect();
-    let sign = if units.orientation == Orientation::PeakDown { 1.0 } else { -1.0 };
-    Ok(ScanFit {
-        table,
-        radius_of_curvature,
-        centre: [0, 1].map(|axis| units.middle[axis] + fitted.axis[axis] * units.length),
-        tilt: fitted.tilt.map(|tilt| sign * tilt * units.height / units.length),
-        orientation: units.orientation,
-        rms: (dot(&residuals, &residuals) / residuals.len() as f64).sqrt() * units.height,
-        correlation_length: noise::correlation_lag(&residuals) * step(scan),
-        used: fitted.kept.len(),
-        outliers: fitted.kept.iter().filter(|kept| !**kept).count(),
-        raw,
-        left_out,
-        g_margin: g_margin(&curve),
-        constrained,
-        profile,
-        curve,
-        covariance,
-    })
-}
-
-/// The table of a curve, and the profile that it makes. The mechanics draws a curve of its own through the points: where g hardly
-/// rises, that of the table may fall, and a small parabola lifts it.
-fn table(width: f64, curvatures: &[f64], mean: f64) -> Result<(Column, Profile, Curve), Error> {
-    let mut refused = Error::Hollow;
-    for lift in LIFTS {
-        let curve = Curve::new(width, curvatures.iter().map(|curvature| curvature + lift * mean).collect(), 0.0);
-        let radius: Vec<f64> = (0..=2 * curvatures.len()).map(|index| index as f64 * TABLE_STEP * width).collect();
-        let height: Vec<f64> = radius.iter().map(|&r| curve.height(r)).collect();
-        let end = radius[radius.len() - 1];
-        match Tabulated::new(&radius, &height).map(Profile::Tabulated) {
-            Ok(profile) if profile.check_radius(end * (1.0 - 1e-9)).is_ok() => {
-                return Ok((Column { radius, height }, profile, curve));
-            }
-            Ok(_)
-            | Err(stickslip_mechanics::Error::NotConvexEnough { .. } | stickslip_mechanics::Error::Table { .. }) => {}
-            Err(error) => refused = error.into(),
-        }
-    }
-    Err(refused)
-}
-
-/// The least g'(x)/x over the mean.
-fn g_margin(curve: &Curve) -> f64 {
-    let (count, end) = (4 * curve.curvatures.len(), curve.end());
-    let ratios = (1..=count).map(|index| {
-        let x = end * index as f64 / count as f64;
-        (x, curve.g_slope(x) / x)
-    });
-    let (least, sum, all) = ratios
-        .fold((f64::INFINITY, 0.0, 0.0), |(least, sum, all), (x, ratio)| (least.min(ratio), sum + ratio * x, all + x));
-    (least * all / sum).max(0.0)
-}
-
-/// The median distance of neighbouring points, m.
-fn step(scan: &Scan) -> f64 {
-    let mut steps: Vec<f64> =
-        scan.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect();
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// The points as the curve sees them, fitted and left out.
-fn drawn(fitted: &Fitted, scaled: &Scaled, units: &Units) -> (Column, Column) {
-    let column = |wanted: bool| {
-        let mut chosen: Vec<[f64; 2]> = scaled
-            .points
-            .iter()
-            .zip(fitted.residuals.iter().zip(&fitted.kept))
-            .filter(|(_, (_, kept))| **kept == wanted)
-            .map(|(point, (residual, _))| {
-                let r = (point[0] - fitted.axis[0]).hypot(point[1] - fitted.axis[1]);
-                [r * units.length, (fitted.curve.height(r) - fitted.curve.offset + residual) * units.height]
-            })
-            .collect();
-        chosen.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let stride = chosen.len().div_ceil(DRAWN_POINTS).max(1);
-        let kept: Vec<&[f64; 2]> = chosen.iter().step_by(stride).collect();
-        Column {
-            radius: kept.iter().map(|point| point[0]).collect(),
-            height: kept.iter().map(|point| point[1]).collect(),
-        }
-    };
-    (column(true), column(false))
 }

@@ -7,7 +7,7 @@ pub(super) const OUTLIER: f64 = 5.0;
 /// Blocks that an estimate of the variance of means needs.
 const FEWEST_BLOCKS: usize = 6;
 /// Lags of the autocorrelation, at most.
-const MOST_LAGS: usize = 2_000;
+const MOST_LAGS: usize = 500;
 
 /// The median size of normal noise, and its 90th percentile, in standard deviations.
 pub(super) const MEDIAN_SIZE: f64 = 0.6745;
