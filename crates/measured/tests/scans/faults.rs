@@ -75,11 +75,10 @@ proptest! {
         smoothing in prop_oneof![Just(Smoothing::Auto), Just(Smoothing::Knots(100)), Just(Smoothing::Noise(1e-9))],
         scale in prop_oneof![Just(1.0), Just(1e-6), Just(1e5)],
     ) {
-        let points = points.into_iter().enumerate();
         let scan = if plane {
-            Scan::area(points.map(|(index, (x, z))| [scale * x, (index % 7) as f64 * 1e-4, z]))
+            Scan::area(points.into_iter().enumerate().map(|(index, (x, z))| [scale * x, (index % 7) as f64 * 1e-4, z]))
         } else {
-            Scan::line(points.map(|(_, (x, z))| [scale * x, z]))
+            Scan::line(points.into_iter().map(|(x, z)| [scale * x, z]))
         };
         if let Ok(found) = ScanFit::new(&scan, &Options { level, smoothing, ..Options::default() }, &|| true) {
             prop_assert!(found.rms.is_finite() && found.table.height.iter().all(|z| z.is_finite()));
