@@ -17,6 +17,8 @@ const INTERVALS: usize = 14;
 const PENALTY: f64 = 1e-6;
 /// How far below its height on the axis the coarse curve may go, as a share of its range: the gap opens outward.
 const DIP: f64 = 0.05;
+/// How far below its highest point it may end.
+const FALL: f64 = 0.25;
 
 /// The points whose heights are the medians of their cells.
 pub(super) fn medians(points: &[[f64; 3]], plane: bool) -> Vec<[f64; 3]> {
@@ -98,7 +100,8 @@ fn cost(points: &[[f64; 3]], [x0, y0]: [f64; 2]) -> Option<f64> {
     let heights =
         || (0..=4 * INTERVALS).map(|index| curve.height(end * index as f64 / (4 * INTERVALS) as f64) - curve.offset);
     let (low, high) = heights().fold((0.0f64, 0.0f64), |(low, high), height| (low.min(height), high.max(height)));
-    if -low > DIP * (high - low) {
+    let fall = high - (curve.height(end) - curve.offset);
+    if -low > DIP * (high - low) || fall > FALL * (high - low) {
         return None;
     }
     Some(solution.squares)

@@ -30,6 +30,9 @@ fn each_fault_has_its_error() {
     assert!(matches!(refused(steep, &auto), Error::Steep { .. }));
     let up = Options { orientation: Some(Orientation::PeakUp), ..auto };
     assert_eq!(refused(ball(500, 1e-4), &up), Error::Hollow);
+    // With the axis beside the middle too: from one end the surface rises at first.
+    let beside_middle = ball(500, 1e-4).into_iter().map(|[x, z]| [x, z + 1e-3 * x]).collect();
+    assert_eq!(refused(beside_middle, &up), Error::Hollow);
     let beside = Options { centre: Some([5e-4, 0.0]), ..auto };
     assert!(matches!(refused(ball(500, 1e-4), &beside), Error::AxisOutside { .. }));
     let scan = Scan::line(ball(500, 1e-4));
