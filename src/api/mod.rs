@@ -38,7 +38,7 @@ use resources::meta::OpenApiText;
 use resources::{
     accuracy, contacts, cycle, cycles, events, fretting, history, hysteresis_loop, jobs, meta, metrics, moves, page,
 };
-use resources::{protocols, simulate, stress, subsurface, sweep};
+use resources::{profile_fit, protocols, simulate, stress, subsurface, sweep};
 
 pub use problem::Problem;
 pub use state::{Access, App};
@@ -117,6 +117,7 @@ fn described(document: &'static str) -> OpenApiRouter<Arc<App>> {
         .routes(routes!(protocols::find_protocol))
         .routes(routes!(cycle::compute_steady_cycle))
         .routes(routes!(fretting::rate_fretting))
+        .routes(routes!(profile_fit::fit_profile))
         .routes(routes!(sweep::run_sweep))
         .routes(routes!(jobs::get_job, jobs::cancel_job))
         .routes(routes!(jobs::get_job_result))

@@ -109,6 +109,7 @@ impl From<Failure> for Problem {
         let (code, detail) = (failure.code(), failure.to_string());
         match failure {
             Failure::Refused { pointer, error } => Problem::at(code, pointer, error.to_string()),
+            Failure::Scan { pointer, error } => Problem::at(code, pointer, error.to_string()),
             Failure::MemoryFull { pointer, .. }
             | Failure::TooLong { pointer, .. }
             | Failure::CycleTooLarge { pointer } => Problem::at(code, pointer, detail),

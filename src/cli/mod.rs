@@ -8,8 +8,10 @@ mod healthcheck;
 mod io;
 mod key;
 mod limits;
+mod profile;
 mod protocol;
 mod report;
+mod scan_table;
 mod serve;
 mod settings;
 mod subsurface;
@@ -31,6 +33,7 @@ use fretting::Fretting;
 use healthcheck::Healthcheck;
 use io::{json, print, problem, read};
 use key::Key;
+use profile::Profile;
 use protocol::Protocol;
 use report::Report;
 use serve::Serve;
@@ -67,6 +70,8 @@ enum Command {
     Subsurface(Subsurface),
     /// Run the body of POST /fretting from a file and print the reply.
     Fretting(Fretting),
+    /// Fit a profile to a scan of heights and print it, with what the scan says of the contact.
+    Profile(Profile),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -122,6 +127,7 @@ impl Command {
             Command::Cycle(cycle) => cycle.run(),
             Command::Subsurface(subsurface) => subsurface.run(),
             Command::Fretting(fretting) => fretting.run(),
+            Command::Profile(profile) => profile.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),

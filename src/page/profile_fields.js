@@ -2,6 +2,7 @@
 import { el } from "./dom.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
 import { LENGTH, PROFILES, TABLE } from "./form_options.js";
+import { scanFit } from "./scan_fit.js";
 import { parseNumber } from "./units.js";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
@@ -56,22 +57,15 @@ function table(form, at, changed, body) {
     el("textarea", { rows: 8, spellcheck: "false", value: "" }),
   );
   text.control.value = TABLE;
-  body.append(
-    text.element,
-    el("div", { class: "row" }, el("label", {}, "Radii in ", across), el("label", {}, "Heights in ", up)),
-    el(
-      "p",
-      { class: "note" },
-      "Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons. The first radius is 0.",
-    ),
-  );
-  return () => {
-    // Where something else separates a pair, a comma between digits is a decimal comma.
+  const read = () => {
     const lines = text.value
       .split("\n")
       .map((line) => line.trim())
       .filter((line) => line && !line.startsWith("#"));
-    const pairs = lines.map((line) =>
+    // Lines before the first number are a header.
+    const rows = lines.slice(Math.max(0, lines.findIndex((line) => /^[+−-]?[\d.,]/.test(line))));
+    // Where something else separates a pair, a comma between digits is a decimal comma.
+    const pairs = rows.map((line) =>
       (/[\t;]|\s/.test(line.replace(/,\s+/, "")) ? line.split(/[\t;]+|\s+/) : line.split(","))
         .map((cell) => cell.replace(/,$/, ""))
         .filter(Boolean),
@@ -79,6 +73,22 @@ function table(form, at, changed, body) {
     const column = (index, unit) => pairs.map((pair) => parseNumber(pair[index] ?? "", Number(unit.value)) ?? null);
     return { r: column(0, across), z: column(1, up) };
   };
+  const write = ({ r, z }) => {
+    const inUnit = (value, unit) => Number((value / 10 ** Number(unit.value)).toPrecision(12));
+    text.control.value = r.map((radius, index) => `${inUnit(radius, across)}\t${inUnit(z[index], up)}`).join("\n");
+    changed();
+  };
+  body.append(
+    text.element,
+    el("div", { class: "row" }, el("label", {}, "Radii in ", across), el("label", {}, "Heights in ", up)),
+    el(
+      "p",
+      { class: "note" },
+      "Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons. The first radius is 0, unless it is a scan to be fitted.",
+    ),
+    scanFit(text.control, read, write),
+  );
+  return read;
 }
 
 function sum(form, at, changed, body) {

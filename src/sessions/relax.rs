@@ -22,8 +22,8 @@ pub(super) fn without_step(failure: Failure) -> Failure {
         Failure::Refused { error, .. } => Failure::Refused { pointer: String::new(), error },
         Failure::MemoryFull { depth, .. } => Failure::MemoryFull { pointer: String::new(), depth },
         Failure::TooLong { allowed, .. } => Failure::TooLong { pointer: "/reversals".to_owned(), allowed },
-        // A contact has no cycle to be rated.
-        Failure::Stopped | Failure::CycleTooLarge { .. } => failure,
+        // A contact has no cycle to be rated, and no scan.
+        Failure::Stopped | Failure::CycleTooLarge { .. } | Failure::Scan { .. } => failure,
     }
 }
 

@@ -10,6 +10,7 @@ use crate::admission::Nanoseconds;
 use stickslip_mechanics::{self as mechanics, Profile};
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::fretting::FrettingTask;
+use stickslip_wire::profile_fit::ProfileFitTask;
 use stickslip_wire::protocol::{Aim, ProtocolTask};
 use stickslip_wire::session::Advance;
 use stickslip_wire::simulate::Simulation;
@@ -20,6 +21,12 @@ use stickslip_wire::{self as wire, Comparison, Plan, Solver, Steps, limits};
 /// microseconds.
 pub const INLINE_BODY: usize = 1024;
 
+/// Time of a fit, and for each of its points.
+const SCAN_COST: Nanoseconds = 100_000_000;
+const SCAN_POINT_COST: Nanoseconds = 4_000;
+/// Bytes of a fit with its reply, and for each of its points.
+const SCAN_BYTES: usize = 4 * 1024 * 1024;
+const SCAN_POINT_BYTES: usize = 256;
 /// One move of the exact solver, with its state, and the state written as JSON.
 const MOVE_COST: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
@@ -375,4 +382,16 @@ pub fn bytes_of_cycle(task: &CycleTask) -> usize {
 #[must_use]
 pub fn cycle_row(task: &CycleTask) -> usize {
     STATE_LENGTH + 2 * task.harmonics * 2 * NUMBER_LENGTH
+}
+
+/// The cost of fitting a profile to a scan.
+#[must_use]
+pub fn of_profile_fit(task: &ProfileFitTask) -> Nanoseconds {
+    SCAN_COST + SCAN_POINT_COST * task.points.len() as u64
+}
+
+/// Bytes that it takes, with its reply.
+#[must_use]
+pub fn bytes_of_profile_fit(task: &ProfileFitTask) -> usize {
+    SCAN_BYTES + SCAN_POINT_BYTES * task.points.len()
 }

@@ -10,6 +10,7 @@ mod cycle;
 mod cycle_map;
 mod cycle_studies;
 mod fretting;
+mod profile_fit;
 mod protocol;
 mod reply_template;
 mod run;
@@ -24,6 +25,7 @@ pub use compare_solvers::compare_solvers;
 pub use cycle::{cycle, cycle_of};
 pub use cycle_map::cycles_under;
 pub use fretting::fretting;
+pub use profile_fit::fit_profile;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
@@ -33,6 +35,7 @@ pub use warnings::{excess_error, new_warnings, present_warnings};
 
 use std::time::Duration;
 
+use stickslip_measured::scan;
 use stickslip_mechanics::{self as mechanics, range::Quantity};
 use stickslip_wire::{Code, limits};
 
@@ -48,6 +51,14 @@ pub enum Failure {
         pointer: String,
         /// Why.
         error: mechanics::Error,
+    },
+    /// The scan yields no profile, or none that reaches the edge of the contact.
+    #[error("{pointer}: {error}")]
+    Scan {
+        /// JSON pointer to what is at fault.
+        pointer: &'static str,
+        /// Why.
+        error: scan::Error,
     },
     /// The slip history would exceed its limit.
     #[error("the slip history of the contact would have {depth} pieces: allowed are {}", limits::MEMORY_DEPTH)]
@@ -112,6 +123,8 @@ impl Failure {
                 mechanics::Error::Interrupted => Code::TooMuchWork,
                 mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },
+            Failure::Scan { error: scan::Error::TooShort { .. }, .. } => Code::BeyondProfile,
+            Failure::Scan { .. } => Code::InvalidInput,
             Failure::MemoryFull { .. } => Code::Conflict,
             Failure::TooLong { .. } | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
             Failure::Stopped => Code::Overloaded,

@@ -14,6 +14,9 @@ const HUGE_CONTACT: f64 = 0.1;
 const SOFT: f64 = 1e7;
 const HUGE_CURVATURE: f64 = 1.0;
 
+/// The radius of curvature of a table, m, beyond which its units are probably wrong.
+const HUGE_TABLE_RADIUS: f64 = 100.0;
+
 /// Noise of g over the indentation beyond which a table is called noisy.
 const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
@@ -129,6 +132,11 @@ pub(super) fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Ob
         );
     }
     let curvature = profile.curvature_radius();
+    let of_table = matches!(profile, Profile::Tabulated(_)) && observed.indentation > 0.0;
+    let table_radius = of_table.then(|| observed.contact_radius.powi(2) / observed.indentation);
+    if let Some(radius) = table_radius.filter(|radius| *radius > HUGE_TABLE_RADIUS) {
+        warn("units", format!("the table has a radius of curvature of about {radius:.3} m: are both columns in m?"));
+    }
     let soft_and_huge = observed.e_star < SOFT && curvature.is_some_and(|curvature| curvature >= HUGE_CURVATURE);
     let huge = observed.contact_radius > HUGE_CONTACT && profile.has_stress_field();
     if huge || soft_and_huge {

@@ -27,6 +27,7 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/protocols", "protocol", 200, &["read", "write"]),
     ("POST", "/cycle", "cycle", 200, &["read", "write"]),
     ("POST", "/fretting", "fretting", 200, &["read", "write"]),
+    ("POST", "/profiles/fit", "scan", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
@@ -58,6 +59,10 @@ fn body(name: &str) -> Option<Value> {
         "cycle" => Some(json!({"contact": ball(), "drive": {"force": 1.0}})),
         "fretting" => Some(json!({"contact": ball(), "path": {"displacement": [1e-8, -1e-8]}, "body": "first",
             "points": [[0.0, 0.0, 1e-5]], "criteria": {"crossland": {"alpha": 0.3}}})),
+        "scan" => {
+            let x: Vec<f64> = (-10..=10).map(|index| f64::from(index) * 1e-5).collect();
+            Some(json!({"scan": {"line": {"z": x.iter().map(|x| x * x / 0.02).collect::<Vec<_>>(), "x": x}}}))
+        }
         "relax" => Some(json!({"reversals": 2})),
         "subsurface" => Some(json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]})),
         "ball" => Some(ball()),

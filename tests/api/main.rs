@@ -40,6 +40,7 @@ mod metrics;
 mod newest_moves;
 mod openapi;
 mod otlp;
+mod profile_fit;
 mod profiles;
 mod protocols;
 mod schema;

@@ -587,6 +587,36 @@ async fn every_shape_body_and_preload_can_be_chosen() {
 }
 
 #[tokio::test]
+async fn a_pasted_scan_becomes_the_profile_of_the_contact() {
+    let server = Binary::start(&[]);
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/new", server.address)).await.unwrap();
+    browser.until("document.querySelector('form select') !== null").await;
+    browser.choose("Shape of the indenter", "tabulated").await;
+    // A ball of 10 mm, 7 µm off the middle, upside down, with a header; 1 nm up and down of noise.
+    let row = |index: i32| {
+        let x = f64::from(index) * 2.0 - 120.0;
+        format!("{x};{:.5}", -(x - 7.0).powi(2) / 2e4 + 0.001 * f64::from((index * 37) % 21 - 10) / 10.0)
+    };
+    let scan = format!("Lateral;Height\n{}", (0..=120).map(row).collect::<Vec<_>>().join("\n"));
+    let paste = format!("document.querySelector('form textarea').value = {} ?? null", json!(scan));
+    browser.value(&paste).await;
+    browser.click("#fit-scan").await;
+    browser.until("document.querySelector('#scan-said').textContent.startsWith('Radius 10')").await;
+    browser.click("#create").await;
+    browser.until("location.hash.startsWith('#/contacts/') && document.querySelector('.badge.on') !== null").await;
+    let hash = browser.value("location.hash").await;
+    let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
+    let made = serde_json::to_value(server.client.contact(id).await.unwrap()).unwrap();
+    // Hertz: a^3 = 3 F R/(4 E*).
+    let radius = (0.75 * 10.0 * 0.01 / (2.1e11 / 0.91_f64)).cbrt();
+    let found = made["contact"]["contact_radius"].as_f64().unwrap();
+    assert!((found / radius - 1.0).abs() < 0.01, "{found} of {radius}");
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
 async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     let new = new_key("page", &[Role::Write], "").unwrap();
     let server = Binary::start(&["--keys", &new.entry]);

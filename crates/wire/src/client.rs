@@ -12,9 +12,10 @@ use uuid::Uuid;
 use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
     EndEvent, EndReason, ForkRequest, FrettingReply, FrettingRequest, HistoryPage, JobReply, LoopPage, Machine,
-    MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProtocolReply, ProtocolRequest,
-    RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply,
-    StressRequest, SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WorkDensity,
+    MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProfileFitReply, ProfileFitRequest,
+    ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply,
+    SimulateRequest, StateEvent, StressReply, StressRequest, SubsurfaceReply, SubsurfaceRequest, SweepReply,
+    SweepRequest, WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of events.
@@ -169,6 +170,11 @@ impl Client {
     /// `POST /fretting`.
     pub async fn fretting(&self, request: &FrettingRequest) -> Result<FrettingReply, Error> {
         json(self.call(Method::POST, "/fretting").json(request)).await
+    }
+
+    /// `POST /profiles/fit`.
+    pub async fn fit_profile(&self, request: &ProfileFitRequest) -> Result<ProfileFitReply, Error> {
+        json(self.call(Method::POST, "/profiles/fit").json(request)).await
     }
 
     /// `POST /contacts/{id}/subsurface`.

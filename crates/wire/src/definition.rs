@@ -182,7 +182,7 @@ impl Material {
         }
     }
 
-    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
+    pub(crate) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
         match self {
             Material::Effective(moduli) => {
                 moduli.check_members(at.member("effective"), faults);
@@ -235,7 +235,7 @@ impl Body {
 }
 
 impl Preload {
-    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> mechanics::Preload {
+    pub(crate) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> mechanics::Preload {
         self.check_members(at, faults);
         match *self {
             Preload::NormalForce(force) => mechanics::Preload::NormalForce(force),

@@ -31,6 +31,7 @@ pub mod path;
 pub mod pointer_lookup;
 pub mod problem;
 pub mod profile;
+pub mod profile_fit;
 pub mod protocol;
 pub mod reply;
 pub mod session;
@@ -58,6 +59,7 @@ pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Path, Plan};
 pub use problem::{Code, ProblemDocument};
 pub use profile::{Profile, SphereProfile};
+pub use profile_fit::{ProfileFitReply, ProfileFitRequest};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{

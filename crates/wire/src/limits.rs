@@ -43,6 +43,12 @@ pub const SUBSURFACE_POINTS: RangeInclusive<usize> = 1..=1_000_000;
 pub const FRETTING_MOVES: RangeInclusive<usize> = 1..=200;
 /// Places whose stresses over a cycle are in a reply.
 pub const STRESS_PATHS: RangeInclusive<usize> = 0..=100;
+/// Heights of a scan.
+pub const SCAN_POINTS: RangeInclusive<usize> = 12..=300_000;
+/// Rows of a map of heights, and heights of a row.
+pub const SCAN_ROWS: RangeInclusive<usize> = 4..=25_000;
+/// Intervals of a profile that is fitted without a penalty.
+pub const SCAN_KNOTS: RangeInclusive<usize> = 4..=100;
 /// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
@@ -348,6 +354,7 @@ pub(crate) use limits;
 /// Schema, member and keywords of every limit but those of profiles.
 #[must_use]
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
+    use super::profile_fit::{CentrePlace, LineScan, MapScan, PointScan, ScanLoad, Smoothing};
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive,
@@ -365,8 +372,8 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
     }
     of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
-        Robustness, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, CentrePlace, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
+        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, ForkRequest, FrequencyResponse, FrettingRequest, LineScan, LoadSpan, Machine, MapScan, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        Robustness, ScanLoad, SimulateRequest, Smoothing, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity
     }
 }

@@ -6,9 +6,11 @@ use super::fretting_map;
 use stickslip_mechanics::{Contact, Move, Regime, Tangential};
 use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot, Section};
 use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::profile_fit::ColumnPair;
 use stickslip_wire::subsurface::{Places, SubsurfaceTask};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, FrettingReply, HistoryPage, LoopPage, State, SteadyCycle, StressReply, Subsurface,
+    Cycle, CyclePage, CycleReply, FrettingReply, HistoryPage, LoopPage, ProfileFitReply, State, SteadyCycle,
+    StressReply, Subsurface,
 };
 
 /// Why some stresses below the surface have no picture.
@@ -18,6 +20,8 @@ pub const NO_SECTION: &str =
 pub const NO_RATED_SECTION: &str = "a picture is of one criterion over a `plane` or the `surface`";
 /// Points of each branch of a steady loop.
 const BRANCH_POINTS: usize = 200;
+/// How far the strokes of outliers reach at most, in standard deviations of the residual.
+const LARGEST_RESIDUAL: f64 = 10.0;
 
 /// Shear stress between the bounds of friction, with the regions that stuck and slipped in the last move.
 #[must_use]
@@ -222,4 +226,59 @@ fn steady_loop(contact: &Contact, cycle: &SteadyCycle) -> Plot {
         }],
         bands: Vec::new(),
     }
+}
+
+/// A scan and the profile that was fitted to it, over the difference of both.
+#[must_use]
+pub fn profile_fit(reply: &ProfileFitReply) -> Plot {
+    let used = &reply.used;
+    let fitted = |radius: f64| {
+        let above = used.radius.partition_point(|&r| r < radius).clamp(1, used.radius.len() - 1);
+        let (low, high) = (used.radius[above - 1], used.radius[above]);
+        let share = (radius - low) / (high - low);
+        used.height[above - 1] + share * (used.height[above] - used.height[above - 1])
+    };
+    let pairs = |columns: &ColumnPair| -> Vec<(f64, f64)> {
+        columns.radius.iter().copied().zip(columns.height.iter().copied()).collect()
+    };
+    let residual = |columns: &ColumnPair| pairs(columns).into_iter().map(|(r, z)| (r, z - fitted(r))).collect();
+    // A point that was left out has no neighbours to be joined with: a short stroke to the profile marks it.
+    let strokes = |to: fn(f64, f64) -> [f64; 2]| -> Vec<(f64, f64)> {
+        let each = pairs(&reply.left_out).into_iter();
+        each.flat_map(|(r, z)| to(z, fitted(r)).map(|end| (r, end)).into_iter().chain([(r, f64::NAN)])).collect()
+    };
+    let curve = |name, points, colour| Curve { name, points, colour, silent: false };
+    let most = reply.residual.rms * LARGEST_RESIDUAL;
+    Plot {
+        title: format!("Profile from a scan: residual {:.3e} m rms", reply.residual.rms),
+        x: Axis { name: "radius r", unit: Some("m") },
+        panels: vec![
+            Panel {
+                y: Axis { name: "height of the gap", unit: Some("m") },
+                curves: vec![
+                    curve("scan", pairs(&reply.raw), Colour::Grey),
+                    curve("left out", clipped(strokes(|z, f| [f, z]), used), Colour::Red),
+                    curve("profile", pairs(used), Colour::Blue),
+                ],
+            },
+            Panel {
+                y: Axis { name: "scan less profile", unit: Some("m") },
+                curves: vec![
+                    curve("scan", residual(&reply.raw), Colour::Grey),
+                    curve(
+                        "left out",
+                        strokes(|z, f| [0.0, z - f]).into_iter().map(|(r, e)| (r, e.clamp(-most, most))).collect(),
+                        Colour::Red,
+                    ),
+                ],
+            },
+        ],
+        bands: Vec::new(),
+    }
+}
+
+/// Strokes within half the height of a profile about it: an outlier may be far off.
+fn clipped(strokes: Vec<(f64, f64)>, used: &ColumnPair) -> Vec<(f64, f64)> {
+    let top = used.height.last().copied().unwrap_or(0.0);
+    strokes.into_iter().map(|(r, z)| (r, z.clamp(-0.5 * top, 1.5 * top))).collect()
 }

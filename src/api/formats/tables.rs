@@ -8,8 +8,8 @@ use crate::simulation::SweepResult;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::sweep::{CheckedSweep, indices};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, Field, FrettingReply, Harmonic, HistoryPage, LoopPage, State, SteadyCycle,
-    StressReply, Subsurface, subsurface,
+    Cycle, CyclePage, CycleReply, Field, FrettingReply, Harmonic, HistoryPage, LoopPage, ProfileFitReply, State,
+    SteadyCycle, StressReply, Subsurface, subsurface,
 };
 
 use super::table::{Cells, Column, Table};
@@ -66,6 +66,30 @@ pub fn fretting(reply: &FrettingReply) -> Table<'_> {
         columns.push(Column::floats(name, unit, |row| rating.values[row].unwrap_or(f64::NAN)));
     }
     flat(reply.x.len(), columns)
+}
+
+/// Rows of a fitted scan, at most.
+pub const SCAN_ROWS: usize = 3 * 4_000;
+
+/// The points of a scan and of the profile that was fitted to it.
+#[must_use]
+pub fn profile_fit(reply: &ProfileFitReply) -> Table<'_> {
+    let parts = [("fitted", &reply.raw), ("left_out", &reply.left_out), ("profile", &reply.used)];
+    let of = move |mut row: usize| {
+        for (name, columns) in parts {
+            if row < columns.radius.len() {
+                return (name, columns.radius[row], columns.height[row]);
+            }
+            row -= columns.radius.len();
+        }
+        ("", f64::NAN, f64::NAN)
+    };
+    let columns = vec![
+        Column::new("part", Some(""), Cells::Words(Box::new(move |row| of(row).0))),
+        Column::floats("radius", "m", move |row| of(row).1),
+        Column::floats("height", "m", move |row| of(row).2),
+    ];
+    flat(parts.iter().map(|(_, columns)| columns.radius.len()).sum(), columns)
 }
 
 /// A page of a history: the states with their numbers and times.

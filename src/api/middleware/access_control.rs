@@ -30,6 +30,7 @@ const ROUTE_ROLES: &[(&str, &str, Need)] = &[
     ("POST", "/protocols", Key(Role::Read)),
     ("POST", "/cycle", Key(Role::Read)),
     ("POST", "/fretting", Key(Role::Read)),
+    ("POST", "/profiles/fit", Key(Role::Read)),
     ("POST", "/sweep", Key(Role::Write)),
     ("GET", "/jobs/{id}", Key(Role::Read)),
     ("DELETE", "/jobs/{id}", Key(Role::Write)),

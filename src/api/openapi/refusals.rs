@@ -16,8 +16,9 @@ pub fn write(document: &mut Value) {
         let job = path.starts_with("/jobs");
         let changes = ["/move", "/path", "/relax"].iter().any(|end| path.ends_with(end));
         let changes_contact = changes || (method == "delete" && !job);
-        let defines_contact = ["/simulate", "/accuracy", "/protocols", "/cycle", "/fretting", "/sweep"].contains(&path);
-        let about_contacts = path.starts_with("/contacts") || defines_contact || job;
+        let computes =
+            ["/simulate", "/accuracy", "/protocols", "/cycle", "/fretting", "/profiles/fit", "/sweep"].contains(&path);
+        let about_contacts = path.starts_with("/contacts") || computes || job;
         let refusals = [
             (method == "post", "400", "The body is not JSON"),
             (path.contains('{') || path == "/protocols", "404", "There is no such thing"),

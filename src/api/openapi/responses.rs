@@ -28,7 +28,9 @@ pub fn write(document: &mut Value) {
                 write_formats(operation, &Format::ALL);
                 write_conditional(operation, true);
             }
-            ("post", "/cycle" | "/fretting" | "/contacts/{id}/subsurface") => write_formats(operation, &Format::ALL),
+            ("post", "/cycle" | "/fretting" | "/profiles/fit" | "/contacts/{id}/subsurface") => {
+                write_formats(operation, &Format::ALL);
+            }
             ("get", "/contacts/{id}") => write_conditional(operation, false),
             ("post", "/sweep") | ("get", "/jobs/{id}/result") => write_formats(operation, &Format::TABLES),
             ("get", "/contacts/{id}/events") => write_events(operation),

@@ -106,7 +106,7 @@ fn write_exclusions(schemas: &mut Map<String, Value>) {
 /// Quantities that are either zero or not too small, and counts that are even.
 fn write_gaps(schemas: &mut Map<String, Value>) {
     let gap = |least: f64| json!({"exclusiveMinimum": 0, "exclusiveMaximum": least});
-    for schema in ["ContactDefinition", "CreateRequest"] {
+    for schema in ["ContactDefinition", "CreateRequest", "ScanLoad"] {
         schemas[schema]["properties"]["friction"]["not"] = gap(range::MIN_POSITIVE_FRICTION);
     }
     schemas["CyclicPath"]["properties"]["points_per_cycle"]["multipleOf"] = json!(2);

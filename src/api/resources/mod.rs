@@ -13,6 +13,7 @@ pub mod meta;
 pub mod metrics;
 pub mod moves;
 pub mod page;
+pub mod profile_fit;
 pub mod protocols;
 pub mod simulate;
 pub mod stress;

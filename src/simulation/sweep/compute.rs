@@ -175,6 +175,7 @@ fn of_failure(refusal: Failure) -> PointFailure {
         Failure::MemoryFull { pointer, .. } | Failure::TooLong { pointer, .. } | Failure::CycleTooLarge { pointer } => {
             failure(code, pointer, detail)
         }
+        Failure::Scan { pointer, .. } => failure(code, pointer.to_owned(), detail),
         Failure::Stopped => failure(code, String::new(), detail),
     }
 }

@@ -1,0 +1,11 @@
+//! What measured data say about a contact, and how surely.
+//!
+//! Everything here turns instrument data into the inputs of [`stickslip_mechanics`], with standard errors. It knows the
+//! mechanics, and no HTTP, no serde and no async.
+//!
+//! | module | question |
+//! |---|---|
+//! | [`scan`] | which profile does a scan of heights show? |
+
+mod linear;
+pub mod scan;

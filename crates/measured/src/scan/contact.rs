@@ -1,0 +1,125 @@
+//! What a scan alone says of the contact under a load, with standard errors.
+//!
+//! Delta method: d = g(a), F_N = 2 E* L(a), L = int_0^a x g' dx and p(r) = (E*/pi) int_r^a g'/sqrt(x^2 - r^2) dx are linear in the
+//! curvatures at a given a, and a follows from what the load fixes. With D the change by a curvature at fixed a:
+//! dL = DL + a g'(a) da, dd = Dg + g'(a) da, dp = Dp + (E*/pi) g'(a)/sqrt(a^2 - r^2) da. A largest pressure moves along a maximum, so
+//! that its place does not matter.
+
+use stickslip_mechanics::profile::{Profile, Ring, RoundedPunch, Sphere, StressRadius};
+use stickslip_mechanics::{Contact, Elasticity, Preload, Setup};
+
+use super::{Error, Estimate, ScanFit};
+use crate::linear::dot;
+
+/// Radii at which the place of the largest pressure is sought.
+const PLACES: usize = 128;
+
+/// A contact under a load, as the scan determines it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEstimate {
+    /// Indentation, m.
+    pub indentation: Estimate,
+    /// Contact radius, m.
+    pub contact_radius: Estimate,
+    /// Normal force, N.
+    pub normal_force: Estimate,
+    /// Largest pressure, Pa.
+    pub max_pressure: Estimate,
+}
+
+/// g, L and pi/E* p of the shape (r - b)_+^2/2 in a contact of radius a.
+fn functionals(b: f64, a: f64, at: f64) -> Result<[f64; 3], Error> {
+    if a <= b {
+        return Ok([0.0; 3]);
+    }
+    let shape =
+        if b > 0.0 { Profile::RoundedPunch(RoundedPunch::new(b, 1.0)?) } else { Profile::Sphere(Sphere::new(1.0)?) };
+    let level = shape.level(a);
+    let whole = Ring::between(shape.point(0.0.into()), shape.point(level.into()));
+    let load = whole.inner.radius * whole.depth + shape.moments(&whole).first;
+    Ok([level, load, shape.kernel(&StressRadius::new(at), &whole)])
+}
+
+impl ScanFit {
+    /// The contact under a load, m, N and Pa.
+    ///
+    /// # Errors
+    /// [`Error::TooShort`] if it is larger than the scan, [`Error::Refused`] for a load that the mechanics refuses.
+    pub fn contact(&self, elasticity: Elasticity, friction: f64, preload: Preload) -> Result<ContactEstimate, Error> {
+        let setup = Setup { profile: self.profile.clone(), elasticity, friction, preload };
+        let contact = Contact::new(setup).map_err(|error| self.too_short(error, &elasticity, preload))?;
+        let summary = contact.summary();
+        let (a, e_star) = (summary.contact_radius, elasticity.e_star());
+        let radii: Vec<f64> = (0..PLACES).map(|index| a * index as f64 / PLACES as f64).collect();
+        let pressures = contact.pressures(&radii);
+        let at = (0..PLACES)
+            .max_by(|&one, &other| pressures[one].total_cmp(&pressures[other]))
+            .map_or(0.0, |index| radii[index]);
+
+        let count = self.curve.curvatures.len();
+        let from = (0..=count)
+            .map(|index| functionals(index as f64 * self.curve.width, a, at))
+            .collect::<Result<Vec<_>, _>>()?;
+        let slope = self.profile.slope(a);
+        let edge = slope / ((a - at) * (a + at)).sqrt();
+        // Per curvature: the change of radius, then those of all else.
+        let changes: Vec<[f64; 4]> = from
+            .windows(2)
+            .map(|pair| {
+                let [level, load, pressure] = [0, 1, 2].map(|index| pair[0][index] - pair[1][index]);
+                let wider = match preload {
+                    _ if a <= 0.0 => 0.0,
+                    Preload::NormalForce(_) => -load / (a * slope),
+                    Preload::Indentation(_) => -level / slope,
+                    Preload::ContactRadius(_) => 0.0,
+                };
+                let pressure = e_star / std::f64::consts::PI * (pressure + if a > 0.0 { edge * wider } else { 0.0 });
+                [level + slope * wider, wider, 2.0 * e_star * (load + a * slope * wider), pressure]
+            })
+            .collect();
+        let estimate = |value: f64, index: usize, fixed: bool| {
+            let gradient: Vec<f64> = changes.iter().map(|change| change[index]).collect();
+            let error = self.covariance.quadratic(&gradient).max(0.0).sqrt();
+            Estimate { value, standard_error: if fixed { 0.0 } else { error } }
+        };
+        Ok(ContactEstimate {
+            indentation: estimate(summary.indentation, 0, matches!(preload, Preload::Indentation(_))),
+            contact_radius: estimate(a, 1, matches!(preload, Preload::ContactRadius(_))),
+            normal_force: estimate(summary.normal_force, 2, matches!(preload, Preload::NormalForce(_))),
+            max_pressure: estimate(summary.max_pressure.unwrap_or(f64::INFINITY), 3, false),
+        })
+    }
+
+    /// The error for a contact that is larger than the scan, with the radius at which a surface would carry the load that goes on
+    /// with g' rising as it does on average, g' = s x.
+    fn too_short(&self, error: stickslip_mechanics::Error, elasticity: &Elasticity, preload: Preload) -> Error {
+        use stickslip_mechanics::Error as Refusal;
+        if !matches!(error, Refusal::BeyondProfile { .. } | Refusal::NotConvexEnough { .. }) {
+            return error.into();
+        }
+        let reach = self.table.radius[self.table.radius.len() - 1];
+        let Ok([level, load, _]) = self.at_end(reach) else { return error.into() };
+        let s = self.profile.slope(reach * (1.0 - 1e-9)) / reach;
+        let needed = match preload {
+            Preload::NormalForce(force) => {
+                (reach.powi(3) + 3.0 * (force / (2.0 * elasticity.e_star()) - load) / s).cbrt()
+            }
+            Preload::Indentation(depth) => (reach * reach + 2.0 * (depth - level) / s).sqrt(),
+            Preload::ContactRadius(radius) => radius,
+        };
+        Error::TooShort { reach, needed: needed.max(reach) }
+    }
+
+    /// g, L and pressure of the whole curve at its end.
+    fn at_end(&self, reach: f64) -> Result<[f64; 3], Error> {
+        let count = self.curve.curvatures.len();
+        let from = (0..=count)
+            .map(|index| functionals(index as f64 * self.curve.width, reach, 0.0))
+            .collect::<Result<Vec<_>, _>>()?;
+        let sum = |which: usize| {
+            let shares: Vec<f64> = from.windows(2).map(|pair| pair[0][which] - pair[1][which]).collect();
+            dot(&shares, &self.curve.curvatures)
+        };
+        Ok([sum(0), sum(1), sum(2)])
+    }
+}

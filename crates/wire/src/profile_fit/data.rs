@@ -1,0 +1,168 @@
+//! The heights of a scan, and the limits of their numbers.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::range::{Quantity, Range};
+
+use crate::check::{Faults, JsonPath};
+use crate::limits::{Keywords, Limit, Numbers, SCAN_POINTS, SCAN_ROWS, limits};
+use crate::single_key::single_key;
+
+/// A place or a height of a scan, in its unit.
+pub const SCAN_NUMBER: Range = Range { quantity: Quantity::Place, unit: "", min: -1e12, max: 1e12 };
+/// The distance of neighbouring points of a map, in its unit.
+pub const SCAN_STEP: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
+
+/// Heights with their places, one key. A height of `null` is missing.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ScanData {
+    /// A profile along a line through the axis.
+    Line(LineScan),
+    /// Heights on a grid.
+    Map(MapScan),
+    /// Heights anywhere.
+    Points(PointScan),
+}
+single_key!(ScanData { "line" => Line, "map" => Map, "points" => Points });
+
+/// A scan along a line through the axis, in any order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineScan {
+    /// Places along the line.
+    pub x: Vec<f64>,
+    /// Heights, as many.
+    pub z: Vec<Option<f64>>,
+}
+limits!(LineScan { x: Numbers(SCAN_POINTS, SCAN_NUMBER), z: Heights(SCAN_POINTS) });
+
+/// A scan on a grid. The first height is at x = y = 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MapScan {
+    /// The distance of neighbours in a row, along x.
+    pub dx: f64,
+    /// The distance of rows, along y.
+    pub dy: f64,
+    /// The rows of heights, each as long.
+    pub z: Vec<Vec<Option<f64>>>,
+}
+limits!(MapScan { dx: SCAN_STEP, dy: SCAN_STEP, z: Rows });
+
+/// Heights at places, in any order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointScan {
+    /// Places along x.
+    pub x: Vec<f64>,
+    /// Places along y, as many.
+    pub y: Vec<f64>,
+    /// Heights, as many.
+    pub z: Vec<Option<f64>>,
+}
+limits!(PointScan {
+    x: Numbers(SCAN_POINTS, SCAN_NUMBER),
+    y: Numbers(SCAN_POINTS, SCAN_NUMBER),
+    z: Heights(SCAN_POINTS)
+});
+
+/// The number of heights, and the range of each.
+pub struct Heights(pub std::ops::RangeInclusive<usize>);
+
+impl Keywords for Heights {
+    fn keywords(&self) -> Value {
+        json!({"minItems": self.0.start(), "maxItems": self.0.end(), "items": SCAN_NUMBER.keywords()})
+    }
+}
+
+impl Limit<Vec<Option<f64>>> for Heights {
+    fn check(&self, value: &Vec<Option<f64>>, at: JsonPath<'_>, faults: &mut Faults) {
+        if faults.length(at, value.len(), &self.0) {
+            for (index, height) in value.iter().enumerate() {
+                Limit::check(&SCAN_NUMBER, height, at.index(index), faults);
+            }
+        }
+    }
+}
+
+/// Rows of heights.
+pub struct Rows;
+
+impl Keywords for Rows {
+    fn keywords(&self) -> Value {
+        json!({"minItems": SCAN_ROWS.start(), "maxItems": SCAN_ROWS.end(), "items": Heights(SCAN_ROWS).keywords()})
+    }
+}
+
+impl Limit<Vec<Vec<Option<f64>>>> for Rows {
+    fn check(&self, value: &Vec<Vec<Option<f64>>>, at: JsonPath<'_>, faults: &mut Faults) {
+        if faults.length(at, value.len(), &SCAN_ROWS) {
+            value.iter().enumerate().for_each(|(index, row)| Heights(SCAN_ROWS).check(row, at.index(index), faults));
+        }
+    }
+}
+
+/// Notes a column that is not as long as the first.
+fn as_long(at: JsonPath<'_>, length: usize, first: usize, faults: &mut Faults) {
+    if length != first {
+        faults.add(at, format_args!("has {length} numbers, and `x` has {first}: give one for each point"));
+    }
+}
+
+impl ScanData {
+    /// JSON pointer to its heights.
+    pub(super) fn pointer(&self) -> &'static str {
+        match self {
+            ScanData::Line(_) => "/scan/line/z",
+            ScanData::Map(_) => "/scan/map/z",
+            ScanData::Points(_) => "/scan/points/z",
+        }
+    }
+
+    /// Places and heights in m, `units` being those of the two; a missing height is NaN.
+    pub(super) fn check(self, units: [f64; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<Vec<[f64; 3]>> {
+        let [lateral, height] = units;
+        let point = |x: f64, y: f64, z: Option<f64>| [x * lateral, y * lateral, z.map_or(f64::NAN, |z| z * height)];
+        faults.part(|faults| match self {
+            ScanData::Line(scan) => {
+                let at = at.member("line");
+                scan.check_members(at, faults);
+                as_long(at.member("z"), scan.z.len(), scan.x.len(), faults);
+                scan.x.into_iter().zip(scan.z).map(|(x, z)| point(x, 0.0, z)).collect()
+            }
+            ScanData::Points(scan) => {
+                let at = at.member("points");
+                scan.check_members(at, faults);
+                as_long(at.member("y"), scan.y.len(), scan.x.len(), faults);
+                as_long(at.member("z"), scan.z.len(), scan.x.len(), faults);
+                let places = scan.x.into_iter().zip(scan.y);
+                places.zip(scan.z).map(|((x, y), z)| point(x, y, z)).collect()
+            }
+            ScanData::Map(scan) => {
+                let at = at.member("map");
+                scan.check_members(at, faults);
+                let length = scan.z.first().map_or(0, Vec::len);
+                let heights = at.member("z");
+                for (index, row) in scan.z.iter().enumerate().filter(|(_, row)| row.len() != length) {
+                    let detail =
+                        format_args!("has {} heights, and the first row {length}: rows are equally long", row.len());
+                    faults.add(heights.index(index), detail);
+                }
+                if scan.z.len().saturating_mul(length) > *SCAN_POINTS.end() {
+                    let detail = format_args!("more than {} heights: leave out rows and columns", SCAN_POINTS.end());
+                    faults.add(heights, detail);
+                    return Vec::new();
+                }
+                let (dx, dy) = (scan.dx, scan.dy);
+                let row = |(row, heights): (usize, Vec<Option<f64>>)| {
+                    let along = heights.into_iter().enumerate();
+                    along.map(move |(column, z)| point(column as f64 * dx, row as f64 * dy, z))
+                };
+                scan.z.into_iter().enumerate().flat_map(row).collect()
+            }
+        })
+    }
+}

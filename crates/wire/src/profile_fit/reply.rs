@@ -1,0 +1,91 @@
+//! The reply of `POST /profiles/fit`.
+
+use serde::{Deserialize, Serialize};
+use serde_with::apply;
+use utoipa::ToSchema;
+
+use super::ScanOrientation;
+use crate::profile::Profile;
+use crate::reply::Warning;
+
+/// A profile that was fitted to a scan, with what is left of the scan.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ProfileFitReply {
+    /// The profile, for `/simulate` and `/contacts`.
+    pub profile: Profile,
+    /// The radius of curvature on the axis, m; `null` where the surface is flat there to within its error.
+    pub radius_of_curvature: Estimate,
+    /// The axis, m.
+    pub centre: Axis2,
+    /// The slopes of the plane that was taken off, pure numbers.
+    pub tilt: Axis2,
+    /// Which way up the scan is: `peak_up` or `peak_down`.
+    pub orientation: ScanOrientation,
+    /// What the profile leaves of the heights.
+    pub residual: ScanResidual,
+    /// The points that were fitted, as heights of the gap above the axis; at most 4000 of them, evenly thinned.
+    pub raw: ColumnPair,
+    /// The points that were left out as outliers, thinned alike.
+    pub left_out: ColumnPair,
+    /// The profile that was fitted, as the table of `profile`.
+    pub used: ColumnPair,
+    /// The least g′(x)/x over its mean: 1 for a ball, 0 where g is about to fall or, at a flat end, constant.
+    pub g_margin: f64,
+    /// The contact under `load`.
+    pub contact: Option<ContactEstimate>,
+    /// Warnings about the scan.
+    pub warnings: Vec<Warning>,
+}
+
+/// A value and its standard error, both in the unit of the value; `null` where it is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Estimate {
+    /// The value.
+    pub value: Option<f64>,
+    /// Its standard error.
+    pub standard_error: Option<f64>,
+}
+
+/// Two components in the plane of the scan; a line has no y.
+#[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Axis2 {
+    /// Along x.
+    pub x: f64,
+    /// Along y.
+    pub y: Option<f64>,
+}
+
+/// What a profile leaves of a scan.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ScanResidual {
+    /// Root mean square of the points that were fitted, m: noise and roughness.
+    pub rms: f64,
+    /// Distance along the scan over which it is correlated, to 1/e, m.
+    pub correlation_length: f64,
+    /// Points that were left out.
+    pub outliers: usize,
+}
+
+/// Heights over radii.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ColumnPair {
+    /// Radii, m, increasing.
+    pub radius: Vec<f64>,
+    /// Heights above the axis, m.
+    pub height: Vec<f64>,
+}
+
+/// The contact as the scan alone determines it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContactEstimate {
+    /// Indentation, m.
+    pub indentation: Estimate,
+    /// Contact radius, m.
+    pub contact_radius: Estimate,
+    /// Normal force, N.
+    pub normal_force: Estimate,
+    /// Largest pressure, Pa.
+    pub max_pressure: Estimate,
+}

@@ -1,0 +1,61 @@
+// A scan in the field of a table: chosen or dropped as a file, or pasted; the service fits a profile to it.
+import { call } from "./api.js";
+import { Chart } from "./chart.js";
+import { el, notice } from "./dom.js";
+import { formatQuantity } from "./units.js";
+
+/** Controls below the text field `control` of a table. `read` gives its columns in m, `write` takes those of the profile. */
+export function scanFit(control, read, write) {
+  const chart = new Chart({
+    name: "scan",
+    title: "Scan and profile",
+    height: 220,
+    x: { label: "Radius r", unit: "m" },
+    y: { label: "Height of the gap", unit: "m" },
+  });
+  chart.element.hidden = true;
+  const said = el("p", { class: "note", id: "scan-said", "aria-live": "polite" });
+  const open = async (file) => {
+    if (file) control.value = await file.text();
+  };
+  control.addEventListener("dragover", (event) => event.preventDefault());
+  control.addEventListener("drop", async (event) => {
+    if (!event.dataTransfer.files.length) return;
+    event.preventDefault();
+    await open(event.dataTransfer.files[0]);
+  });
+  const fit = async () => {
+    const { r, z } = read();
+    try {
+      const reply = await call("POST", "/profiles/fit", { scan: { line: { x: r, z } } });
+      const points = ({ radius, height }) => radius.map((r, index) => [r, height[index]]);
+      chart.element.hidden = false;
+      chart.draw({
+        series: [
+          { name: "scan", kind: "bound", points: points(reply.raw) },
+          { name: "profile", kind: "pressure", points: points(reply.used) },
+        ],
+      });
+      said.textContent = [summary(reply), ...reply.warnings.map((warning) => warning.message)].join(". ");
+      write(reply.profile);
+    } catch (error) {
+      notice(error.message, true);
+    }
+  };
+  const file = el("input", { type: "file", onchange: (event) => open(event.target.files[0]) });
+  return el(
+    "div",
+    {},
+    el("label", {}, "A scan through the axis, as a file ", file),
+    el("button", { type: "button", id: "fit-scan", onclick: fit }, "Fit a profile to the scan"),
+    said,
+    chart.element,
+  );
+}
+
+/** What a fit says in a sentence. */
+function summary({ radius_of_curvature: { value, standard_error: error }, residual, centre }) {
+  const radius = value === null ? "Flat on the axis" : `Radius ${formatQuantity(value, "m")} ± ${formatQuantity(error, "m", 2)}`;
+  const left = `residual ${formatQuantity(residual.rms, "m", 3)}, ${residual.outliers} points left out`;
+  return `${radius}, axis at ${formatQuantity(centre.x, "m", 3)}, ${left}`;
+}

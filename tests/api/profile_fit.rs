@@ -1,0 +1,167 @@
+//! A scan over HTTP: the profile it becomes, what follows from that, every fault with its place, and all formats.
+
+use crate::common;
+
+use common::{Server, ball, good, number, problem};
+use serde_json::{Value, json};
+
+/// A line over a ball of 10 mm, in micrometres and nanometres, upside down, with a little noise that is the same every time.
+fn line() -> Value {
+    let x: Vec<f64> = (0..401).map(|index| f64::from(index - 200)).collect();
+    let noise = |index: usize| ((index * 7919) % 101) as f64 / 50.0 - 1.0;
+    let z: Vec<f64> = x.iter().enumerate().map(|(index, x)| noise(index) - (x - 7.0).powi(2) / 20.0).collect();
+    json!({"scan": {"line": {"x": x, "z": z}}, "units": {"lateral": "um", "height": "nm"}})
+}
+
+fn with(mut body: Value, pointer: &str, value: Value) -> Value {
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    body.pointer_mut(parent).unwrap()[name] = value;
+    body
+}
+
+fn loaded() -> Value {
+    let ball = ball();
+    let load = json!({"material": ball["material"], "friction": 0.3, "preload": {"normal_force": 10.0}});
+    with(line(), "/load", load)
+}
+
+#[tokio::test]
+async fn a_scan_of_a_ball_is_the_contact_of_that_ball() {
+    let server = Server::start().await;
+    let reply = good(server.post("/profiles/fit", &loaded()).await).await;
+    let estimate = |of: &Value| (number(&of["value"]), number(&of["standard_error"]));
+    let (radius, error) = estimate(&reply["radius_of_curvature"]);
+    assert!((radius - 0.01).abs() < 3.0 * error + 1e-5 && error < 1e-3, "{radius} {error}");
+    assert!((number(&reply["centre"]["x"]) - 7e-6).abs() < 2e-7 && reply["centre"].get("y").is_none());
+    assert_eq!((&reply["orientation"], &reply["warnings"]), (&json!("peak_up"), &json!([])));
+    assert!(number(&reply["residual"]["rms"]) < 1e-9 && number(&reply["g_margin"]) > 0.9);
+
+    // What the reply says of the contact is what its profile has in /simulate and /contacts, near Hertz's.
+    let mut contact = ball();
+    contact["profile"] = reply["profile"].clone();
+    let simulated = good(server.post("/simulate", &json!({"contact": contact, "path": {"force": [1.0]}})).await).await;
+    let created = good(server.post("/contacts", &contact).await).await;
+    let hertz = good(server.post("/simulate", &json!({"contact": ball(), "path": {"force": [1.0]}})).await).await;
+    for name in ["indentation", "contact_radius", "max_pressure"] {
+        let (value, error) = estimate(&reply["contact"][name]);
+        assert_eq!(value, number(&simulated["contact"][name]), "{name}");
+        assert_eq!(created["contact"][name], simulated["contact"][name]);
+        let truth = number(&hertz["contact"][name]);
+        assert!((value - truth).abs() < 3.0 * error + 1e-3 * truth && error < 0.01 * truth, "{name} {value} {error}");
+    }
+    assert_eq!(estimate(&reply["contact"]["normal_force"]), (10.0, 0.0));
+}
+
+#[tokio::test]
+async fn a_map_and_points_with_missing_heights_are_scans_too() {
+    let server = Server::start().await;
+    let height = |x: f64, y: f64| ((x - 30.0).powi(2) + (y - 34.0).powi(2)) / 20.0;
+    let row = |y: usize| -> Vec<Value> {
+        let at = |x: usize| if (x + y) % 9 == 0 { Value::Null } else { json!(height(2.0 * x as f64, 2.0 * y as f64)) };
+        (0..32).map(at).collect()
+    };
+    let rows: Vec<Vec<Value>> = (0..32).map(row).collect();
+    let units = json!({"lateral": "um", "height": "nm"});
+    let map = json!({"scan": {"map": {"dx": 2.0, "dy": 2.0, "z": rows}}, "units": units});
+    let place = |index: usize| (f64::from((index % 32) as u32), f64::from((index / 32) as u32));
+    let x: Vec<f64> = (0..1024).map(|index| 2.0 * place(index).0).collect();
+    let y: Vec<f64> = (0..1024).map(|index| 2.0 * place(index).1).collect();
+    let points = json!({"scan": {"points": {"x": x, "y": y, "z": rows.concat()}}, "units": units});
+    let (map, points) =
+        (good(server.post("/profiles/fit", &map).await).await, good(server.post("/profiles/fit", &points).await).await);
+    assert_eq!(map, points);
+    assert!((number(&map["centre"]["x"]) - 3e-5).abs() < 1e-9 && (number(&map["centre"]["y"]) - 3.4e-5).abs() < 1e-9);
+    assert!((number(&map["radius_of_curvature"]["value"]) / 0.01 - 1.0).abs() < 1e-6);
+}
+
+#[tokio::test]
+async fn every_fault_of_a_scan_has_its_place() {
+    let server = Server::start().await;
+    let some = |count: usize| vec![1.0; count];
+    for (body, pointer, code) in [
+        (with(line(), "/scan/line/x", json!([1.0])), "/scan/line/x", "invalid_input"),
+        (with(line(), "/scan/line/z", json!(some(400))), "/scan/line/z", "invalid_input"),
+        (with(line(), "/scan/line/z", json!(some(401))), "/scan/line/z", "invalid_input"),
+        (with(line(), "/scan/line/z", json!(vec![Value::Null; 401])), "/scan/line/z", "invalid_input"),
+        (with(line(), "/scan/line/z/3", json!("NaN")), "/scan/line/z/3", "invalid_input"),
+        (with(line(), "/scan/line/z/3", json!(1e13)), "/scan/line/z/3", "invalid_input"),
+        (with(line(), "/scan/line/x/3", Value::Null), "/scan/line/x/3", "invalid_input"),
+        (with(line(), "/scan/map", json!({})), "/scan", "invalid_input"),
+        (
+            with(line(), "/scan", json!({"map": {"dx": 1, "dy": 1, "z": vec![some(4), some(4), some(5), some(4)]}})),
+            "/scan/map/z/2",
+            "invalid_input",
+        ),
+        (with(line(), "/units/height", json!("inch")), "/units/height", "invalid_input"),
+        (with(line(), "/orientation", json!("peak_down")), "/scan/line/z", "invalid_input"),
+        (with(line(), "/centre", json!({"x": 1e-3})), "/centre", "invalid_input"),
+        (with(line(), "/centre", json!("middle")), "/centre", "invalid_input"),
+        (with(line(), "/smoothing", json!({"knots": 1_000})), "/smoothing/knots", "invalid_input"),
+        (with(line(), "/smoothing", json!({"noise": 0.0})), "/smoothing/noise", "invalid_input"),
+        (with(loaded(), "/load/friction", json!(-1.0)), "/load/friction", "invalid_input"),
+        (with(loaded(), "/load/preload", json!({"normal_force": 1e4})), "/load/preload", "beyond_profile"),
+    ] {
+        let refused = problem(server.post("/profiles/fit", &body).await).await;
+        let first = &refused.errors[0];
+        assert_eq!((first.pointer.as_str(), refused.code.as_str()), (pointer, code), "{refused:?}");
+    }
+    let far = with(loaded(), "/load/preload", json!({"normal_force": 1e3}));
+    let said = problem(server.post("/profiles/fit", &far).await).await.detail;
+    assert!(said.contains("does not reach the edge of the contact: 207 um of about 3"), "{said}");
+}
+
+#[tokio::test]
+async fn a_scan_in_the_wrong_units_is_warned_of() {
+    let server = Server::start().await;
+    // Nanometres taken for picometres, as it were: the radius of curvature comes out a thousand times too large.
+    let flat =
+        with(line(), "/scan/line/x", json!((0..401).map(|index| 1e3 * f64::from(index - 200)).collect::<Vec<_>>()));
+    let flat = good(server.post("/profiles/fit", &flat).await).await;
+    assert_eq!(flat["warnings"][0]["code"], "units", "{}", flat["warnings"]);
+    let mut contact = ball();
+    contact["profile"] = flat["profile"].clone();
+    let reply = good(server.post("/simulate", &json!({"contact": contact, "path": {"force": [1.0]}})).await).await;
+    let codes: Vec<_> = reply["warnings"].as_array().unwrap().iter().map(|warning| &warning["code"]).collect();
+    assert!(codes.contains(&&json!("units")), "{codes:?}");
+    // A contact that all but fills the scan, and many spikes.
+    let short = with(loaded(), "/load/preload", json!({"contact_radius": 2e-4}));
+    let short = good(server.post("/profiles/fit", &short).await).await;
+    assert_eq!(short["warnings"][0]["code"], "short_scan");
+    let mut spiked = line();
+    for index in (5..400).step_by(13) {
+        spiked["scan"]["line"]["z"][index] = json!(1e4);
+    }
+    let spiked = good(server.post("/profiles/fit", &spiked).await).await;
+    assert_eq!(
+        (&spiked["warnings"][0]["code"], &spiked["residual"]["outliers"]),
+        (&json!("many_outliers"), &json!(31))
+    );
+}
+
+#[tokio::test]
+async fn all_formats_have_the_points_of_the_reply() {
+    let server = Server::start().await;
+    let columns = good(server.post("/profiles/fit", &line()).await).await;
+    let rows = good(server.post("/profiles/fit?format=rows", &line()).await).await;
+    let rows = rows.as_array().unwrap();
+    for (part, name) in [("fitted", "raw"), ("left_out", "left_out"), ("profile", "used")] {
+        let of_part: Vec<&Value> = rows.iter().filter(|row| row["part"] == part).collect();
+        for column in ["radius", "height"] {
+            let values: Vec<&Value> = of_part.iter().map(|row| &row[column]).collect();
+            assert_eq!(values, columns[name][column].as_array().unwrap().iter().collect::<Vec<_>>(), "{part} {column}");
+        }
+    }
+    for (format, begins) in [
+        ("csv", "part,radius,height\n"),
+        ("ndjson", "{\"part\":"),
+        ("svg", "<svg"),
+        ("arrow", ""),
+        ("png", "\u{89}PNG"),
+    ] {
+        let written = server.post(&format!("/profiles/fit?format={format}"), &line()).await;
+        assert_eq!(written.status(), 200, "{format}");
+        let bytes = written.bytes().await.unwrap();
+        let text: String = bytes.iter().take(40).map(|byte| char::from(*byte)).collect();
+        assert!(text.starts_with(begins), "{format}: {text}");
+    }
+}
