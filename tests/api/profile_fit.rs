@@ -15,7 +15,11 @@ fn line() -> Value {
 
 fn with(mut body: Value, pointer: &str, value: Value) -> Value {
     let (parent, name) = pointer.rsplit_once('/').unwrap();
-    body.pointer_mut(parent).unwrap()[name] = value;
+    let place = body.pointer_mut(parent).unwrap();
+    match name.parse::<usize>() {
+        Ok(index) => place[index] = value,
+        Err(_) => place[name] = value,
+    }
     body
 }
 
