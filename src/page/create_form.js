@@ -4,6 +4,7 @@ import { Chart } from "./chart.js";
 import { copyButtons } from "./copy_as_code.js";
 import { el, latestOnly, notice, debounce, withSubscripts } from "./dom.js";
 import { Fields, NumberField, TextField } from "./form_fields.js";
+import { WITHOUT_STRESS } from "./form_options.js";
 import { materialFields, preloadFields } from "./material_fields.js";
 import { profileFields } from "./profile_fields.js";
 import { formatNumber, formatQuantity } from "./units.js";
@@ -54,16 +55,15 @@ export function createForm(main, signal) {
   );
   const derive = latestOnly(async () => {
     try {
-      const reply = await call(
-        "POST",
-        "/simulate",
-        { contact: definition(), path: { displacement: [0] }, steps: "last", stress: { points: 200, fields: ["pressure"] } },
-        signal,
-      );
+      const contact = definition();
+      const drawn = !WITHOUT_STRESS.includes(contact.profile.type);
+      const stress = drawn ? { stress: { points: 200, fields: ["pressure"] } } : {};
+      const reply = await call("POST", "/simulate", { contact, path: { displacement: [0] }, steps: "last", ...stress }, signal);
       form.clear();
       derived.classList.remove("stale");
       figures.replaceChildren(...figureList(reply.contact));
-      chart.draw(pressureData(reply, Number(friction.value)));
+      chart.element.hidden = !drawn;
+      if (drawn) chart.draw(pressureData(reply, Number(friction.value)));
       warnings.replaceChildren(...reply.warnings.map((warning) => el("li", {}, warning.message)));
     } catch (error) {
       if (signal.aborted) return;

@@ -45,12 +45,52 @@ export const PROFILES = {
   rounded_cone: ["Cone with a rounded tip", [slope, { ...flat, name: "tip_radius", label: "Radius of the tip" }]],
   tabulated: ["Table of measured heights", []],
   sum: ["Sum of shapes", []],
+  ellipsoid: [
+    "Ellipsoid (Hertz’s ellipse)",
+    [
+      { ...radius, name: "radii/0", label: "Radius R_x along the motion" },
+      { ...radius, name: "radii/1", label: "Radius R_y across it", value: "5" },
+      { name: "direction", label: "Motion along", options: { x: "x", y: "y" } },
+    ],
+  ],
+  asperities: ["Rough: many asperities", []],
+  load_curve: ["Measured load curve", []],
 };
 
-/** A table to begin with: a ball of 10 mm in radius. */
-export const TABLE = Array.from({ length: 11 }, (_, index) => `${index * 20}\t${(index * index * 0.02).toFixed(2)}`).join(
-  "\n",
-);
+/** Those that are known by their load curve alone: no stress, and no part of a sum. */
+export const WITHOUT_STRESS = ["ellipsoid", "asperities", "load_curve"];
+
+const lines = (count, line) => Array.from({ length: count }, (_, index) => line(index)).join("\n");
+
+/** The shapes that are given by two columns: what the text field is called, its columns with their units, and an example. */
+export const COLUMNS = {
+  // A ball of 10 mm in radius.
+  tabulated: [
+    "Radius and height, one pair a line",
+    [
+      ["r", "Radii in ", LENGTH, "µm"],
+      ["z", "Heights in ", LENGTH, "µm"],
+    ],
+    lines(11, (index) => `${index * 20}\t${(index * index * 0.02).toFixed(2)}`),
+  ],
+  asperities: [
+    "Radius of curvature of an asperity and its gap, one pair a line",
+    [
+      ["radii", "Radii in ", LENGTH, "µm"],
+      ["gaps", "Gaps in ", LENGTH, "nm"],
+    ],
+    lines(20, (index) => `${50 + 5 * (index % 7)}\t${index * 25}`),
+  ],
+  // A ball of 10 mm against a flat one, both of steel: F = (4/3) E* sqrt(R d^3).
+  load_curve: [
+    "Indentation and normal force, one pair a line",
+    [
+      ["indentation", "Indentations in ", LENGTH, "µm"],
+      ["normal_force", "Forces in ", FORCE, "N"],
+    ],
+    lines(21, (index) => `${(index * 0.1).toFixed(1)}\t${(0.4866 * index ** 1.5).toFixed(4)}`),
+  ],
+};
 
 /** Young's modulus in GPa and Poisson's ratio. */
 export const MATERIALS = {

@@ -1,14 +1,14 @@
 // The part of the form for the shape of the indenter; a sum contains several shapes.
 import { el } from "./dom.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
-import { LENGTH, PROFILES, TABLE } from "./form_options.js";
+import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
 import { parseNumber } from "./units.js";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
 export function profileFields(form, at, changed, nested = false) {
   const names = Object.entries(PROFILES)
-    .filter(([key]) => !nested || key !== "sum")
+    .filter(([key]) => !nested || (key !== "sum" && !WITHOUT_STRESS.includes(key)))
     .map(([key, [text]]) => [key, text]);
   const choice = new Choice(
     form,
@@ -21,7 +21,7 @@ export function profileFields(form, at, changed, nested = false) {
   let read;
   const fill = () => {
     body.replaceChildren();
-    read = (choice.value === "tabulated" ? table : choice.value === "sum" ? sum : numbers)(
+    read = (choice.value in COLUMNS ? columns : choice.value === "sum" ? sum : numbers)(
       form,
       at,
       changed,
@@ -37,26 +37,36 @@ export function profileFields(form, at, changed, nested = false) {
 }
 
 function numbers(form, at, changed, body, type) {
-  const fields = PROFILES[type][1].map((about) => [about.name, new NumberField(form, () => `${at()}/${about.name}`, about)]);
+  const fields = PROFILES[type][1].map((about) => {
+    const place = () => `${at()}/${about.name}`;
+    const field = about.options
+      ? new Choice(form, place, about.label, about.options, Object.keys(about.options)[0])
+      : new NumberField(form, place, about);
+    return [about.name, field];
+  });
   body.append(...fields.map(([, field]) => field.element));
-  return () => Object.fromEntries(fields.map(([name, field]) => [name, field.value]));
+  return () => {
+    const members = {};
+    for (const [name, field] of fields) {
+      const [list, index] = name.split("/");
+      if (index === undefined) members[name] = field.value;
+      else (members[list] ??= [])[index] = field.value;
+    }
+    return members;
+  };
 }
 
-function table(form, at, changed, body) {
-  const units = () =>
+function columns(form, at, changed, body, type) {
+  const [label, described, example] = COLUMNS[type];
+  const units = described.map(([, , offered, usual]) =>
     el(
       "select",
       {},
-      LENGTH.map(([name, power]) => el("option", { value: power, selected: name === "µm" }, name)),
-    );
-  const [across, up] = [units(), units()];
-  const text = new TextField(
-    form,
-    at,
-    "Radius and height, one pair a line",
-    el("textarea", { rows: 8, spellcheck: "false", value: "" }),
+      offered.map(([name, power]) => el("option", { value: power, selected: name === usual }, name)),
+    ),
   );
-  text.control.value = TABLE;
+  const text = new TextField(form, at, label, el("textarea", { rows: 8, spellcheck: "false", value: "" }));
+  text.control.value = example;
   const read = () => {
     const lines = text.value
       .split("\n")
@@ -70,24 +80,25 @@ function table(form, at, changed, body) {
         .map((cell) => cell.replace(/,$/, ""))
         .filter(Boolean),
     );
-    const column = (index, unit) => pairs.map((pair) => parseNumber(pair[index] ?? "", Number(unit.value)) ?? null);
-    return { r: column(0, across), z: column(1, up) };
+    const column = (index) => pairs.map((pair) => parseNumber(pair[index] ?? "", Number(units[index].value)) ?? null);
+    return Object.fromEntries(described.map(([name], index) => [name, column(index)]));
   };
   const write = ({ r, z }) => {
     const inUnit = (value, unit) => Number((value / 10 ** Number(unit.value)).toPrecision(12));
-    text.control.value = r.map((radius, index) => `${inUnit(radius, across)}\t${inUnit(z[index], up)}`).join("\n");
+    text.control.value = r.map((radius, index) => `${inUnit(radius, units[0])}\t${inUnit(z[index], units[1])}`).join("\n");
     changed();
   };
+  const first = type === "tabulated" ? " The first radius is 0, unless it is a scan to be fitted." : "";
   body.append(
     text.element,
-    el("div", { class: "row" }, el("label", {}, "Radii in ", across), el("label", {}, "Heights in ", up)),
+    el("div", { class: "row" }, ...described.map(([, name], index) => el("label", {}, name, units[index]))),
     el(
       "p",
       { class: "note" },
-      "Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons. The first radius is 0, unless it is a scan to be fitted.",
+      `Paste two columns from a spreadsheet or a file; they are separated by tabs, blanks, commas or semicolons.${first}`,
     ),
-    scanFit(text.control, read, write),
   );
+  if (type === "tabulated") body.append(scanFit(text.control, read, write));
   return read;
 }
 

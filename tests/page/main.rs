@@ -576,6 +576,9 @@ async fn every_shape_body_and_preload_can_be_chosen() {
         let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
         let made = serde_json::to_value(server.client.definition(id).await.unwrap()).unwrap();
         assert_eq!(made.pointer(pointer), Some(&expected), "{value}");
+        if value == "ellipsoid" {
+            assert_eq!(made["profile"], json!({"type": "ellipsoid", "radii": [0.01, 0.005], "direction": "x"}));
+        }
         if value == "tabulated" {
             assert_eq!(made["profile"]["r"], json!([0.0, 1e-4, 2e-4, 3e-4]));
             assert_eq!(made["profile"]["z"], json!([0.0, 5e-7, 2e-6, 4.5e-6]));
