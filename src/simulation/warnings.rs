@@ -1,6 +1,7 @@
 //! Warnings: what to know about a result that is valid nevertheless. Each code has its paragraph in `docs/warnings.md`.
 
 use stickslip_mechanics::{Contact, Elasticity, Profile};
+use stickslip_report::plot::in_unit;
 use stickslip_wire::Warning;
 
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
@@ -143,8 +144,9 @@ pub(super) fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Ob
         warn(
             "units",
             format!(
-                "a contact radius of {} m with E* = {} Pa: are lengths in m and moduli in Pa?",
-                observed.contact_radius, observed.e_star
+                "a contact radius of {} with E* = {}: are lengths in m and moduli in Pa?",
+                in_unit(observed.contact_radius, "m"),
+                in_unit(observed.e_star, "Pa")
             ),
         );
     }
@@ -155,9 +157,10 @@ pub(super) fn warnings(profile: &Profile, elasticity: &Elasticity, observed: &Ob
         warn(
             "noisy_table",
             format!(
-                "the table's heights seem to carry noise, which comes out {amplification:.0} times as large in the contact: \
-                 some {noise:.1e} m against an indentation of {} m; smooth them first",
-                observed.indentation
+                "the table's heights seem to carry noise, which comes out {amplification:.1} times as large in the contact: \
+                 some {} against an indentation of {}; smooth them first",
+                in_unit(noise, "m"),
+                in_unit(observed.indentation, "m")
             ),
         );
     }

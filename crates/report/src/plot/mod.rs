@@ -106,6 +106,22 @@ pub trait Picture {
     }
 }
 
+/// A value in SI units as a reader would write it: at most six significant digits and a unit prefix that fits.
+///
+/// ```
+/// use stickslip_report::plot::in_unit;
+///
+/// assert_eq!(in_unit(1.6822578812860719e-9, "m"), "1.68226 nm");
+/// assert_eq!(in_unit(1.15e11, "Pa"), "115 GPa");
+/// assert_eq!(in_unit(0.0, "N"), "0 N");
+/// ```
+#[must_use]
+pub fn in_unit(value: f64, unit: &str) -> String {
+    let (factor, prefix) = unit_prefix(value.abs());
+    let digits: f64 = format!("{:.5e}", value / factor).parse().unwrap_or(value);
+    format!("{digits} {prefix}{unit}")
+}
+
 /// The power of a thousand to divide values by, and the prefix of the unit.
 fn unit_prefix(largest: f64) -> (f64, &'static str) {
     const PREFIXES: [(i32, &str); 9] =
