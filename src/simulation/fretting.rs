@@ -205,13 +205,12 @@ impl Work<'_> {
         for (place, path) in places.iter().zip(paths) {
             self.stop.check()?;
             let radius = place[0].hypot(place[1]);
-            // Outside the contact nothing slips; what a ring has slipped starts anew when it touches again.
-            let slips: Vec<f64> = states.iter().map(|state| state.slip(radius).unwrap_or(0.0)).collect();
+            let slips: Vec<Option<f64>> = states.iter().map(|state| state.slip(radius)).collect();
             let plain = |value: f64, instant| Value { value, plane: None, instant };
             if let [_, _, _, _, _, Some(damage), Some(tension), _] = values {
                 let shears: Vec<f64> = states.iter().map(|state| state.shear(radius)).collect();
                 let along: Vec<f64> = path.iter().map(|stress| stress.xx).collect();
-                let ruiz = Ruiz::of(&shears, &slips, &along);
+                let ruiz = Ruiz::of(&shears, &slips.iter().copied().flatten().collect::<Vec<_>>(), &along);
                 damage.push(plain(ruiz.fretting_damage, None));
                 tension.push(plain(ruiz.crack_initiation, None));
             }
@@ -221,7 +220,8 @@ impl Work<'_> {
                 // Slip goes one way within a move, so that its steps add up.
                 let done = (0..states.len()).map(|index| {
                     let from = if index == 0 { last } else { index - 1 };
-                    let slipped = (slips[index] - slips[from]).abs();
+                    // A ring that has just been touched has slipped nothing since.
+                    let slipped = slips[index].zip(slips[from]).map_or(0.0, |(one, other)| (one - other).abs());
                     if slipped > 0.0 { 0.5 * (bounds[from] + bounds[index]) * slipped } else { 0.0 }
                 });
                 work.push(plain(done.sum(), None));

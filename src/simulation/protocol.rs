@@ -4,7 +4,7 @@ use stickslip_mechanics::protocol::{
     AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, FirstMove, PathEnd, PathStart, design, lower_bound_while,
     trials,
 };
-use stickslip_mechanics::range::Quantity;
+use stickslip_mechanics::range::{self, Quantity};
 use stickslip_mechanics::{Contact, Error, Setup};
 use stickslip_wire::protocol::{
     Aim, Comparison, DisplacementPath, FirstStroke, Gap, JudgedReply, Outcome, PressureUnit, ProtocolKind,
@@ -108,8 +108,13 @@ pub fn protocol_for(
     stop: &Stop,
 ) -> Result<ProtocolReply, Failure> {
     let contact = contact(setup.clone(), "/contact")?;
-    let first = Some(first.unwrap_or_else(|| contact.gross_slip_displacement()));
-    protocol(&Subject { contact: &contact, first, setup: Some(setup) }, task, stop)
+    let full = contact.gross_slip_displacement();
+    if first.is_none() {
+        // What the request does not have cannot be at fault: the contact is.
+        let checked = range::DISPLACEMENT.check(full);
+        checked.map_err(|error| Failure::Refused { pointer: "/contact".to_owned(), error })?;
+    }
+    protocol(&Subject { contact: &contact, first: first.or(Some(full)), setup: Some(setup) }, task, stop)
 }
 
 /// How many smaller numbers of reversals are checked after bisection.

@@ -82,7 +82,7 @@ async fn the_friction_work_of_a_cycle_that_lifts_off_adds_up_to_what_a_lap_dissi
     let radius = |ring: u32| reach * ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
     let points: Vec<_> = (0..rings).map(|ring| json!([0.6 * radius(ring), 0.8 * radius(ring), 0.0])).collect();
     let asked = json!({
-        "path": {"moves": lap}, "body": "first", "points": points, "criteria": {"friction_work": {}}, "tolerance": 1e-3
+        "path": {"moves": lap}, "body": "first", "points": points, "criteria": {"friction_work": {}}, "tolerance": 1e-4
     });
     let reply = good(server.post("/fretting", &of(&ball(), &asked)).await).await;
     let values = reply["friction_work"]["values"].as_array().unwrap();

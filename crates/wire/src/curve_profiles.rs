@@ -41,13 +41,13 @@ pub struct EllipsoidProfile {
     /// The principal radii of curvature of the gap, R_x and R_y, m; their ratio is 10⁶ at the most.
     pub radii: Vec<f64>,
     /// The axis along which the indenter moves.
-    pub direction: Direction,
+    pub direction: MotionAxis,
 }
 
 /// The axis of the tangential motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Direction {
+pub enum MotionAxis {
     /// Along x, whose radius is R_x.
     X,
     /// Along y, whose radius is R_y.
@@ -116,8 +116,8 @@ impl EllipsoidProfile {
             return None;
         }
         let direction = match self.direction {
-            Direction::X => families::Direction::X,
-            Direction::Y => families::Direction::Y,
+            MotionAxis::X => families::Direction::X,
+            MotionAxis::Y => families::Direction::Y,
         };
         accepted(Ellipsoid::new([x, y], direction).map(Shape::Ellipsoid), at, faults)
     }

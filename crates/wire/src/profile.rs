@@ -17,7 +17,7 @@ use stickslip_mechanics::profile::{Profile as Shape, Sum, Tabulated};
 use stickslip_mechanics::{Elasticity, Error, TableFault, for_each_family, profile as families, range, range::Range};
 
 use super::check::{Faults, JsonPath};
-use super::curve_profiles::{AsperitiesProfile, Direction, EllipsoidProfile, LoadCurveProfile};
+use super::curve_profiles::{AsperitiesProfile, EllipsoidProfile, LoadCurveProfile, MotionAxis};
 use super::limits;
 
 /// Declares everything that follows from the table of families.
@@ -69,7 +69,7 @@ macro_rules! documents {
                 named::<AsperitiesProfile>(),
                 named::<LoadCurveProfile>(),
                 named::<EllipsoidProfile>(),
-                named::<Direction>(),
+                named::<MotionAxis>(),
             ]
         }
 
@@ -225,7 +225,7 @@ struct Members {
     kind: Option<Kind>,
     numbers: HashMap<&'static str, f64>,
     columns: HashMap<&'static str, Vec<f64>>,
-    direction: Option<Direction>,
+    direction: Option<MotionAxis>,
     parts: Option<Vec<Profile>>,
 }
 
