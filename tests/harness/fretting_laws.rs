@@ -52,7 +52,10 @@ fn laws(task: &FrettingTask, reply: &FrettingReply, spiked: bool) {
         let most = found.reduce(f64::max);
         assert_eq!(rating.largest.as_ref().map(|largest| largest.value), most, "{name}");
         if let Some(largest) = &rating.largest {
-            let place = (0..count).find(|index| [reply.x[*index], reply.y[*index], reply.z[*index]] == largest.point);
+            let place = (0..count).find(|index| {
+                let place = [reply.x[*index], reply.y[*index], reply.z[*index]];
+                place.map(f64::to_bits) == largest.point.map(f64::to_bits)
+            });
             assert_eq!(place.and_then(|index| rating.values[index]), Some(largest.value), "{name}: {largest:?}");
             let length = largest.plane.map(|normal| normal.iter().map(|part| part * part).sum::<f64>());
             assert!(length.is_none_or(|length| (length - 1.0).abs() < 1e-12), "{name}: {largest:?}");

@@ -135,7 +135,10 @@ pub fn history(id: Uuid, page: &HistoryPage) -> Plot {
 pub fn hysteresis_loop(id: Uuid, page: &LoopPage) -> Plot {
     let points = page.displacement.iter().copied().zip(page.force.iter().copied()).collect();
     Plot {
-        title: format!("Contact {id}: hysteresis loop{}", shown(page.sequence.iter().copied())),
+        title: format!(
+            "Contact {id}: hysteresis loop{}",
+            shown(page.sequence.iter().copied().filter(|number| *number > 0))
+        ),
         x: Axis { name: "displacement U", unit: Some("m") },
         panels: vec![Panel {
             y: Axis { name: "tangential force F", unit: Some("N") },
