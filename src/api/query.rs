@@ -10,6 +10,7 @@ use axum::http::HeaderMap;
 use axum::http::request::Parts;
 
 use utoipa::IntoParams;
+use uuid::Uuid;
 
 use stickslip_wire::{Fault, Faults, JsonPath, Rejection};
 
@@ -24,9 +25,6 @@ pub const DEFAULT_PAGE: usize = 100;
 
 /// What [`QueryReader::number`] expects of a count.
 pub const COUNT: &str = "a whole number, not negative";
-/// What is expected of the place after which a page of moves begins.
-const SEQUENCE: &str = "the number of a move";
-
 /// The parameters of an operation.
 pub trait QueryParams: Sized {
     /// Takes its parameters out of the query; `None` if it has noted a fault without which there would be a value.
@@ -138,9 +136,9 @@ impl QueryReader {
         self.take(name, expected, |text| text.parse().ok())
     }
 
-    /// The parameters `after` and `limit` of a page; `expected` says what `after` must be.
-    pub fn page<T: FromStr>(&mut self, expected: &str) -> (Option<T>, usize) {
-        let after = self.number("after", expected);
+    /// The parameters `after` and `limit` of a page of contacts.
+    pub fn contacts(&mut self) -> (Option<Uuid>, usize) {
+        let after = self.number("after", "the identifier of a contact");
         let limit = self.number("limit", COUNT).unwrap_or(DEFAULT_PAGE);
         self.faults.count(JsonPath::Root.member("limit"), limit, &PAGE);
         (after, limit)
@@ -148,7 +146,7 @@ impl QueryReader {
 
     /// The parameters `after`, `limit` and `last`: which moves of a contact.
     pub fn moves(&mut self) -> MovesQuery {
-        let after = self.number("after", SEQUENCE);
+        let after = self.number("after", "the number of a move");
         let [limit, last] = ["limit", "last"].map(|name| {
             let count = self.number(name, COUNT);
             count.inspect(|count| self.faults.count(JsonPath::Root.member(name), *count, &PAGE))

@@ -8,11 +8,11 @@ use stickslip_wire::profile_fit::{
 use stickslip_wire::reply::finite;
 use stickslip_wire::{ContactDefinition, Profile, ProfileFitReply, Warning};
 
+use super::warnings::HUGE_TABLE_RADIUS;
 use super::{Failure, quantity};
 use crate::admission::Stop;
 
-/// Radii of curvature, m, beyond which the units are probably wrong.
-const HUGE_RADIUS: f64 = 100.0;
+/// Radius of curvature, m, below which the units are probably wrong.
 const TINY_RADIUS: f64 = 1e-9;
 /// The share of outliers beyond which a scan is called doubtful.
 const MANY_OUTLIERS: f64 = 0.05;
@@ -94,7 +94,7 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warni
     let reach = fit.table.radius[fit.table.radius.len() - 1];
     let rise = fit.table.height[fit.table.height.len() - 1];
     let radius = 0.5 * reach * reach / rise;
-    if !(TINY_RADIUS..HUGE_RADIUS).contains(&radius) {
+    if !(TINY_RADIUS..HUGE_TABLE_RADIUS).contains(&radius) {
         warn("units", format!("a radius of curvature of about {radius:.3} m: are `units` those of the scan?"));
     }
     let share = fit.outliers as f64 / fit.used as f64;

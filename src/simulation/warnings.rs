@@ -16,7 +16,7 @@ const SOFT: f64 = 1e7;
 const HUGE_CURVATURE: f64 = 1.0;
 
 /// The radius of curvature of a table, m, beyond which its units are probably wrong.
-const HUGE_TABLE_RADIUS: f64 = 100.0;
+pub(super) const HUGE_TABLE_RADIUS: f64 = 100.0;
 
 /// Noise of g over the indentation beyond which a table is called noisy.
 const MAX_RELATIVE_NOISE: f64 = 1e-3;

@@ -144,8 +144,13 @@ impl<'a> Table<'a> {
     fn in_blocks(self, format: Format, size: usize) -> Blocks<'a> {
         let (rows, blocks) = (self.rows, self.rows.div_ceil(size).max(1));
         let range = move |block: usize| block * size..rows.min((block + 1) * size);
-        if format == Format::Arrow {
-            return Box::new(self.arrow(blocks, range));
+        if format.is_stream() {
+            let mut stream = TableStream::new(format);
+            // Arrow alone has something to end with.
+            let pieces = blocks + usize::from(format == Format::Arrow);
+            return Box::new((0..pieces).map(move |block| {
+                if block < blocks { stream.push_rows(&self, range(block)) } else { stream.finish() }
+            }));
         }
         let pieces = if format == Format::Columns { blocks * self.columns.len() } else { blocks };
         Box::new((0..pieces).map(move |piece| {
@@ -153,23 +158,10 @@ impl<'a> Table<'a> {
             // Writing to a string cannot fail.
             let _ = match format {
                 Format::Columns => self.write_column(piece / blocks, range(piece % blocks), &mut text),
-                _ => self.write_rows(range(piece), format, &mut text),
+                _ => self.write_rows(range(piece), &mut text),
             };
             Ok(text.into_bytes())
         }))
-    }
-
-    fn arrow(
-        self,
-        blocks: usize,
-        range: impl Fn(usize) -> Range<usize> + Send + 'a,
-    ) -> impl Iterator<Item = Block> + Send + 'a {
-        let mut stream = TableStream::new(Format::Arrow);
-        (0..=blocks).map(
-            move |block| {
-                if block < blocks { stream.push_rows(&self, range(block)) } else { stream.finish() }
-            },
-        )
     }
 
     fn write_column(&self, index: usize, rows: Range<usize>, text: &mut String) -> fmt::Result {
@@ -190,15 +182,11 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    fn write_rows(&self, rows: Range<usize>, format: Format, text: &mut String) -> fmt::Result {
-        let (is_first, is_last) = (rows.start == 0, rows.end == self.rows);
-        match format {
-            Format::Rows if is_first => text.push('['),
-            Format::Csv if is_first => *text = self.csv_names(),
-            _ => {}
-        }
-        self.write_cells(rows, format, text)?;
-        text.push_str(if is_last && format == Format::Rows { "]" } else { "" });
+    fn write_rows(&self, rows: Range<usize>, text: &mut String) -> fmt::Result {
+        let is_last = rows.end == self.rows;
+        text.push_str(if rows.start == 0 { "[" } else { "" });
+        self.write_cells(rows, Format::Rows, text)?;
+        text.push_str(if is_last { "]" } else { "" });
         Ok(())
     }
 
@@ -232,8 +220,8 @@ impl<'a> Table<'a> {
 pub struct TableStream {
     format: Format,
     begun: bool,
-    /// The writer of [`Format::Arrow`], from the first rows on.
-    arrow: Option<StreamWriter<Vec<u8>>>,
+    /// Schema and writer of [`Format::Arrow`], from the first rows on.
+    arrow: Option<(Arc<Schema>, StreamWriter<Vec<u8>>)>,
 }
 
 impl TableStream {
@@ -253,13 +241,16 @@ impl TableStream {
 
     fn push_rows(&mut self, table: &Table<'_>, rows: Range<usize>) -> Block {
         if self.format == Format::Arrow {
-            let schema = Arc::new(Schema::new(table.columns.iter().map(Column::field).collect::<Vec<_>>()));
-            let writer = match &mut self.arrow {
-                Some(writer) => writer,
-                none => none.insert(StreamWriter::try_new(Vec::new(), &schema)?),
+            let (schema, writer) = match &mut self.arrow {
+                Some(begun) => begun,
+                none => {
+                    let schema = Arc::new(Schema::new(table.columns.iter().map(Column::field).collect::<Vec<_>>()));
+                    let writer = StreamWriter::try_new(Vec::new(), &schema)?;
+                    none.insert((schema, writer))
+                }
             };
             let arrays = table.columns.iter().map(|column| column.array(rows.clone()));
-            writer.write(&RecordBatch::try_new(schema, arrays.collect())?)?;
+            writer.write(&RecordBatch::try_new(Arc::clone(schema), arrays.collect())?)?;
             return Ok(std::mem::take(writer.get_mut()));
         }
         let mut text = String::new();
@@ -277,7 +268,7 @@ impl TableStream {
     /// # Errors
     /// As [`TableStream::push`].
     pub fn finish(&mut self) -> Block {
-        let Some(writer) = &mut self.arrow else { return Ok(Vec::new()) };
+        let Some((_, writer)) = &mut self.arrow else { return Ok(Vec::new()) };
         // A reader detects a truncated stream by the absence of this mark.
         writer.finish()?;
         Ok(std::mem::take(writer.get_mut()))

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::Number;
 
 use crate::simulation::SweepResult;
+use stickslip_measured::scan::DRAWN_POINTS;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::sweep::{CheckedSweep, indices};
 use stickslip_wire::{
@@ -69,7 +70,7 @@ pub fn fretting(reply: &FrettingReply) -> Table<'_> {
 }
 
 /// Rows of a fitted scan, at most.
-pub const SCAN_ROWS: usize = 3 * 4_000;
+pub const SCAN_ROWS: usize = 3 * DRAWN_POINTS;
 
 /// The points of a scan and of the profile that was fitted to it.
 #[must_use]

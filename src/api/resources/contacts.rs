@@ -47,7 +47,7 @@ pub struct ListQuery {
 
 impl QueryParams for ListQuery {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<ListQuery> {
-        let (after, limit) = query.page("the identifier of a contact");
+        let (after, limit) = query.contacts();
         Some(ListQuery { limit, after })
     }
 }

@@ -65,16 +65,17 @@ pub async fn get_history(
         Moves::Page(after, limit) => (after, limit),
         Moves::Newest(limit) => (newest(&app, id, limit).await?, limit),
         Moves::All => {
-            let end = app.sessions.sequence(id).await?;
-            let tag = format.tag(&format!("{end}-all{unmarked}"));
-            if reply::is_current(&headers, &tag) {
-                return Ok(reply::not_modified(&tag));
-            }
-            let memory = app.pool.reserve(whole_history::PAGE * ITEM_BYTES).await?;
-            let table = whole_history::table(format, end, move |table, after, limit| {
-                write_page(Arc::clone(&app), id, (after, limit), cycles, table)
-            });
-            return Ok(reply::holding(reply::tagged(format.reply(table), &tag), memory));
+            let owned = Arc::clone(&app);
+            let write = move |table, after, limit| write_page(Arc::clone(&owned), id, (after, limit), cycles, table);
+            return whole_history::reply(
+                &app,
+                id,
+                &headers,
+                (format, unmarked),
+                whole_history::PAGE * ITEM_BYTES,
+                write,
+            )
+            .await;
         }
     };
     let memory = app.pool.reserve(limit * ITEM_BYTES + format.bytes(0, 0)).await?;

@@ -65,16 +65,9 @@ pub async fn get_loop(
         Moves::Page(after, limit) => (after, limit),
         Moves::Newest(limit) => (newest(&app, id, limit).await?, limit),
         Moves::All => {
-            let end = app.sessions.sequence(id).await?;
-            let tag = format.tag(&format!("{end}-all"));
-            if reply::is_current(&headers, &tag) {
-                return Ok(reply::not_modified(&tag));
-            }
-            let memory = app.pool.reserve(bytes(whole_history::PAGE)).await?;
-            let table = whole_history::table(format, end, move |table, after, limit| {
-                write_page(Arc::clone(&app), id, (after, limit), points, table)
-            });
-            return Ok(reply::holding(reply::tagged(format.reply(table), &tag), memory));
+            let owned = Arc::clone(&app);
+            let write = move |table, after, limit| write_page(Arc::clone(&owned), id, (after, limit), points, table);
+            return whole_history::reply(&app, id, &headers, (format, ""), bytes(whole_history::PAGE), write).await;
         }
     };
     let memory = app.pool.reserve(bytes(limit)).await?;

@@ -3,16 +3,43 @@
 use std::io;
 
 use axum::body::Body;
+use axum::http::HeaderMap;
+use axum::response::Response;
 use futures::stream;
+use uuid::Uuid;
 
 use crate::api::formats::{Format, TableStream};
 use crate::api::problem::Problem;
+use crate::api::reply;
+use crate::api::state::App;
 
 /// Moves that are read at once.
 pub(super) const PAGE: usize = 500;
 
-/// The table of the moves 1 to `end`. `write` appends so many moves after another one to a table.
-pub(super) fn table<F>(format: Format, end: u64, write: impl Fn(TableStream, u64, usize) -> F + Send + 'static) -> Body
+/// The reply with all moves of a contact, for which `bytes` are reserved. `marking` distinguishes tables of one format. `write`
+/// appends so many moves after another one to the table.
+pub(super) async fn reply<F>(
+    app: &App,
+    id: Uuid,
+    headers: &HeaderMap,
+    (format, marking): (Format, &str),
+    bytes: usize,
+    write: impl Fn(TableStream, u64, usize) -> F + Send + 'static,
+) -> Result<Response, Problem>
+where
+    F: Future<Output = Result<(TableStream, Vec<u8>), Problem>> + Send + 'static,
+{
+    let end = app.sessions.sequence(id).await?;
+    let tag = format.tag(&format!("{end}-all{marking}"));
+    if reply::is_current(headers, &tag) {
+        return Ok(reply::not_modified(&tag));
+    }
+    let memory = app.pool.reserve(bytes).await?;
+    Ok(reply::holding(reply::tagged(format.reply(table(format, end, write)), &tag), memory))
+}
+
+/// The table of the moves 1 to `end`.
+fn table<F>(format: Format, end: u64, write: impl Fn(TableStream, u64, usize) -> F + Send + 'static) -> Body
 where
     F: Future<Output = Result<(TableStream, Vec<u8>), Problem>> + Send + 'static,
 {
