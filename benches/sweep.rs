@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 
 use load::{Connection, Process, serve};
 use serde_json::json;
-use stickslip::admission::Stop;
-use stickslip::simulation::{Sweep, SweepResult, Workers, simulate};
+use stickslip::admission::{Stop, Turn};
+use stickslip::simulation::{Sweep, SweepResult, simulate};
 use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
@@ -45,11 +45,12 @@ fn plan() -> Sweep {
 }
 
 fn time_of_sweep(threads: usize) -> (SweepResult, Duration) {
-    let (plan, workers) = (plan(), Workers::new(threads).expect("threads"));
+    let plan = plan();
     let (mut rows, begin) = (SweepResult::default(), Instant::now());
     while rows.values.len() < POINTS {
         let rest = rows.values.len()..POINTS;
-        rows.append(plan.slice(rest, &workers, threads, &Stop::default(), None).expect("it is not stopped"));
+        let turns = (0..threads).map(|_| Turn::alone()).collect();
+        rows.append(plan.slice(rest, turns, &Stop::default(), None).expect("it is not stopped"));
     }
     (rows, begin.elapsed())
 }

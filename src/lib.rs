@@ -18,7 +18,8 @@
 //!
 //! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no physics.
 //!
-//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both.
+//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces. Every module may use both, and TLS to servers that need
+//! not be verified.
 
 pub mod access;
 pub mod admission;
@@ -30,3 +31,4 @@ pub mod server;
 pub mod sessions;
 pub mod simulation;
 pub mod store;
+mod unverified_tls;

@@ -1,5 +1,6 @@
 //! Entries of a file of keys, and new keys.
 
+use jiff::Timestamp;
 use sha2::{Digest as _, Sha256};
 
 use crate::store::Tenant;
@@ -31,27 +32,43 @@ pub struct NewKey {
     pub entry: String,
 }
 
-/// Generates a key from the randomness of the system.
+/// Generates a key without an end.
+///
+/// # Errors
+/// As [`new_key_until`].
+pub fn new_key(name: &str, roles: &[Role], tenant: &str) -> Result<NewKey, String> {
+    new_key_until(name, roles, tenant, None)
+}
+
+/// Generates a key from the randomness of the system. It counts until `expires_at`, if that is given.
 ///
 /// # Errors
 /// The reason in one line.
-pub fn new_key(name: &str, roles: &[Role], tenant: &str) -> Result<NewKey, String> {
+pub fn new_key_until(
+    name: &str,
+    roles: &[Role],
+    tenant: &str,
+    expires_at: Option<Timestamp>,
+) -> Result<NewKey, String> {
     let mut random = [0; RANDOM];
     getrandom::fill(&mut random).map_err(|error| format!("the system has no randomness: {error}"))?;
     let key = format!("{PREFIX}{}", hexadecimal(&random));
     let roles: Vec<&str> = roles.iter().map(|role| role.name()).collect();
     let hash = hexadecimal(&Sha256::digest(key.as_bytes()));
-    let entry = format!("{name}:{}:{tenant}:sha256:{hash}", roles.join("+"));
+    let end = expires_at.map(|expires_at| format!(":{expires_at}")).unwrap_or_default();
+    let entry = format!("{name}:{}:{tenant}:sha256:{hash}{end}", roles.join("+"));
     parse(&entry)?;
     Ok(NewKey { key, entry })
 }
 
 /// Reads an entry.
-pub(super) fn parse(entry: &str) -> Result<(Hash, Holder), String> {
-    let mut parts = entry.split(':');
+pub(super) fn parse(entry: &str) -> Result<Holder, String> {
+    let mut parts = entry.splitn(6, ':');
     let parts: [Option<&str>; 6] = std::array::from_fn(|_| parts.next());
-    let [Some(name), Some(roles), Some(tenant), Some("sha256"), Some(hash), None] = parts else {
-        return Err("expected name:roles:tenant:sha256:hash, where the tenant may be empty".to_owned());
+    let [Some(name), Some(roles), Some(tenant), Some("sha256"), Some(hash), end] = parts else {
+        let expected =
+            "expected name:roles:tenant:sha256:hash, where the tenant may be empty, and then perhaps :expires_at";
+        return Err(expected.to_owned());
     };
     if name.is_empty() || !is_name(name) {
         return Err(invalid_name("the name of a key"));
@@ -59,12 +76,11 @@ pub(super) fn parse(entry: &str) -> Result<(Hash, Holder), String> {
     if !is_name(tenant) {
         return Err(invalid_name("the name of a tenant"));
     }
-    let role = |name| Role::ALL.into_iter().find(|role| role.name() == name);
-    let roles: Option<Vec<Role>> = roles.split('+').map(role).collect();
-    let roles = roles.ok_or("expected roles out of write, read, metrics, with a + between them")?;
+    let roles = roles.split('+').map(str::parse).collect::<Result<_, _>>()?;
     let hash = bytes(hash).ok_or("expected the SHA-256 of the key as 64 hexadecimal digits")?;
-    let holder = Holder { name: name.into(), roles, tenant: Tenant::new(tenant) };
-    Ok((hash, holder))
+    let expires_at = end.map(str::parse).transpose();
+    let expires_at = expires_at.map_err(|_| "expected the end of the key as 2027-01-31T12:00:00Z")?;
+    Ok(Holder { name: name.into(), roles, tenant: Tenant::new(tenant), expires_at, hash })
 }
 
 fn invalid_name(what: &str) -> String {

@@ -6,14 +6,16 @@
 mod entry;
 
 use std::collections::HashMap;
+use std::str::FromStr;
 use std::sync::Arc;
 
+use jiff::Timestamp;
 use sha2::{Digest as _, Sha256};
 use subtle::ConstantTimeEq as _;
 
 use crate::store::Tenant;
 
-pub use entry::{InvalidEntry, NewKey, new_key};
+pub use entry::{InvalidEntry, NewKey, new_key, new_key_until};
 
 /// Bytes of a key that a client may present. A shorter one could be guessed.
 const KEY_LENGTH: std::ops::RangeInclusive<usize> = 32..=256;
@@ -49,6 +51,15 @@ impl Role {
     }
 }
 
+impl FromStr for Role {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Role, String> {
+        let role = Role::ALL.into_iter().find(|role| role.name() == text);
+        role.ok_or_else(|| "expected roles out of write, read, metrics, with a + between them".to_owned())
+    }
+}
+
 /// The holder of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
@@ -58,6 +69,9 @@ pub struct Holder {
     pub roles: Vec<Role>,
     /// Whose contacts it shows.
     pub tenant: Tenant,
+    /// Until when the key counts, if it ends.
+    pub expires_at: Option<Timestamp>,
+    hash: Hash,
 }
 
 impl Holder {
@@ -66,6 +80,12 @@ impl Holder {
     pub fn allows(&self, role: Role) -> bool {
         self.roles.contains(&role) || (role == Role::Read && self.roles.contains(&Role::Write))
     }
+
+    /// Whether the key has ended.
+    #[must_use]
+    pub fn has_expired(&self) -> bool {
+        self.expires_at.is_some_and(|expires_at| expires_at <= Timestamp::now())
+    }
 }
 
 /// All known keys.
@@ -73,12 +93,12 @@ impl Holder {
 pub struct Keys {
     // By the prefix of the hash. The time of a lookup can reveal at most a prefix of the hash of the presented key, which a
     // client cannot choose bit by bit; the rest is compared in constant time.
-    by_prefix: HashMap<[u8; PREFIX], Vec<(Hash, Holder)>>,
+    by_prefix: HashMap<[u8; PREFIX], Vec<Arc<Holder>>>,
 }
 
 impl Keys {
-    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash`, one per line or separated by commas. Roles are joined by
-    /// `+`, the tenant may be empty, and `#` begins a comment.
+    /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash` or `name:roles:tenant:sha256:hash:expires_at`, one per
+    /// line or separated by commas. Roles are joined by `+`, the tenant may be empty, and `#` begins a note.
     ///
     /// # Errors
     /// [`InvalidEntry`] with the line and the reason. It shows nothing of a key.
@@ -87,15 +107,15 @@ impl Keys {
             let content = line.split('#').next().unwrap_or_default();
             for entry in content.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
                 let wrong = |why: &str| InvalidEntry { line: index + 1, why: why.to_owned() };
-                let (hash, holder) = entry::parse(entry).map_err(|why| wrong(&why))?;
+                let holder = entry::parse(entry).map_err(|why| wrong(&why))?;
                 let mut known = self.by_prefix.values().flatten();
-                if known.any(|(_, other)| other.name == holder.name) {
+                if known.any(|other| other.name == holder.name) {
                     return Err(wrong("there is another key of this name"));
                 }
-                if self.find(&hash).is_some() {
+                if self.find(&holder.hash).is_some() {
                     return Err(wrong("the same key has two entries"));
                 }
-                self.by_prefix.entry(prefix(&hash)).or_default().push((hash, holder));
+                self.by_prefix.entry(prefix(&holder.hash)).or_default().push(Arc::new(holder));
             }
         }
         Ok(())
@@ -109,16 +129,22 @@ impl Keys {
 
     /// The holder of the presented key, if it is known.
     #[must_use]
-    pub fn holder(&self, presented: &[u8]) -> Option<&Holder> {
+    pub fn holder(&self, presented: &[u8]) -> Option<&Arc<Holder>> {
         if !KEY_LENGTH.contains(&presented.len()) {
             return None;
         }
         self.find(&Sha256::digest(presented).into())
     }
 
-    fn find(&self, hash: &Hash) -> Option<&Holder> {
-        let same = |known: &Hash| bool::from(known[..].ct_eq(&hash[..]));
-        self.by_prefix.get(&prefix(hash))?.iter().find(|(known, _)| same(known)).map(|(_, holder)| holder)
+    /// Whether this very key still counts: it is known, allows what it did, and has not ended.
+    #[must_use]
+    pub fn holds(&self, holder: &Holder) -> bool {
+        self.find(&holder.hash).is_some_and(|known| **known == *holder) && !holder.has_expired()
+    }
+
+    fn find(&self, hash: &Hash) -> Option<&Arc<Holder>> {
+        let same = |known: &Arc<Holder>| bool::from(known.hash[..].ct_eq(&hash[..]));
+        self.by_prefix.get(&prefix(hash))?.iter().find(|known| same(known))
     }
 }
 

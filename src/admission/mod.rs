@@ -1,7 +1,13 @@
-//! Admission: permits for solver threads, places and memory, time limits and cancellation.
+//! Admission: turns on solver threads, permits for places and memory, quotas of clients, time limits and cancellation.
 
+mod client;
 mod pool;
+mod quota;
 mod stop;
+mod turnstile;
 
+pub use client::Client;
 pub use pool::*;
+pub use quota::*;
 pub use stop::*;
+pub use turnstile::{INTERACTIVE, Kind, SLICE, Turn};

@@ -18,6 +18,8 @@ use tracing::Span;
 use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, counter, gauge, histogram};
 
 use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
+use super::turnstile::{INTERACTIVE, Kind, Turn, Turnstile};
+use super::{Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
 
 /// Estimated nanoseconds of work.
 pub type Nanoseconds = u64;
@@ -38,6 +40,11 @@ pub const QUEUE: usize = 1024;
 /// Reservations up to this are not counted: the number of requests bounds them.
 pub const UNCOUNTED: usize = 16 * 1024;
 
+/// The divisor of the bytes of work that gives those of the states that work loads and copies, which come on top. A request that
+/// holds memory for its body waits for memory for a state; one that holds memory for a state waits for none, so that requests never
+/// wait for each other in a circle.
+pub const STATES_SHARE: usize = 4;
+
 /// Bytes are counted in units of this size.
 const UNIT: usize = 1024;
 
@@ -56,13 +63,25 @@ pub struct Capacity {
     pub deadline: Duration,
     /// Bytes of bodies, work and replies at a time.
     pub bytes: usize,
+    /// What one client may have.
+    pub quotas: QuotaLimits,
 }
 
 impl Default for Capacity {
     /// One thread per core, so that solvers slow down neither each other nor the server.
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        Capacity { threads, requests: REQUESTS, queue: QUEUE, wait: LONGEST_WAIT, deadline: LONGEST_WORK, bytes: BYTES }
+        let quotas = QuotaLimits::default();
+        let (wait, deadline) = (LONGEST_WAIT, LONGEST_WORK);
+        Capacity { threads, requests: REQUESTS, queue: QUEUE, wait, deadline, bytes: BYTES, quotas }
+    }
+}
+
+impl Capacity {
+    /// Bytes of the states that work loads and copies at a time.
+    #[must_use]
+    pub fn state_bytes(&self) -> usize {
+        (self.bytes / STATES_SHARE).min(u32::MAX as usize)
     }
 }
 
@@ -73,10 +92,12 @@ pub struct Pool(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     capacity: Capacity,
-    threads: Arc<Semaphore>,
+    threads: Turnstile,
     places: Arc<Semaphore>,
     units: Arc<Semaphore>,
+    states: Arc<Semaphore>,
     queue: Arc<Semaphore>,
+    quotas: Quotas,
     meters: Arc<PoolMeters>,
 }
 
@@ -95,7 +116,7 @@ pub struct PoolMeters {
     pub threads: usize,
     /// Work that waits for a thread.
     pub waiting: IntGauge,
-    /// Work on a thread.
+    /// Work that has begun.
     pub running: IntGauge,
     /// Work for which no thread became free in time.
     pub refused: IntCounter,
@@ -127,6 +148,9 @@ pub enum PoolError {
     /// The queue is full.
     #[error("the server is busy, and its queue is full")]
     QueueFull,
+    /// The client has as much as it may.
+    #[error("{0}")]
+    Quota(QuotaExceeded),
     /// The work panicked, which is a bug of this program.
     #[error("the solver panicked")]
     Panicked,
@@ -145,6 +169,13 @@ impl Reservation {
         }
     }
 
+    /// Gives back all but this many bytes.
+    pub fn shrink(&mut self, bytes: usize) {
+        if let Some(permit) = &mut self.0 {
+            drop(permit.split(permit.num_permits().saturating_sub(bytes.div_ceil(UNIT))));
+        }
+    }
+
     /// Whether it is large enough to be counted.
     #[must_use]
     pub fn is_counted(&self) -> bool {
@@ -159,10 +190,12 @@ impl Pool {
         let semaphore = |permits: usize| Arc::new(Semaphore::new(permits.clamp(1, Semaphore::MAX_PERMITS)));
         Pool(Arc::new(Shared {
             capacity,
-            threads: semaphore(capacity.threads),
+            threads: Turnstile::new(capacity.threads),
             places: semaphore(capacity.requests),
             units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
+            states: semaphore(capacity.state_bytes() / UNIT),
             queue: semaphore(capacity.queue),
+            quotas: Quotas::new(capacity.quotas),
             meters: Arc::new(PoolMeters::new(capacity.threads.max(1))),
         }))
     }
@@ -179,12 +212,26 @@ impl Pool {
         &self.0.capacity
     }
 
+    /// What each client may have.
+    #[must_use]
+    pub fn quotas(&self) -> &Quotas {
+        &self.0.quotas
+    }
+
+    /// One more of this for the client that this task serves.
+    ///
+    /// # Errors
+    /// [`PoolError::Quota`] if it has as many as it may.
+    pub fn share_of(&self, quota: Quota) -> Result<Share, PoolError> {
+        self.0.quotas.share(quota).map_err(PoolError::Quota)
+    }
+
     /// The resources in use.
     #[must_use]
     pub fn taken(&self) -> Taken {
         let taken = |most: usize, semaphore: &Semaphore| most.max(1).saturating_sub(semaphore.available_permits());
         Taken {
-            threads: taken(self.0.capacity.threads, &self.0.threads),
+            threads: self.0.threads.taken(),
             requests: taken(self.0.capacity.requests, &self.0.places),
             waiting: taken(self.0.capacity.queue, &self.0.queue),
             bytes: UNIT * taken(self.0.capacity.bytes / UNIT, &self.0.units),
@@ -236,6 +283,19 @@ impl Pool {
         Ok(reservation)
     }
 
+    /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for states. Nothing
+    /// else may be waited for until they are released, except a thread.
+    ///
+    /// # Errors
+    /// As [`Pool::wait`].
+    pub async fn reserve_states(&self, bytes: usize) -> Result<Reservation, PoolError> {
+        if bytes <= UNCOUNTED {
+            return Ok(Reservation::default());
+        }
+        let wanted = bytes.div_ceil(UNIT).min((self.0.capacity.state_bytes() / UNIT).max(1));
+        Ok(Reservation(Some(self.permits(&self.0.states, wanted as u32).await?)))
+    }
+
     /// Reserves bytes if they are free now.
     #[must_use]
     pub fn try_reserve(&self, bytes: usize) -> Option<Reservation> {
@@ -273,29 +333,37 @@ impl Pool {
         &self.0.meters
     }
 
-    /// Runs `work` with all threads that are free, at least one. It is given their number and must be short, as it may hold all
-    /// threads.
+    async fn turn(&self, client: Client, kind: Kind) -> Result<Turn, PoolError> {
+        let (_waiting, begin) = (Counted::by(&self.0.meters.waiting), Instant::now());
+        let turn = self.wait(self.0.threads.turn(client, kind)).await.inspect_err(|_| self.0.meters.refused.inc())?;
+        self.0.meters.wait.observe(begin.elapsed().as_secs_f64());
+        Ok(turn)
+    }
+
+    /// Runs `work`, which must be short, with a turn on each thread that nobody waits for, at least one.
     ///
     /// # Errors
     /// As [`Pool::run`].
     pub async fn share<T: Send + 'static>(
         &self,
-        work: impl FnOnce(usize) -> T + Send + 'static,
+        kind: Kind,
+        work: impl FnOnce(Vec<Turn>) -> T + Send + 'static,
     ) -> Result<T, PoolError> {
-        let meters = Arc::clone(&self.0.meters);
-        let mut permit = self.permits(&self.0.threads, 1).await?;
-        while let Ok(another) = Arc::clone(&self.0.threads).try_acquire_owned() {
-            permit.merge(another);
+        let client = Client::current();
+        let mut turns = vec![self.turn(client.clone(), kind).await?];
+        while let Some(turn) = self.0.threads.another(&client, kind) {
+            turns.push(turn);
         }
+        let meters = Arc::clone(&self.0.meters);
         let task = spawn_blocking(move || {
-            let _running: Vec<_> = (0..permit.num_permits()).map(|_| Counted::by(&meters.running)).collect();
-            meters.timed(|| work(permit.num_permits()))
+            let _running: Vec<_> = turns.iter().map(|_| Counted::by(&meters.running)).collect();
+            meters.timed(|| work(turns))
         });
         task.await.map_err(|_| PoolError::Panicked)
     }
 
-    /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool. Work of cost zero is
-    /// not counted.
+    /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool, which it shares by the
+    /// checks of its [`Stop`]. Work of cost zero is not counted.
     ///
     /// # Errors
     /// As [`Pool::wait`], or [`PoolError::Panicked`] if the work did.
@@ -310,20 +378,23 @@ impl Pool {
         if cost < INLINE {
             return Ok(self.0.meters.timed(work));
         }
-        let meters = Arc::clone(&self.0.meters);
-        let (waiting, begin) = (Counted::by(&self.0.meters.waiting), Instant::now());
-        let permit = self.permits(&self.0.threads, 1).await.inspect_err(|_| meters.refused.inc())?;
-        meters.wait.observe(begin.elapsed().as_secs_f64());
-        drop(waiting);
-        let request = Span::current();
+        let turn = self.turn(Client::current(), Kind::of(cost)).await?;
+        let (meters, request) = (Arc::clone(&self.0.meters), Span::current());
         let task = spawn_blocking(move || {
-            // The permit stays with the work: a caller that gives up does not free a thread that is still busy.
-            let _permit = permit;
             let _running = Counted::by(&meters.running);
             let _request = request.entered();
-            meters.timed(work)
+            // The turn stays with the work: a caller that gives up does not free a thread that is still busy.
+            turn.work(|| meters.timed(work))
         });
         task.await.map_err(|_| PoolError::Panicked)
+    }
+}
+
+impl Kind {
+    /// The kind of work of this estimated cost that somebody waits for.
+    #[must_use]
+    pub fn of(cost: Nanoseconds) -> Kind {
+        if Duration::from_nanos(cost) > INTERACTIVE { Kind::Long } else { Kind::Interactive }
     }
 }
 
@@ -332,7 +403,10 @@ impl PoolMeters {
         PoolMeters {
             threads,
             waiting: gauge(Opts::new("stickslip_solver_waiting", "Long work that waits for a thread.")),
-            running: gauge(Opts::new("stickslip_solver_running", "Long work on a thread.")),
+            running: gauge(Opts::new(
+                "stickslip_solver_running",
+                "Long work that has begun; some of it may have given way to other work.",
+            )),
             refused: counter(Opts::new(
                 "stickslip_solver_refused_total",
                 "Work for which no thread became free in time.",

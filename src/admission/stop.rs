@@ -1,8 +1,10 @@
 //! Cancellation and time limits of work on another thread.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
+
+use super::turnstile;
 
 /// How long the solver works for one request by default.
 pub const LONGEST_WORK: Duration = Duration::from_secs(60);
@@ -18,7 +20,8 @@ pub enum Interrupted {
     TimeLimit(Duration),
 }
 
-/// A flag that long loops check. Work on the blocking pool outlives the handler that asked for it; the flag ends it.
+/// A flag that long loops check. Work on the blocking pool outlives the handler that asked for it; the flag ends it. At a check
+/// the work also gives way to others whose turn it is, so that no more than some milliseconds may pass between two checks.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<Flag>);
 
@@ -30,6 +33,8 @@ struct Flag {
     parent: Option<Stop>,
     // Set by the first check: the time that a request has waited for a thread does not count.
     started: OnceLock<Instant>,
+    // Nanoseconds for which the work has given way to others since, which do not count either.
+    waited: AtomicU64,
 }
 
 /// Raises the flag when dropped: held by a handler, it does so when the client hangs up.
@@ -74,19 +79,27 @@ impl Stop {
     /// # Errors
     /// [`Interrupted::Abandoned`] if the guard was dropped, [`Interrupted::TimeLimit`] if the time is up.
     pub fn check(&self) -> Result<(), Interrupted> {
+        self.check_after(turnstile::give_way())
+    }
+
+    /// The same, when the work has just waited for so long.
+    fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {
         if let Some(parent) = &self.0.parent {
-            parent.check()?;
+            parent.check_after(waited)?;
         }
         // No other memory is published through the flag, so relaxed ordering suffices.
         if self.0.raised.load(Ordering::Relaxed) {
             return Err(Interrupted::Abandoned);
         }
-        match self.0.allowed {
-            Some(allowed) if self.0.started.get_or_init(Instant::now).elapsed() >= allowed => {
-                Err(Interrupted::TimeLimit(allowed))
-            }
-            _ => Ok(()),
-        }
+        let Some(allowed) = self.0.allowed else { return Ok(()) };
+        let Some(started) = self.0.started.get() else {
+            self.0.started.get_or_init(Instant::now);
+            return Ok(());
+        };
+        let waited = waited.as_nanos() as u64;
+        let waited = self.0.waited.fetch_add(waited, Ordering::Relaxed).saturating_add(waited);
+        let worked = started.elapsed().saturating_sub(Duration::from_nanos(waited));
+        if worked >= allowed { Err(Interrupted::TimeLimit(allowed)) } else { Ok(()) }
     }
 }
 

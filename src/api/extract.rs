@@ -28,9 +28,6 @@ use super::state::App;
 pub const BODY_LIMIT: usize = 8 * 1024 * 1024;
 /// Bytes of a body above the limit that are read and discarded, so that the client can read the answer.
 const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
-/// Bytes that a byte of a long body may become while it is parsed: a point of a table is a few digits, and then a
-/// series.
-const EXPANSION: usize = 100;
 
 /// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as
 /// `{}`.
@@ -83,7 +80,8 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             let detail = format!("Content-Encoding `{coding}` is not supported: send the body unencoded");
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
-        let (mut bytes, mut memory) = read(body, &app.pool).await?;
+        let expects = parts.headers.contains_key(header::EXPECT);
+        let (mut bytes, mut memory) = read(body, expects, &app.pool).await?;
         // Only once the body has arrived, so that a slow client takes no place from others.
         let place = app.pool.enter().await?;
         if OPTIONAL && bytes.is_empty() {
@@ -95,7 +93,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         let length = bytes.len();
         let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
         if cost > 0 {
-            app.pool.resize(&mut memory, length.saturating_mul(EXPANSION)).await?;
+            app.pool.resize(&mut memory, length.saturating_mul(cost::EXPANSION)).await?;
         }
         let work = move || {
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
@@ -118,7 +116,15 @@ fn is_json(content_type: &[u8]) -> bool {
     essence.trim_ascii().eq_ignore_ascii_case(b"application/json")
 }
 
-async fn read(body: Body, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem> {
+/// Reads a body. A client that `expects` to be asked for it is not asked for one that is too long.
+async fn read(body: Body, expects: bool, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem> {
+    let too_large = || {
+        let detail = format!("the body has more than the {BODY_LIMIT} bytes that are allowed");
+        Problem::new(Code::TooLarge, detail)
+    };
+    if expects && body.size_hint().lower() > BODY_LIMIT as u64 {
+        return Err(too_large());
+    }
     let declared = body.size_hint().upper().and_then(|length| usize::try_from(length).ok()).unwrap_or(usize::MAX);
     let mut stream = body.into_data_stream();
     let (mut bytes, mut length) = (Vec::new(), 0_usize);
@@ -139,8 +145,7 @@ async fn read(body: Body, pool: &Pool) -> Result<(Vec<u8>, Reservation), Problem
         }
     }
     if length > BODY_LIMIT {
-        let detail = format!("the body has more than the {} bytes that are allowed", BODY_LIMIT);
-        return Err(Problem::new(Code::TooLarge, detail));
+        return Err(too_large());
     }
     Ok((bytes, memory))
 }

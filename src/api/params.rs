@@ -35,8 +35,8 @@ pub struct JobPath {
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 pub struct IfMatch {
-    /// The sequence that the contact must have, in quotes. If it has another one, nothing changes and the answer is
-    /// 412.
+    /// The sequence that the contact must have, in quotes: an `ETag` of it. If it has another one, nothing changes and
+    /// the answer is 412.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false)]
     pub sequence: Option<u64>,
 }
@@ -105,7 +105,9 @@ impl FromRequestParts<Arc<App>> for IfMatch {
             return Ok(IfMatch { sequence: None });
         };
         let text = value.to_str().unwrap_or_default().trim();
-        let sequence = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map(str::parse::<u64>);
+        let tag = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        // The tag of a contact with a label goes on behind a dot.
+        let sequence = tag.map(|tag| tag.split_once('.').map_or(tag, |(sequence, _)| sequence).parse::<u64>());
         match (text, sequence) {
             ("*", _) => Ok(IfMatch { sequence: None }),
             (_, Some(Ok(sequence))) => Ok(IfMatch { sequence: Some(sequence) }),

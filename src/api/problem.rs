@@ -3,6 +3,8 @@
 //!
 //! The errors of the lower layers have no status codes; only the `From` implementations here assign them.
 
+use std::time::Duration;
+
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
@@ -28,13 +30,15 @@ pub struct Problem {
     errors: Vec<Fault>,
     /// The cause for the log, which the client does not see.
     cause: Option<String>,
+    /// When to try again, if that may help.
+    retry_after: Duration,
 }
 
 impl Problem {
     /// A problem of this code, with what happened this time.
     #[must_use]
     pub fn new(code: Code, detail: impl Into<String>) -> Problem {
-        Problem { code, detail: detail.into(), errors: Vec::new(), cause: None }
+        Problem { code, detail: detail.into(), errors: Vec::new(), cause: None, retry_after: limits::RETRY_AFTER }
     }
 
     /// A problem with one place in the request.
@@ -42,7 +46,7 @@ impl Problem {
     pub fn at(code: Code, pointer: impl Into<String>, detail: impl Into<String>) -> Problem {
         let (pointer, detail) = (pointer.into(), detail.into());
         let errors = vec![Fault { pointer, detail: detail.clone() }];
-        Problem { code, detail, errors, cause: None }
+        Problem { errors, ..Problem::new(code, detail) }
     }
 
     /// A fault of this program; the cause is for the log.
@@ -82,8 +86,11 @@ impl IntoResponse for Problem {
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.code.status()).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let mut response = status.into_response();
-        if matches!(self.code, Code::Overloaded | Code::StorageUnavailable | Code::TooManyJobs) {
-            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(limits::RETRY_AFTER.as_secs()));
+        if matches!(
+            self.code,
+            Code::Overloaded | Code::Stopping | Code::StorageUnavailable | Code::TooManyJobs | Code::QuotaExceeded
+        ) {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(self.retry_after.as_secs()));
         }
         if matches!(self.code, Code::Unauthorized) {
             response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
@@ -110,10 +117,12 @@ impl From<Failure> for Problem {
         match failure {
             Failure::Refused { pointer, error } => Problem::at(code, pointer, error.to_string()),
             Failure::Scan { pointer, error } => Problem::at(code, pointer, error.to_string()),
+            Failure::Loops { pointer, error } => Problem::at(code, pointer, error.to_string()),
             Failure::MemoryFull { pointer, .. }
             | Failure::TooLong { pointer, .. }
+            | Failure::Search { pointer, .. }
             | Failure::CycleTooLarge { pointer } => Problem::at(code, pointer, detail),
-            Failure::Stopped => Problem::new(code, detail),
+            Failure::Stopped | Failure::Lifted => Problem::new(code, detail),
         }
     }
 }
@@ -122,6 +131,7 @@ impl From<PoolError> for Problem {
     fn from(error: PoolError) -> Self {
         match error {
             PoolError::Busy | PoolError::QueueFull => Problem::new(Code::Overloaded, error.to_string()),
+            PoolError::Quota(_) => Problem::new(Code::QuotaExceeded, error.to_string()),
             PoolError::Panicked => Problem::internal(error.to_string()),
         }
     }
@@ -134,13 +144,12 @@ impl From<JobError> for Problem {
             JobError::NotFound(_) => Problem::new(Code::JobNotFound, detail),
             JobError::Unfinished { .. } => Problem::new(Code::JobNotDone, detail),
             JobError::Failed(_) => Problem::new(Code::JobFailed, detail),
+            JobError::LongPoint { .. } => Problem::at(Code::TooMuchWork, "/base", detail),
             JobError::TooMuch { .. } => Problem::at(Code::TooMuchWork, "/axes", detail),
             JobError::TooManyStreams => Problem::new(Code::Overloaded, detail),
             JobError::Sweep(SweepError::Failure(failure)) => failure.into(),
             JobError::Sweep(SweepError::Pool(error)) | JobError::Pool(error) => error.into(),
-            JobError::Store(StoreError::TooManyJobs(_)) => {
-                Problem::new(Code::TooManyJobs, format!("{detail}: delete some, or wait until they are gone"))
-            }
+            JobError::TooMany { retry_after, .. } => Problem { retry_after, ..Problem::new(Code::TooManyJobs, detail) },
             JobError::Store(error) => SessionError::Store(error).into(),
             JobError::Broken(_) => Problem::internal(detail),
         }
@@ -155,6 +164,7 @@ impl From<SessionError> for Problem {
             SessionError::OtherDefinition(_) => Problem::at(Code::InvalidInput, "/contact", detail),
             SessionError::Stale { .. } => Problem::new(Code::StaleSequence, detail),
             SessionError::Overtaken { .. } => Problem::new(Code::Conflict, detail),
+            SessionError::NoSuchMove { .. } => Problem::at(Code::InvalidInput, "/sequence", detail),
             SessionError::Ahead { .. } => Problem::at(Code::InvalidInput, "/Last-Event-ID", detail),
             SessionError::TooManyStreams => Problem::new(Code::Overloaded, detail),
             SessionError::Store(StoreError::KeyReused) => Problem::new(Code::IdempotencyKeyReused, detail),
@@ -164,6 +174,13 @@ impl From<SessionError> for Problem {
             SessionError::Expired(_) => Problem::new(Code::ContactExpired, detail),
             SessionError::Store(StoreError::Full(_)) => {
                 Problem::new(Code::StorageFull, "nothing has changed; try again when there is room").because(detail)
+            }
+            SessionError::Store(StoreError::Damaged { contact, .. }) => {
+                let advice = format!(
+                    "what is stored of contact {contact} is damaged: the operator finds the cause in the log under the \
+                     request_id"
+                );
+                Problem::new(Code::DamagedContact, advice).because(detail)
             }
             SessionError::Store(StoreError::Unavailable(_)) => {
                 let advice = "the change may or may not be stored; retry with the same Idempotency-Key, or look";

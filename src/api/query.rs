@@ -12,7 +12,8 @@ use axum::http::request::Parts;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use stickslip_wire::{Fault, Faults, JsonPath, Rejection};
+use stickslip_wire::limits::{Characters, Limit as _};
+use stickslip_wire::{Fault, Faults, JobState, JsonPath, Rejection};
 
 use super::formats::Format;
 use super::problem::Problem;
@@ -136,6 +137,13 @@ impl QueryReader {
         self.take(name, expected, |text| text.parse().ok())
     }
 
+    /// A text within its limits.
+    pub fn text(&mut self, name: &'static str, limit: &Characters) -> Option<String> {
+        let text = self.take(name, "a text", |text| Some(text.to_owned()));
+        limit.check(&text, JsonPath::Root.member(name), &mut self.faults);
+        text
+    }
+
     /// The parameters `after` and `limit` of a page of contacts.
     pub fn contacts(&mut self) -> (Option<Uuid>, usize) {
         let after = self.number("after", "the identifier of a contact");
@@ -162,6 +170,12 @@ impl QueryReader {
         let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
         let expected = format!("one of `{}`", names.join("`, `"));
         self.take("format", &expected, |text| Format::named(text, formats))
+    }
+
+    /// The parameter `state` of a job.
+    pub fn state(&mut self) -> Option<JobState> {
+        let named = |text: &str| JobState::ALL.into_iter().find(|state| state.name() == text);
+        self.take("state", "one of `running`, `done`, `failed`", named)
     }
 
     /// The value, if nothing is wrong and every parameter has been taken.

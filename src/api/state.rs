@@ -5,10 +5,12 @@ use std::sync::Arc;
 use axum::extract::FromRequestParts;
 use axum::http::HeaderValue;
 use axum::http::request::Parts;
+use tokio::sync::watch;
 
 use crate::access::Keys;
 use crate::admission::Pool;
 use crate::jobs::Jobs;
+use crate::server::OwnHosts;
 use crate::sessions::Sessions;
 use crate::store::Tenant;
 
@@ -27,8 +29,10 @@ pub struct App {
 /// Who may use the service, and from where.
 #[derive(Clone, Debug, Default)]
 pub struct Access {
-    /// The keys; if there are none, everybody has access.
-    pub keys: Option<Arc<Keys>>,
+    /// The keys, which may be replaced; if there are none, everybody has access.
+    pub keys: Option<watch::Receiver<Arc<Keys>>>,
+    /// The names by which a service without keys may be called; any if none.
+    pub hosts: Option<OwnHosts>,
     /// The origins whose pages may call the service from a browser, such as `https://lab.example`.
     pub origins: Arc<[HeaderValue]>,
 }

@@ -1,9 +1,11 @@
 //! `stickslip healthcheck`: checks that a running service is healthy.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use stickslip::server::tls;
 use stickslip_wire::client::Client;
 
 use super::settings::ConfigFile;
@@ -19,6 +21,9 @@ pub struct Healthcheck {
     /// Address and port of the service.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
+    /// File with the certificate of a service with TLS. It is not verified: the service is on this machine.
+    #[arg(long, env = "STICKSLIP_TLS_CERT")]
+    tls_cert: Option<PathBuf>,
 }
 
 /// Fails unless the service replies that it is healthy.
@@ -31,8 +36,13 @@ pub fn healthcheck(options: &Healthcheck) -> Result<(), String> {
     }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
-    let client = Client::new(format!("http://{address}"));
-    let answer = runtime.block_on(async { tokio::time::timeout(REPLY_TIMEOUT, client.healthz()).await });
+    let check = async {
+        match options.tls_cert {
+            Some(_) => tls::healthz(address).await,
+            None => Client::new(format!("http://{address}")).healthz().await.map_err(|error| error.to_string()),
+        }
+    };
+    let answer = runtime.block_on(async { tokio::time::timeout(REPLY_TIMEOUT, check).await });
     match answer {
         Ok(Ok(())) => Ok(()),
         Ok(Err(error)) => Err(format!("{address} is not healthy: {error}")),

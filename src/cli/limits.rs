@@ -5,10 +5,10 @@ use std::time::Duration;
 use bytesize::ByteSize;
 use clap::Args;
 use stickslip::admission;
-use stickslip::admission::Capacity;
-use stickslip::server::ConnectionLimits;
+use stickslip::admission::{Capacity, QuotaLimits};
 use stickslip::server::connections::DEFAULT_CONNECTIONS;
 use stickslip::server::fd_limit::room_for;
+use stickslip::server::{ConnectionLimits, Network};
 
 /// The range of the times that can be set.
 const SHORTEST_TIME: Duration = Duration::from_millis(10);
@@ -20,15 +20,30 @@ pub struct Limits {
     /// Most connections at a time.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS", default_value_t = DEFAULT_CONNECTIONS, value_parser = at_least_one)]
     max_connections: usize,
-    /// Most connections of one client address [default: half of all]. Behind a proxy all clients have one address.
+    /// Most connections of one client address [default: half of all]; does not hold for --trusted-proxies.
     #[arg(long, env = "STICKSLIP_MAX_CONNECTIONS_PER_CLIENT", value_parser = at_least_one)]
     max_connections_per_client: Option<usize>,
+    /// Proxies whose X-Forwarded-For is believed, as addresses or networks such as 10.0.0.0/8, separated by commas.
+    #[arg(long, env = "STICKSLIP_TRUSTED_PROXIES", value_delimiter = ',')]
+    trusted_proxies: Vec<Network>,
     /// Most requests processed at a time; more wait.
     #[arg(long, env = "STICKSLIP_MAX_REQUESTS", default_value_t = admission::REQUESTS, value_parser = at_least_one)]
     max_requests: usize,
     /// Most requests that wait; more are refused.
     #[arg(long, env = "STICKSLIP_MAX_QUEUE", default_value_t = admission::QUEUE, value_parser = at_least_one)]
     max_queue: usize,
+    /// Most requests of one client processed or waiting at a time [default: half of --max-requests]. A client is a tenant where there
+    /// are keys, else an address. Behind a proxy without keys all clients have one address.
+    #[arg(long, env = "STICKSLIP_MAX_REQUESTS_PER_CLIENT", value_parser = at_least_one)]
+    max_requests_per_client: Option<usize>,
+    /// Most streams of events that one client follows.
+    #[arg(long, env = "STICKSLIP_MAX_STREAMS_PER_CLIENT", default_value_t = admission::STREAMS_PER_CLIENT,
+        value_parser = at_least_one)]
+    max_streams_per_client: usize,
+    /// Most contacts of one tenant.
+    #[arg(long, env = "STICKSLIP_MAX_CONTACTS_PER_TENANT", default_value_t = admission::CONTACTS_PER_TENANT,
+        value_parser = at_least_one)]
+    max_contacts_per_tenant: usize,
     /// How long a request waits before it is refused.
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
     max_wait: Duration,
@@ -50,9 +65,17 @@ pub struct Limits {
     /// How long a client may take nothing of a reply or of events.
     #[arg(long, env = "STICKSLIP_STALL_TIME", default_value = "30s", value_parser = duration)]
     stall_time: Duration,
+    /// How long requests may take to be done once the server stops; what is left then is refused.
+    #[arg(long, env = "STICKSLIP_DRAIN_TIME", default_value = "8s", value_parser = duration)]
+    drain_time: Duration,
 }
 
 impl Limits {
+    /// The proxies that are trusted.
+    pub fn trusted_proxies(&self) -> &[Network] {
+        &self.trusted_proxies
+    }
+
     /// The limits of the solvers.
     pub fn capacity(&self) -> Capacity {
         Capacity {
@@ -61,6 +84,11 @@ impl Limits {
             wait: self.max_wait,
             deadline: self.deadline,
             bytes: usize::try_from(self.work_bytes.as_u64()).unwrap_or(usize::MAX),
+            quotas: QuotaLimits {
+                requests: self.max_requests_per_client.unwrap_or(self.max_requests.div_ceil(2)),
+                streams: self.max_streams_per_client,
+                contacts: self.max_contacts_per_tenant,
+            },
             ..Capacity::default()
         }
     }
@@ -74,7 +102,7 @@ impl Limits {
         }
         let per_client = self.max_connections_per_client.unwrap_or(most.div_ceil(2));
         let (head, body, idle, stall) = (self.head_time, self.body_time, self.idle_time, self.stall_time);
-        ConnectionLimits { most, per_client, head, body, idle, stall }
+        ConnectionLimits { most, per_client, head, body, idle, stall, drain: self.drain_time }
     }
 }
 

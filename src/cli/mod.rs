@@ -3,6 +3,7 @@
 mod backup;
 mod check;
 mod cycle;
+mod fit;
 mod fretting;
 mod healthcheck;
 mod io;
@@ -10,12 +11,14 @@ mod key;
 mod limits;
 mod profile;
 mod protocol;
+mod reload;
 mod report;
 mod scan_table;
 mod serve;
 mod settings;
 mod subsurface;
 mod sweep;
+mod table;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,6 +32,7 @@ use stickslip_wire::{self as wire, SimulateRequest};
 use backup::Backup;
 use check::Check;
 use cycle::Cycle;
+use fit::Fit;
 use fretting::Fretting;
 use healthcheck::Healthcheck;
 use io::{json, print, problem, read};
@@ -72,6 +76,8 @@ enum Command {
     Fretting(Fretting),
     /// Fit a profile to a scan of heights and print it, with what the scan says of the contact.
     Profile(Profile),
+    /// Fit friction and stiffness to a measured loop of force over displacement, and print what it determines.
+    Fit(Fit),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
     /// Print the OpenAPI document.
@@ -128,6 +134,7 @@ impl Command {
             Command::Subsurface(subsurface) => subsurface.run(),
             Command::Fretting(fretting) => fretting.run(),
             Command::Profile(profile) => profile.run(),
+            Command::Fit(fit) => fit.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),

@@ -2,22 +2,27 @@
 
 use std::io;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::http::Uri;
+use axum::http::uri::Authority;
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
+use stickslip::access::Keys;
 use stickslip::admission::Pool;
 use stickslip::api::middleware::security_headers::Origin;
 use stickslip::api::{self, Access, App};
 use stickslip::jobs::{self, Jobs};
 use stickslip::otlp;
-use stickslip::server::{ConnectionLimiter, memory_budget};
+use stickslip::server::tls::{Tls, TlsFiles};
+use stickslip::server::{ConnectionLimiter, OwnHosts, memory_budget};
 use stickslip::sessions::{self, Sessions};
 use stickslip::store::{self, Store};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::watch;
 use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 use tracing_subscriber::{EnvFilter, Layer as _, fmt};
@@ -25,6 +30,7 @@ use tracing_subscriber::{EnvFilter, Layer as _, fmt};
 use super::io::print;
 use super::key;
 use super::limits::Limits;
+use super::reload::reload_on_change;
 use super::settings::ConfigFile;
 
 /// How long work that does not check for cancellation may delay the end of the process.
@@ -32,6 +38,10 @@ const SHUTDOWN_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// How long the process may take at its end to release the chunks of jobs under way.
 const JOB_RELEASE_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Threads for the store and for work that begins, beside those of work that has begun, which are at most as many as requests.
+const SPARE_THREADS: usize = 512;
+const MOST_THREADS: usize = 10_000;
 
 /// The shortest time after which an idle contact may expire, and the shortest lease on a chunk of a job: it must be renewed in
 /// time.
@@ -48,10 +58,20 @@ pub struct Serve {
     /// API keys: entries as `stickslip key new` prints them, or files with such entries, separated by commas.
     #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
     keys: Vec<String>,
+    /// File with the certificate of the service and those of its authorities (PEM): TLS, with --tls-key.
+    #[arg(long, env = "STICKSLIP_TLS_CERT")]
+    tls_cert: Option<PathBuf>,
+    /// File with the private key of the certificate (PEM).
+    #[arg(long, env = "STICKSLIP_TLS_KEY")]
+    tls_key: Option<PathBuf>,
     /// Allow a service without keys on an address that others can reach: true or false.
     #[arg(long, env = "STICKSLIP_INSECURE", num_args = 0..=1, require_equals = true, action = ArgAction::Set,
         default_value_t = false, default_missing_value = "true")]
     insecure: bool,
+    /// Hosts by which a service without keys may be called besides loopback and its own address, such as lab.example,
+    /// separated by commas.
+    #[arg(long, env = "STICKSLIP_ALLOWED_HOSTS", value_delimiter = ',')]
+    allowed_hosts: Vec<Authority>,
     /// Origins of web pages that may call the service (CORS), such as https://lab.example, separated by commas.
     #[arg(long, env = "STICKSLIP_CORS_ORIGINS", value_delimiter = ',')]
     cors_origins: Vec<Origin>,
@@ -93,7 +113,9 @@ pub fn serve(options: Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
     // Spans go to a collector alone, and are not even made where there is none.
     let filter = filter.add_directive(format!("{}=off", otlp::SPANS).parse().map_err(|error| format!("{error}"))?);
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    // Work that gives way to other work keeps its thread, and must leave some to the work that it gives way to.
+    let threads = SPARE_THREADS + options.limits.capacity().requests.min(MOST_THREADS);
+    let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     let endpoint = options.otlp_endpoint.as_deref();
     let traces = endpoint.map(|endpoint| otlp::layer(endpoint, runtime.handle().clone())).transpose();
@@ -105,7 +127,9 @@ pub fn serve(options: Serve) -> Result<(), String> {
     };
     tracing_subscriber::registry().with(spans).with(lines.with_filter(filter)).init();
     log_panics();
-    let access = access(&options)?;
+    let (access, keys) = access(&options)?;
+    runtime.block_on(survive_file_size_limit())?;
+    let tls = tls(&options)?;
     let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
     let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
     tracing::info!(
@@ -116,7 +140,8 @@ pub fn serve(options: Serve) -> Result<(), String> {
         expire_after_s,
         "starting"
     );
-    let served = runtime.block_on(listen(&options, access, Arc::clone(&store)));
+    let reload = reload(&options, keys, tls.clone());
+    let served = runtime.block_on(listen(&options, access, tls, reload, Arc::clone(&store)));
     if let Some(exporter) = exporter {
         exporter.finish();
     }
@@ -127,6 +152,13 @@ pub fn serve(options: Serve) -> Result<(), String> {
         tracing::info!("stopped");
     }
     served
+}
+
+/// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the signal that
+/// comes with it ends the process. The handler stays for good.
+async fn survive_file_size_limit() -> Result<(), String> {
+    let kind = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
+    signal(kind).map(drop).map_err(|error| format!("cannot listen for signals: {error}"))
 }
 
 /// Logs panics with their location. The line of the failed request is logged separately.
@@ -145,8 +177,12 @@ fn collector(text: &str) -> Result<String, String> {
     }
 }
 
-/// Who may use the service. Without keys it listens on loopback addresses only, unless --insecure is given.
-fn access(options: &Serve) -> Result<Access, String> {
+/// Replaces the keys of a service.
+type KeysInForce = watch::Sender<Arc<Keys>>;
+
+/// Who may use the service, and where its keys are replaced. Without keys it listens on loopback addresses only, unless
+/// --insecure is given.
+fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
     let keys = key::read_keys(&options.keys)?;
     let listen = options.listen;
     if keys.is_none() && !listen.ip().to_canonical().is_loopback() {
@@ -161,9 +197,52 @@ fn access(options: &Serve) -> Result<Access, String> {
     }
     if let Some(keys) = &keys {
         tracing::info!(keys = keys.count(), "a key is needed");
+        if !listen.ip().to_canonical().is_loopback() && options.tls_cert.is_none() {
+            tracing::warn!(%listen, "keys are sent unencrypted: give --tls-cert and --tls-key, or let no one but a proxy reach this address");
+        }
     }
-    let origins = options.cors_origins.iter().map(|Origin(origin)| origin.clone());
-    Ok(Access { keys: keys.map(Arc::new), origins: origins.collect() })
+    let origins: Arc<[_]> = options.cors_origins.iter().map(|Origin(origin)| origin.clone()).collect();
+    // A page that has no key can do nothing where there are keys.
+    let own_hosts =
+        || OwnHosts { listen, names: options.allowed_hosts.as_slice().into(), origins: Arc::clone(&origins) };
+    let hosts = keys.is_none().then(own_hosts);
+    let (sender, keys) = keys.map(|keys| watch::channel(Arc::new(keys))).unzip();
+    Ok((Access { keys, hosts, origins }, sender))
+}
+
+fn tls(options: &Serve) -> Result<Option<Tls>, String> {
+    let tls = match (options.tls_cert.clone(), options.tls_key.clone()) {
+        (None, None) => return Ok(None),
+        (Some(certificate), Some(key)) => Tls::open(TlsFiles { certificate, key }),
+        _ => Err("one of them is given without the other".to_owned()),
+    };
+    tls.map(Some).map_err(|error| format!("--tls-cert, --tls-key: {error}"))
+}
+
+/// The files that may change while the service runs, and what reads them again. What is wrong then changes nothing.
+fn reload(options: &Serve, keys: Option<KeysInForce>, tls: Option<Tls>) -> (Vec<PathBuf>, impl Fn() + Send + use<>) {
+    let certificate = [&options.tls_cert, &options.tls_key].into_iter().flatten().cloned();
+    let files = key::key_files(&options.keys).chain(certificate).collect();
+    let setting = options.keys.clone();
+    let read = move || {
+        if let Some(keys) = &keys {
+            match key::read_keys(&setting) {
+                Ok(read) => {
+                    let read = read.unwrap_or_default();
+                    tracing::info!(keys = read.count(), "keys read again");
+                    keys.send_replace(Arc::new(read));
+                }
+                Err(error) => tracing::error!(error, "the keys are still those before"),
+            }
+        }
+        if let Some(tls) = &tls {
+            match tls.reload() {
+                Ok(()) => tracing::info!("certificate read again"),
+                Err(error) => tracing::error!(error, "the certificate is still the one before"),
+            }
+        }
+    };
+    (files, read)
 }
 
 fn time(text: &str) -> Result<Duration, String> {
@@ -175,12 +254,18 @@ fn filter(text: &str) -> Result<String, String> {
     EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
 
-async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Result<(), String> {
+async fn listen(
+    options: &Serve,
+    access: Access,
+    tls: Option<Tls>,
+    (files, reload): (Vec<PathBuf>, impl Fn() + Send + 'static),
+    store: Arc<dyn Store>,
+) -> Result<(), String> {
     let address = options.listen;
     let listener = TcpListener::bind(address).await.map_err(|error| format!("cannot listen on {address}: {error}"))?;
     let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
-    let signals = (signal(SignalKind::terminate()), signal(SignalKind::interrupt()));
-    let (Ok(mut terminate), Ok(mut interrupt)) = signals else {
+    let signals = [SignalKind::terminate(), SignalKind::interrupt(), SignalKind::hangup()].map(signal);
+    let [Ok(mut terminate), Ok(mut interrupt), Ok(hangup)] = signals else {
         return Err("cannot listen for signals".to_owned());
     };
     let stop = async move {
@@ -190,17 +275,20 @@ async fn listen(options: &Serve, access: Access, store: Arc<dyn Store>) -> Resul
         }
     };
     let pool = Pool::new(options.limits.capacity());
-    let limiter = ConnectionLimiter::new(options.limits.connections());
+    let limiter = ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies().into());
     let memory_bound = memory_budget::memory(limiter.limits(), pool.capacity(), options.cache_bytes.as_u64());
+    let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(limiter.limits())));
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);
     let working = tokio::spawn(jobs.clone().work(options.job_lease));
     tokio::spawn(sessions.clone().run_expiry_loop(options.expire_after));
+    tokio::spawn(reload_on_change(files, hangup, reload));
+    let scheme = if tls.is_some() { "https" } else { "http" };
     tracing::info!(%address, threads = pool.meters().threads, memory_bound, "listening");
-    print(format_args!("stickslip listens on http://{address}, try /docs"))?;
+    print(format_args!("stickslip listens on {scheme}://{address}, the page at /, the API at /docs"))?;
     let app = App { sessions, jobs, pool, access };
-    api::serve_within(limiter, listener, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
+    api::serve_within(limiter, listener, tls, app, stop).await.map_err(|error| format!("stopped: {error}"))?;
     // If the store is unreachable, other processes take over when the leases expire.
     let _ = tokio::time::timeout(JOB_RELEASE_TIMEOUT, working).await;
     Ok(())

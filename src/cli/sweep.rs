@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stickslip::admission::Stop;
+use stickslip::admission::{Stop, Turn};
 use stickslip::api::formats::{Format, tables};
-use stickslip::simulation::{Sweep as Plan, SweepResult, Workers};
+use stickslip::simulation::{Sweep as Plan, SweepResult};
 use stickslip_wire::{self as wire, SweepRequest};
 
 use super::io::{json, problem, read, write};
@@ -34,11 +34,11 @@ impl Sweep {
         let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(Plan::plan).map_err(problem)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);
-        let workers = Workers::new(threads).map_err(|why| format!("cannot start threads for the sweep: {why}"))?;
         let (points, outputs) = (plan.points(), plan.numbers(1));
         let (mut result, mut done) = (SweepResult::default(), 0);
         while done < points {
-            let slice = plan.slice(done..points, &workers, threads, &Stop::default(), None);
+            let turns = (0..threads).map(|_| Turn::alone()).collect();
+            let slice = plan.slice(done..points, turns, &Stop::default(), None);
             result.append(slice.map_err(problem)?);
             done = result.values.len() / outputs;
             show_progress(done, points);

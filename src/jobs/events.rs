@@ -6,6 +6,7 @@ use futures::Stream;
 use tokio::time::timeout;
 use uuid::Uuid;
 
+use crate::admission::{Quota, Share};
 use crate::store::{Listener, StreamEvent};
 use stickslip_wire::{EndReason, JobReply, JobState};
 
@@ -22,6 +23,7 @@ struct Follower {
     id: Uuid,
     last: Option<JobReply>,
     listener: Listener,
+    _share: Share,
     ended: bool,
 }
 
@@ -31,11 +33,13 @@ impl Jobs {
     /// # Errors
     /// [`JobError::NotFound`], [`JobError::TooManyStreams`], or a failure of the store.
     pub async fn events(&self, id: Uuid) -> Result<impl Stream<Item = StreamEvent<JobReply>> + Send + use<>, JobError> {
+        let share = self.common.pool.share_of(Quota::Streams)?;
         // Before the first read, so that no change falls between it and the first wait.
         let listener = self.common.listeners.listen(self.common.store.changes(), id);
         let listener = listener.ok_or(JobError::TooManyStreams)?;
         self.find_own(id).await?;
-        let follower = Follower { jobs: self.clone(), id, last: None, listener, ended: false };
+        let (jobs, last) = (self.clone(), None);
+        let follower = Follower { jobs, id, last, listener, _share: share, ended: false };
         Ok(futures::stream::unfold(follower, Follower::next))
     }
 

@@ -8,7 +8,7 @@ mod error;
 mod events;
 mod work;
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
@@ -16,12 +16,14 @@ use prometheus::{IntCounter, IntGauge, Opts};
 use tokio::sync::Notify;
 use uuid::Uuid;
 
-use crate::admission::{INLINE, Nanoseconds, Pool, Stop};
+use crate::admission::{INLINE, Kind, Nanoseconds, Pool, Stop};
 use crate::metrics::{counter, gauge};
-use crate::simulation::{Sweep, SweepResult, Workers};
+use crate::simulation::cost::MARGIN;
+use crate::simulation::{Sweep, SweepResult};
+use crate::store::jobs::JOB_LIFETIME;
 use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_wire::sweep::CheckedSweep;
-use stickslip_wire::{self as wire, JobProgress, JobReply, JobState, SweepRequest};
+use stickslip_wire::{self as wire, JobList, JobProgress, JobReply, JobState, SweepRequest};
 
 pub use error::JobError;
 
@@ -54,8 +56,6 @@ pub struct Jobs {
 struct Common {
     store: Arc<dyn Store>,
     pool: Pool,
-    // Made with the first sweep.
-    workers: OnceLock<Result<Workers, String>>,
     // Wakes the workers of this process: there is a new job.
     new: Notify,
     // The name of this process in its claims.
@@ -103,7 +103,6 @@ impl Jobs {
         let common = Common {
             store,
             pool,
-            workers: OnceLock::new(),
             new: Notify::new(),
             owner: Uuid::now_v7(),
             listeners: Listeners::new(STREAMS),
@@ -123,7 +122,8 @@ impl Jobs {
     /// # Errors
     /// [`JobError::Sweep`] if it was stopped or took too long.
     pub async fn at_once(&self, sweep: &Arc<Sweep>, stop: &Stop) -> Result<SweepResult, JobError> {
-        let rows = sweep.compute(0..sweep.points(), &self.common.pool, self.workers()?, stop, None).await?;
+        let kind = Kind::of(sweep.cost());
+        let rows = sweep.compute(0..sweep.points(), (&self.common.pool, kind), stop, None).await?;
         self.common.meters.points.inc_by(sweep.points() as u64);
         Ok(rows)
     }
@@ -132,11 +132,6 @@ impl Jobs {
     #[must_use]
     pub fn meters(&self) -> &JobMeters {
         &self.common.meters
-    }
-
-    fn workers(&self) -> Result<&Workers, JobError> {
-        let made = self.common.workers.get_or_init(|| Workers::new(self.common.pool.capacity().threads));
-        made.as_ref().map_err(|why| JobError::Broken(format!("no threads for sweeps: {why}")))
     }
 
     /// Makes a job of a sweep. The reply describes the new job.
@@ -148,9 +143,14 @@ impl Jobs {
         if let Some(reply) = idempotent.earlier_reply().await? {
             return Ok(reply);
         }
-        if sweep.cost() > LARGEST_JOB {
-            let seconds = |cost| Duration::from_nanos(cost).as_secs();
-            return Err(JobError::TooMuch { wanted: seconds(sweep.cost()), allowed: seconds(LARGEST_JOB) });
+        let (whole, each) = (Duration::from_nanos(sweep.cost()), Duration::from_nanos(sweep.cost_per_point()));
+        let (most, deadline) = (Duration::from_nanos(LARGEST_JOB), self.common.pool.capacity().deadline);
+        if each > deadline.saturating_mul(MARGIN) {
+            return Err(JobError::LongPoint { wanted: each.as_secs(), allowed: deadline.as_secs() });
+        }
+        if whole > most {
+            let each = each.as_secs_f64();
+            return Err(JobError::TooMuch { wanted: whole.as_secs(), each, allowed: most.as_secs() });
         }
         let request =
             serde_json::to_string(&sweep.checked().request).map_err(|error| JobError::Broken(error.to_string()))?;
@@ -168,13 +168,48 @@ impl Jobs {
             bytes: bytes as u64,
             cost: sweep.cost(),
         };
+        let wanted = job.clone();
         let body = serde_json::to_vec(&job_reply(&job)).map_err(|error| JobError::Broken(error.to_string()))?;
         let reply = Reply { created: Some(job.id), sequence: 0, body };
         if let Err(error) = self.common.store.create_job(job, request, LIMITS, idempotent.receipt(&reply)).await {
-            return Ok(idempotent.after_refusal(error).await?);
+            return match idempotent.after_refusal(error).await {
+                Err(StoreError::TooManyJobs(why)) => {
+                    let retry_after = self.time_to_room(&wanted).await?;
+                    Err(JobError::TooMany { why, retry_after })
+                }
+                answer => Ok(answer?),
+            };
         }
         self.common.new.notify_waiters();
         Ok(reply)
+    }
+
+    /// How long it may take until there is room for another job, if none is deleted.
+    async fn time_to_room(&self, wanted: &Job) -> Result<Duration, JobError> {
+        let (jobs, now) = (self.common.store.jobs(self.tenant.clone()).await?, Timestamp::now());
+        let bytes: u64 = jobs.iter().map(|job| job.bytes).sum();
+        let time = if jobs.len() as u64 >= LIMITS.jobs || bytes + wanted.bytes > LIMITS.bytes {
+            // One that has ended keeps its place until it is deleted.
+            let ended = jobs.iter().filter(|job| job.finished_at.is_some());
+            let first = ended.map(Job::expires_at).min();
+            first.map(|first| Duration::try_from(first.duration_since(now)).unwrap_or_default())
+        } else {
+            // One that ends has no more work.
+            let left = |job: &Job| job.cost / job.points.max(1) * (job.points - job.done);
+            let first = jobs.iter().filter(|job| job.finished_at.is_none()).map(left).min();
+            first.map(|work| Duration::from_nanos(work / self.common.pool.capacity().threads.max(1) as u64))
+        };
+        Ok(time.unwrap_or(JOB_LIFETIME).max(Duration::from_secs(1)))
+    }
+
+    /// The jobs in this state, or all, oldest first.
+    ///
+    /// # Errors
+    /// A failure of the store.
+    pub async fn list(&self, state: Option<JobState>) -> Result<JobList, JobError> {
+        let jobs = self.common.store.jobs(self.tenant.clone()).await?;
+        let wanted = |job: &JobReply| state.is_none_or(|state| job.state == state);
+        Ok(JobList { items: jobs.iter().map(job_reply).filter(wanted).collect() })
     }
 
     async fn find_own(&self, id: Uuid) -> Result<Job, JobError> {

@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use uuid::Uuid;
 
-use crate::admission::{INLINE, PoolError, Stop};
+use crate::admission::{Client, INLINE, Kind, PoolError, Stop};
 use crate::metrics::Counted;
 use crate::simulation::{Sweep, SweepError, SweepResult};
-use crate::store::{ChunkResult, Claim, Job, StoreError};
+use crate::store::{ChunkResult, Claim, Job, StoreError, Tenant};
 use stickslip_wire::{self as wire, SweepRequest};
 
 use super::{JobError, Jobs, NUMBER_BYTES, store_error};
@@ -105,7 +105,7 @@ impl Jobs {
         let pool = &self.common.pool;
         let bytes = sweep.bytes(pool.capacity().threads) + 4 * NUMBER_BYTES * sweep.numbers(points.len());
         let _held = pool.reserve(bytes).await?;
-        let Some(rows) = self.rows(claim, sweep, points.clone(), lease).await? else {
+        let Some(rows) = self.rows(claim, sweep, points.clone(), (job.tenant.clone(), lease)).await? else {
             return self.common.store.release(claim).await.map_err(store_error(claim.job));
         };
         let count = points.len() as u64;
@@ -133,13 +133,14 @@ impl Jobs {
         claim: Claim,
         sweep: &Arc<Sweep>,
         points: Range<usize>,
-        lease: Duration,
+        (tenant, lease): (Tenant, Duration),
     ) -> Result<Option<SweepResult>, JobError> {
         let (stop, guard) = Stop::unbounded();
         let mut guard = Some(guard);
-        let (pool, workers) = (&self.common.pool, self.workers()?);
+        let pool = &self.common.pool;
         let allowed = Some(pool.capacity().deadline);
-        let mut rows = std::pin::pin!(sweep.compute(points, pool, workers, &stop, allowed));
+        let compute = sweep.compute(points, (pool, Kind::Job), &stop, allowed);
+        let mut rows = std::pin::pin!(Client::Tenant(tenant).serve(compute));
         let mut changed = self.common.store.changes().subscribe(claim.job);
         let mut ending = self.common.listeners.ending();
         loop {

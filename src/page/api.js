@@ -5,6 +5,13 @@ import { pause } from "./dom.js";
 const KEY = "stickslip-key";
 let asking = null;
 
+/** The service did not answer at all, and what was asked may or may not have been done. */
+export class Away extends Error {
+  constructor() {
+    super("The service does not answer. The page shows what was done when it is back.");
+  }
+}
+
 /** A refusal, with its problem document. */
 export class Refusal extends Error {
   constructor(status, problem) {
@@ -45,21 +52,54 @@ async function send(method, path, { body, headers = {}, signal } = {}) {
     if (key) all.authorization = `Bearer ${key}`;
     if (body !== undefined) all["content-type"] = "application/json";
     const text = body === undefined ? undefined : JSON.stringify(body);
-    const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" });
+    const response = await fetch(path.slice(1), { method, headers: all, body: text, signal, cache: "no-store" }).catch((error) => {
+      throw signal?.aborted ? error : new Away();
+    });
     if (response.ok) return response;
+    // A proxy in front of the service answers for it.
+    if (response.status === 502 || response.status === 504) throw new Away();
     if (response.status === 401 && (await askForKey())) continue;
     const problem = await response.json().catch(() => ({}));
     throw new Refusal(response.status, problem);
   }
 }
 
-/** One call; the JSON of its reply. A call that is refused because of overload is tried again a few times. */
+let returning = null;
+
+/** Waits until the service answers again, and says so meanwhile. */
+function serviceReturns() {
+  returning ??= (async () => {
+    const banner = document.getElementById("away");
+    banner.hidden = false;
+    for (let wait = 500; ; wait = Math.min(2 * wait, 5000)) {
+      await pause(wait);
+      const answer = await fetch("healthz", { cache: "no-store" }).catch(() => null);
+      if (answer?.ok) break;
+    }
+    banner.hidden = true;
+    returning = null;
+  })();
+  return returning;
+}
+
+/** Whether a call changes something, so that it must not be repeated unasked. */
+const changes = (method, path) => method !== "GET" && (method !== "POST" || /^\/(contacts|sweep)(?!.*\/subsurface$)/.test(path));
+
+/** One call; the JSON of its reply. A call that is refused because of overload is tried again a few times; one that changes
+ *  nothing waits for a service that is away. */
 export async function call(method, path, body, signal) {
   for (let attempt = 0; ; attempt += 1) {
     try {
       const response = await send(method, path, { body, signal });
       return response.status === 204 ? null : await response.json();
     } catch (error) {
+      if (error instanceof Away) {
+        const back = serviceReturns();
+        if (changes(method, path)) throw error;
+        await back;
+        if (signal?.aborted) throw error;
+        continue;
+      }
       const full = error.status === 503 || error.status === 429;
       if (!full || attempt === 3) throw error;
       await pause(1000 * (attempt + 1), signal);
@@ -109,6 +149,11 @@ export async function follow(id, last, take, report, signal) {
       if (signal.aborted) return;
       if (error.status === 404) return report("deleted");
       if (error.status === 401 || error.status === 403) return report("refused");
+      if (error instanceof Away) {
+        report("waiting");
+        await serviceReturns();
+        continue;
+      }
     }
     report("waiting");
     await pause(wait, signal);

@@ -3,7 +3,7 @@ import { Axis, dataRange } from "./axis.js";
 import { drawLegend, drawCursor } from "./chart_cursor.js";
 import { handleInput } from "./chart_input.js";
 import { menu } from "./chart_menu.js";
-import { drawBands, drawGrid, drawLevel, drawSeries } from "./chart_parts.js";
+import { drawBands, drawGrid, drawLevel, drawSeries, spreadNames } from "./chart_parts.js";
 import { el, svg, withSubscripts } from "./dom.js";
 import { formatQuantity } from "./units.js";
 
@@ -41,6 +41,13 @@ export class Chart {
     );
     new ResizeObserver(() => this.redraw()).observe(this.element);
     handleInput(this);
+  }
+
+  /** Zooms to ranges of both axes, or, with nothing, to all there is. */
+  look(view) {
+    this.view = view;
+    this.onlook?.();
+    this.redraw();
   }
 
   /** Shows data: `series`, and optionally `bands` along x, `levels` of y, `marks`, a `range` or what it covers at `least`, a
@@ -84,12 +91,12 @@ export class Chart {
     const { width } = this.svg.getBoundingClientRect();
     if (!width) return;
     const height = this.aspect
-      ? this.aspect * (width - PAD.left - PAD.right) + PAD.top + PAD.bottom
+      ? Math.round(this.aspect * (width - PAD.left - PAD.right)) + PAD.top + PAD.bottom
       : this.square
         ? Math.min(this.height, width)
         : this.height;
     const ranges = this.ranges();
-    this.box = { left: PAD.left, right: width - PAD.right, top: PAD.top, bottom: height - PAD.bottom };
+    this.box = { left: PAD.left, right: Math.floor(width) - PAD.right, top: PAD.top, bottom: height - PAD.bottom };
     const box = this.box;
     if (this.square) ranges.x = this.evened(ranges);
     this.x.fit(ranges.x, box.left, box.right);
@@ -105,7 +112,7 @@ export class Chart {
       drawBands(this),
       drawGrid(this),
       inside,
-      svg("rect", { class: "frame", ...size }),
+      svg("rect", { class: "frame", ...size, x: box.left + 0.5, y: box.top + 0.5 }),
       this.cursor,
     );
     this.data.layer?.(this, inside);
@@ -130,6 +137,7 @@ export class Chart {
         }),
       );
     }
+    spreadNames(this);
     if (this.data.note) this.note.textContent = this.data.note;
     drawLegend(this);
     this.refresh();

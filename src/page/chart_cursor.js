@@ -18,6 +18,7 @@ export function drawLegend(chart) {
           onclick: ({ currentTarget }) => {
             if (!chart.hidden.delete(name)) chart.hidden.add(name);
             currentTarget.setAttribute("aria-pressed", String(!chart.hidden.has(name)));
+            chart.onlook?.();
             chart.redraw();
           },
         },

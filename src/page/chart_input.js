@@ -57,18 +57,14 @@ export function handleInput(chart) {
     else return;
     event.preventDefault();
   });
-  chart.reset = () => {
-    chart.view = null;
-    chart.redraw();
-  };
+  chart.reset = () => chart.look(null);
   chart.zoom = (by) => {
     const { x, y } = chart;
     const kept = (axis) => {
       const middle = (axis.start + axis.end) / 2;
       return [axis.back(middle + (axis.start - middle) * by), axis.back(middle + (axis.end - middle) * by)];
     };
-    chart.view = { x: kept(x), y: kept(y) };
-    chart.redraw();
+    chart.look({ x: kept(x), y: kept(y) });
   };
 }
 
@@ -89,9 +85,8 @@ function zoomToBox(chart, start, now) {
     .reverse()
     .map((place) => chart.y.back(place));
   // A flat box zooms along x alone.
-  chart.view = { x, y: Math.abs(start[1] - now[1]) < 12 ? chart.ranges().y : y };
   chart.showCursor(null);
-  chart.redraw();
+  chart.look({ x, y: Math.abs(start[1] - now[1]) < 12 ? chart.ranges().y : y });
 }
 
 /** What is at a position: the points of all series nearest in x, or the one nearest point. */

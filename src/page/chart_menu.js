@@ -1,5 +1,5 @@
 // The menu of a plot: zoom, and files to save.
-import { el, notice, save } from "./dom.js";
+import { el, notice, save, svg, svgWithSubscripts } from "./dom.js";
 
 // The properties that keep the look of a plot without the style sheet of the page.
 const STYLES = [
@@ -10,6 +10,9 @@ const STYLES = [
   "stroke-width",
   "stroke-dasharray",
   "stroke-opacity",
+  "stroke-linejoin",
+  "stroke-linecap",
+  "paint-order",
   "opacity",
   "font-family",
   "font-size",
@@ -57,8 +60,9 @@ export function menu(chart) {
   );
 }
 
-/** The plot as an SVG document. */
+/** The plot as an SVG document, with its title and its legend above it. */
 export function svgText(chart) {
+  const head = savedHead(chart);
   const copy = chart.svg.cloneNode(true);
   const [originals, copies] = [chart.svg, copy].map((root) => [root, ...root.querySelectorAll("*")]);
   for (const [index, element] of originals.entries()) {
@@ -67,16 +71,45 @@ export function svgText(chart) {
       copies[index].setAttribute(name, plainColour(style.getPropertyValue(name)));
     copies[index].removeAttribute("class");
   }
-  const { width, height } = chart.svg.viewBox.baseVal;
+  head.element.remove();
+  const [width, height] = savedSize(chart, head.height);
+  const size = { y: -head.height, width, height };
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  copy.setAttribute("viewBox", `0 ${-head.height} ${width} ${height}`);
   copy.setAttribute("width", width);
   copy.setAttribute("height", height);
-  const background = document.createElementNS("http://www.w3.org/2000/svg", "rect");
-  background.setAttribute("width", width);
-  background.setAttribute("height", height);
-  background.setAttribute("fill", getComputedStyle(chart.element).backgroundColor);
-  copy.prepend(background);
+  copy.prepend(svg("rect", { ...size, fill: getComputedStyle(chart.element).backgroundColor }));
   return new XMLSerializer().serializeToString(copy);
+}
+
+/** Whole pixels, so that each line of a picture of twice the size is as wide as the others. */
+function savedSize(chart, more) {
+  const { width, height } = chart.svg.viewBox.baseVal;
+  return [Math.ceil(width), Math.ceil(height) + more];
+}
+
+/** The title and a sample of each visible series with its name, above the drawing, and their height. */
+function savedHead(chart) {
+  const [width] = savedSize(chart, 0);
+  const element = svg("g", {}, svg("text", { class: "saved-title", x: 12 }, ...svgWithSubscripts(chart.title)));
+  chart.svg.append(element);
+  const named = chart.visible().filter((series) => series.legend !== false);
+  const places = [];
+  let [x, row] = [12, 0];
+  for (const { name, kind, line = true } of named.length > 1 ? named : []) {
+    const sample = line ? svg("path", { class: `line ${kind}`, d: "M0,-4h18" }) : svg("circle", { class: `dot ${kind}`, cx: 9, cy: -4, r: 3 });
+    const entry = svg("g", {}, sample, svg("text", { x: 24 }, ...svgWithSubscripts(name)));
+    element.append(entry);
+    const wide = 36 + entry.lastChild.getComputedTextLength();
+    if (x > 12 && x + wide > width) [x, row] = [12, row + 1];
+    places.push([entry, x, row]);
+    x += wide;
+  }
+  const rows = places.length ? row + 1 : 0;
+  const height = 32 + 18 * rows;
+  element.firstChild.setAttribute("y", 22 - height);
+  for (const [entry, x, row] of places) entry.setAttribute("transform", `translate(${x} ${42 + 18 * row - height})`);
+  return { element, height };
 }
 
 /** Mixed colours as red, green and blue, which every program understands; other values unchanged. */
@@ -94,9 +127,9 @@ async function savePng(chart) {
     const picture = new Image();
     picture.src = url;
     await picture.decode();
-    const { width, height } = chart.svg.viewBox.baseVal;
-    const canvas = el("canvas", { width: 2 * width, height: 2 * height });
-    canvas.getContext("2d").drawImage(picture, 0, 0, 2 * width, 2 * height);
+    const [width, height] = [picture.naturalWidth, picture.naturalHeight].map((pixels) => 2 * pixels);
+    const canvas = el("canvas", { width, height });
+    canvas.getContext("2d").drawImage(picture, 0, 0, width, height);
     canvas.toBlob((blob) => save(`${chart.name}.png`, "image/png", blob));
   } catch (error) {
     notice(`The image could not be saved: ${error.message}`, true);

@@ -30,19 +30,22 @@ export function drawBands(chart) {
   return group;
 }
 
+/** The middle of a pixel, where a line of one pixel is as dark as any other. */
+const crisp = (place) => Math.floor(place) + 0.5;
+
 /** The lines of the grid, their numbers, and the titles of the axes. */
 export function drawGrid(chart) {
   const { left, right, top, bottom } = chart.box;
   const group = svg("g", { class: "grid" });
   for (const [value, text] of chart.x.ticks(80)) {
-    const x = chart.x.at(value);
+    const x = crisp(chart.x.at(value));
     group.append(
       svg("line", { class: value === 0 ? "zero" : "", x1: x, x2: x, y1: top, y2: bottom }),
       svg("text", { x, y: bottom + 17, "text-anchor": "middle" }, text),
     );
   }
   for (const [value, text] of chart.y.ticks(45)) {
-    const y = chart.y.at(value);
+    const y = crisp(chart.y.at(value));
     group.append(
       svg("line", { class: value === 0 ? "zero" : "", x1: left, x2: right, y1: y, y2: y }),
       svg("text", { x: left - 7, y: y + 4, "text-anchor": "end" }, text),
@@ -66,7 +69,7 @@ export function drawGrid(chart) {
 
 /** A labelled value of y. */
 export function drawLevel(chart, { y, label, kind }) {
-  const at = chart.y.at(y);
+  const at = crisp(chart.y.at(y));
   return svg(
     "g",
     { class: `level ${kind ?? ""}` },
@@ -105,10 +108,25 @@ export function drawSeries(chart, { name, points, kind, dots, label, line = true
     drawn.push(
       svg(
         "text",
-        { class: "small", x: last[0] + (late ? -8 : 8), y: last[1] + 4, "text-anchor": late ? "end" : "start" },
+        { class: "small over series-name", x: last[0] + (late ? -8 : 8), y: last[1] + 4, "text-anchor": late ? "end" : "start" },
         name,
       ),
     );
   }
   return drawn;
+}
+
+/** Moves the names of series apart that lie on each other, downwards, or upwards where there is no room. */
+export function spreadNames(chart) {
+  const placed = [];
+  const names = [...chart.svg.querySelectorAll(".series-name")].map((text) => ({ text, box: text.getBBox() }));
+  for (const { text, box } of names.sort((one, two) => one.box.y - two.box.y)) {
+    const collides = (y) =>
+      placed.some((other) => box.x < other.x + other.width && other.x < box.x + box.width && Math.abs(y - other.y) < box.height);
+    const offsets = Array.from({ length: 40 }, (_, index) => Math.ceil(index / 2) * (index % 2 ? 7 : -7));
+    const inside = (y) => y >= chart.box.top && y + box.height <= chart.box.bottom;
+    const offset = offsets.find((offset) => !collides(box.y + offset) && (offset === 0 || inside(box.y + offset))) ?? 0;
+    text.setAttribute("dy", offset);
+    placed.push({ x: box.x, y: box.y + offset, width: box.width });
+  }
 }

@@ -39,6 +39,7 @@ export async function showContact(main, id, signal) {
     first: begin ? history.shift() : { sequence: 0, state: virgin },
     isComplete: begin === 0,
     stress: null,
+    measured: null,
     path: [],
   };
   const ratio = (model.friction * figures.e_star) / figures.g_star;
@@ -46,13 +47,13 @@ export async function showContact(main, id, signal) {
   model.reach = (state) => 1.5 * (Math.max(model.slip(state), figures.gross_slip_displacement) || 1e-7);
   model.move = latestOnly((body) => call("POST", `/contacts/${id}/move`, body, signal));
 
-  const view = contactView(model, contact);
+  const view = contactView(model, contact, () => redraw());
   // At most one redraw a frame, however many moves arrive.
   let frame = null;
   const redraw = () => {
     frame ??= requestAnimationFrame(() => {
       frame = null;
-      view.plots.draw(model);
+      view.draw();
       view.show(model.state);
     });
   };
@@ -63,6 +64,10 @@ export async function showContact(main, id, signal) {
       throw error;
     });
     model.stress = stress;
+    redraw();
+  });
+  const loadFriction = latestOnly(async () => {
+    model.measured = (await call("GET", `/contacts/${id}/friction`, undefined, signal)).friction ?? null;
     redraw();
   });
   const refinePath = latestOnly(async () => {
@@ -83,12 +88,14 @@ export async function showContact(main, id, signal) {
   model.path = straightPath(model.first, history);
   redraw();
   loadStress().catch(showError);
+  if (history.some(({ observation }) => observation)) loadFriction().catch(showError);
   refine();
 
   const addMove = (event) => {
     if (event.sequence <= (history.at(-1)?.sequence ?? model.first.sequence)) return;
     model.state = event.state;
-    history.push({ sequence: event.sequence, move: event.move ?? {}, state: event.state, at: event.at });
+    const { sequence, move, state, observation, at } = event;
+    history.push({ sequence, move: move ?? {}, state, observation, at });
     model.path.push([event.state.displacement, event.state.force, event.sequence]);
     if (history.length > 2 * MAX_HISTORY) {
       model.first = history[history.length - MAX_HISTORY - 1];
@@ -98,11 +105,12 @@ export async function showContact(main, id, signal) {
     }
     redraw();
     loadStress().catch(showError);
+    if (observation && event.cycle) loadFriction().catch(showError);
     refineLater();
   };
   follow(id, history.at(-1)?.sequence ?? model.first.sequence, addMove, view.report, signal);
   main.replaceChildren(view.element);
-  view.plots.all.forEach((plot) => plot.redraw());
+  view.plots.forEach((plot) => plot.redraw());
 }
 
 /** The largest displacement and force of the loop. */

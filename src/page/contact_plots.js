@@ -6,7 +6,7 @@ import { formatQuantity } from "./units.js";
 
 const TURNS = "Rings mark the turning points that the contact remembers. A move beyond one closes its loop and erases it.";
 
-/** The plots, and a function that draws them from the model of a contact. */
+/** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two show. */
 export function contactPlots() {
   const loop = new Chart({
     name: "loop",
@@ -31,21 +31,22 @@ export function contactPlots() {
     note: "Friction work only grows; stored energy is released on unloading.",
   });
 
-  loop.more = ([, , sequence]) => [sequence ? `move ${sequence}` : "start"];
+  // What is drawn over the loop has no moves of this contact.
+  loop.more = ([, , sequence], { name }) => [sequence === undefined ? name : sequence ? `move ${sequence}` : "start"];
   loop.onhover = (hit) => work.showCursor(hit && atMove(work, hit.datum[2]));
   work.onhover = (hit) => loop.showCursor(hit && atSequence(loop, hit.x));
   stress.onhover = (hit) => top.showCursor(hit && top.at(hit.x, hit.x, 0));
   top.onhover = (hit) => stress.showCursor(hit && atRadius(stress, hit.ring));
 
-  const draw = (model) => {
-    loop.draw(loopData(model));
+  const draw = (model, overlay) => {
+    loop.draw(loopData(model, overlay.loop()));
     if (model.stress) {
-      stress.draw(stressData(model));
+      stress.draw(stressData(model, overlay.shear()));
       top.show(model);
     }
     work.draw(energyData(model));
   };
-  return { all: [loop, stress, top, work], draw };
+  return { all: [loop, stress, top, work], loop, draw };
 }
 
 /** The points of a move in the plot of energies. */
@@ -73,16 +74,21 @@ function atRadius(chart, radius) {
   return { x: radius, dots, lines: [] };
 }
 
-/** The loop: the whole path, the part since the last reversal, and the present state. */
-function loopData({ path, state, friction, first, history, slip, isComplete }) {
+/** The loop: the whole path, the part since the last reversal, what was measured, and the present state. */
+function loopData({ path, state, friction, first, history, slip, isComplete }, overlaid) {
   let turn = path.length - 1;
   const direction = (index) => Math.sign(path[index][0] - path[index - 1][0]);
   while (turn > 1 && (direction(turn) === 0 || direction(turn - 1) === 0 || direction(turn) === direction(turn - 1))) turn -= 1;
   const limit = friction * state.normal_force;
+  const measured = history
+    .filter(({ observation }) => observation)
+    .map(({ sequence, state: s, observation }) => [s.displacement, observation.force, sequence]);
   return {
     series: [
       { name: "whole path", kind: "past", points: path },
       { name: "since the last reversal", kind: "now", points: path.slice(Math.max(0, turn - 1)), hover: false },
+      ...overlaid,
+      ...(measured.length ? [{ name: "measured", kind: "measured", points: measured, dots: true, line: false }] : []),
     ],
     note: isComplete ? TURNS : "Of this long history the last moves are drawn, straight from state to state.",
     least: limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {},
@@ -114,8 +120,9 @@ function loopData({ path, state, friction, first, history, slip, isComplete }) {
         "regime",
         "friction_work_j",
         "elastic_energy_j",
+        "measured_force_n",
       ],
-      rows: history.map(({ sequence, state: s }) => [
+      rows: history.map(({ sequence, state: s, observation }) => [
         sequence,
         s.displacement,
         s.force,
@@ -126,13 +133,14 @@ function loopData({ path, state, friction, first, history, slip, isComplete }) {
         s.regime,
         s.dissipated_energy,
         s.elastic_energy,
+        observation?.force ?? null,
       ]),
     }),
   };
 }
 
 /** Pressure, bound and shear stress along the radius; the peaks at their exact radii. */
-function stressData({ stress, state, friction }) {
+function stressData({ stress, state, friction }, overlaid) {
   const { radius, pressure, shear, residual } = stress;
   const a = state.contact_radius;
   const scale = (factor) => radius.map((r, index) => [r, pressure[index] === null ? null : factor * pressure[index]]);
@@ -146,6 +154,7 @@ function stressData({ stress, state, friction }) {
       { name: "bound ±μ p", kind: "bound", points: scale(friction) },
       { name: "bound ±μ p", kind: "bound", points: scale(-friction), hover: false, legend: false },
       { name: "pressure p", kind: "pressure", points: scale(1) },
+      ...overlaid,
     ],
     bands:
       a > 0

@@ -3,26 +3,35 @@ import { call } from "./api.js";
 import { belowSurfaceCard } from "./below_surface.js";
 import { contactPlots } from "./contact_plots.js";
 import { copyButtons } from "./copy_as_code.js";
+import { contactTitle } from "./contact_title.js";
 import { figureList } from "./create_form.js";
 import { el, notice } from "./dom.js";
+import { goBack } from "./go_back.js";
+import { loopOverlay } from "./loop_overlay.js";
 import { moveControl } from "./move_controls.js";
 import { pathCard } from "./path_run.js";
 import { protocolCard } from "./protocol_run.js";
 import { stateText } from "./state_text.js";
 import { steadyCard } from "./steady_cycle.js";
 import { studyCards } from "./studies.js";
+import { trustCard } from "./trust.js";
+import { viewLink } from "./view_link.js";
 
 /** The query for the stresses that are shown. */
 export const FIELDS = "points=300&residual=true&fields=pressure,shear,slip,displacement";
-const CONNECTION = { live: "live", waiting: "reconnecting …", deleted: "deleted", expired: "expired", refused: "not allowed" };
+const CONNECTION = { live: "live", waiting: "reconnecting …", deleted: "deleted", expired: "expired", damaged: "damaged", refused: "not allowed" };
 
-/** The elements for a contact, and functions that update them. */
-export function contactView(model, contact) {
+/** The elements for a contact, and functions that update them; `changed` asks for new plots. */
+export function contactView(model, contact, changed) {
   const { id, figures } = model;
   const plots = contactPlots();
   const steady = steadyCard(model);
   const below = belowSurfaceCard(model);
   const studies = studyCards(model);
+  const trust = trustCard(model);
+  const back = goBack(model);
+  const title = contactTitle(id, contact.label);
+  const overlay = loopOverlay(model, plots.loop, changed);
   const live = el("span", { class: "badge", role: "status" }, "connecting …");
   const stateElement = el("div", { class: "state-text", "aria-live": "polite" });
   const controls = [
@@ -107,7 +116,9 @@ export function contactView(model, contact) {
         jump("U = 0", () => 0),
         jump("slip →", () => model.reach(model.state) / 1.5),
       ),
+      back.element,
     ),
+    trust.element,
     steady.element,
     el(
       "details",
@@ -122,10 +133,13 @@ export function contactView(model, contact) {
     el(
       "div",
       { class: "head" },
-      el("h1", {}, contact.label ?? "Unnamed contact"),
+      title.heading,
+      title.form,
       live,
       el("span", { class: "faint" }, id),
       copyButtons(calls),
+      viewLink({ plots: [...plots.all, below.chart], units: controls.map((one) => one.unit), overlay }),
+      title.button,
       el("button", { type: "button", class: "quiet", onclick: fork }, "Fork"),
       el("button", { type: "button", class: "quiet danger", onclick: remove }, "Delete"),
     ),
@@ -136,15 +150,16 @@ export function contactView(model, contact) {
   );
   return {
     element,
-    plots,
+    plots: plots.all,
+    draw: () => plots.draw(model, overlay),
     show: (state) => {
       stateElement.replaceChildren(...stateText(state, model));
-      for (const one of [...controls, steady, below, studies]) one.show(state);
+      for (const one of [...controls, back, trust, steady, below, studies]) one.show(state);
     },
     report: (what) => {
       live.textContent = CONNECTION[what] ?? what;
       // Nothing more is asked of a contact that is no longer there.
-      model.isGone ||= what === "deleted" || what === "expired";
+      model.isGone ||= what === "deleted" || what === "expired" || what === "damaged";
       live.classList.toggle("on", what === "live");
     },
   };

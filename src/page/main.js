@@ -11,15 +11,15 @@ async function route(event) {
   leave.abort();
   leave = new AbortController();
   const { signal } = leave;
-  const [, id] = location.hash.match(/^#\/contacts\/([\w-]+)$/) ?? [];
+  const [, id] = location.hash.match(/^#\/contacts\/([\w-]+)(\?.*)?$/) ?? [];
   document.title = id ? "Contact – stickslip" : location.hash === "#/new" ? "New contact – stickslip" : "stickslip";
   // A view that was left meanwhile is not shown.
-  const view = el("div", {});
+  const view = el("div", {}, el("p", { class: "note" }, "Loading …"));
   main.replaceChildren(view);
   try {
     if (id) await showContact(view, id, signal);
     else if (location.hash === "#/new") createForm(view, signal);
-    else await contactList(view);
+    else await contactList(view, signal);
   } catch (error) {
     if (!signal.aborted)
       view.replaceChildren(

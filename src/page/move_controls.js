@@ -1,83 +1,123 @@
-// The controls that move a contact: sliders with number fields.
+// The controls that move a contact: a number in a unit, and a slider. Both send when one commits to a value, and say before what
+// they will send.
 import { el, withSubscripts } from "./dom.js";
-import { unitScale, parseNumber } from "./units.js";
+import { formatQuantity, inPower, parseNumber, powerOf, unitScale } from "./units.js";
 
-/** A slider with a box. `limits` gives its ends for a state, `send` a new value in SI. */
+const POSITIONS = 2000;
+
+/** The powers of ten of the units that can be chosen. */
+const POWERS = { m: [0, -3, -6, -9, -12], N: [3, 0, -3, -6, -9] };
+
+/** A slider with a box and its unit. `limits` gives the ends for a state, `send` a new value in SI. */
 export function moveControl({ name, label, unit, limits, value, send }) {
-  const slider = el("input", {
-    type: "range",
-    id: `slide-${name}`,
-    min: -1000,
-    max: 1000,
-    step: 1,
-    "aria-label": `${label}, slider`,
-  });
+  const slider = el("input", { type: "range", id: `slide-${name}`, min: 0, max: POSITIONS, "aria-label": `${label}, slider` });
   const box = el("input", {
     type: "text",
     inputmode: "decimal",
     id: `box-${name}`,
     autocomplete: "off",
-    "aria-describedby": `fault-${name}`,
+    "aria-describedby": `to-send-${name} fault-${name}`,
   });
-  const sign = el("span", { class: "unit" });
-  const fault = el("p", { class: "fault", id: `fault-${name}`, role: "alert" });
-  const form = el(
-    "form",
-    { class: "move-control", onsubmit: (event) => event.preventDefault() },
-    el("label", { for: `box-${name}` }, withSubscripts(label)),
-    el("div", { class: "value" }, box, sign),
-    slider,
-    fault,
+  const automatic = el("option", { value: "" });
+  const choice = el(
+    "select",
+    { id: `unit-${name}`, "aria-label": `Unit of ${label}` },
+    automatic,
+    POWERS[unit].map((power) => el("option", { value: power }, unitScale(10 ** power, unit).unit)),
   );
+  const toSend = el("p", { class: "note", id: `to-send-${name}`, "aria-live": "polite" });
+  const fault = el("p", { class: "fault", id: `fault-${name}`, role: "alert" });
+  let shown = null;
   let ends = [-1, 1];
-  let scale = { factor: 1, unit };
+  let fitting = 0;
   let isDragged = false;
+  let isEdited = false;
 
+  /** The power of ten of the unit: the one that is chosen, or the one that fits the ends of the slider. */
+  const power = () => (choice.value === "" ? fitting : Number(choice.value));
+  const display = (amount) => inPower(amount, power());
   const showFault = (text) => {
     fault.textContent = text ?? "";
     if (text) box.setAttribute("aria-invalid", "true");
     else box.removeAttribute("aria-invalid");
   };
-  const sendValue = async (amount) => {
+  const settle = () => {
+    isDragged = isEdited = false;
+    toSend.textContent = "";
+  };
+  const commit = async (amount) => {
+    settle();
     try {
       await send(amount);
       showFault();
     } catch (error) {
       showFault(error.errors?.[0]?.detail ?? error.message);
+      isEdited = document.activeElement === box;
+      show(shown);
     }
   };
-  const enter = () => {
-    const power = Math.round(Math.log10(scale.factor));
-    const amount = parseNumber(box.value, power);
-    if (amount !== undefined) sendValue(amount);
+  const revert = () => {
+    settle();
+    show(shown);
   };
-  const sliderValue = () =>
-    ends[0] + ((Number(slider.value) - Number(slider.min)) / (slider.max - slider.min)) * (ends[1] - ends[0]);
-  slider.addEventListener("pointerdown", () => {
-    isDragged = true;
-  });
-  for (const end of ["pointerup", "pointercancel", "change", "blur"])
-    slider.addEventListener(end, () => {
-      isDragged = false;
-    });
-  slider.addEventListener("input", () => {
-    const amount = sliderValue();
-    box.value = display(amount);
-    sendValue(amount);
-  });
-  box.addEventListener("change", enter);
+  const sliderValue = () => ends[0] + (Number(slider.value) / POSITIONS) * (ends[1] - ends[0]);
 
-  const display = (amount) => String(Number((amount / scale.factor).toPrecision(6)));
-  /** Shows a state, but does not move a slider that is being dragged. */
-  const show = (state) => {
+  slider.addEventListener("input", () => {
+    isDragged = true;
+    box.value = display(sliderValue());
+    toSend.textContent = `Release to send ${formatQuantity(sliderValue(), unit)}.`;
+  });
+  slider.addEventListener("change", () => commit(sliderValue()));
+  // Let go where it was taken, it has nothing to send.
+  slider.addEventListener("pointerup", () => setTimeout(() => isDragged && revert()));
+  slider.addEventListener("pointercancel", revert);
+  box.addEventListener("input", () => {
+    // What is typed stays in the unit that it was typed in.
+    choice.value = String(power());
+    isEdited = true;
+    showFault();
+    const amount = parseNumber(box.value, power());
+    if (amount === undefined) toSend.textContent = "";
+    else if (typeof amount === "string") toSend.textContent = "This is no number.";
+    else toSend.textContent = `Enter sends ${box.value.trim()} ${choice.selectedOptions[0].textContent} = ${amount} ${unit}.`;
+  });
+  box.addEventListener("change", () => {
+    const amount = parseNumber(box.value, power());
+    if (isEdited && amount !== undefined) commit(amount);
+  });
+  box.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    showFault();
+    revert();
+  });
+  choice.addEventListener("change", revert);
+
+  /** Shows a state, but changes neither a slider that is being dragged nor a number that is being typed. */
+  function show(state) {
+    // A fault belongs to the state in which it was met.
+    if (fault.textContent && state !== shown) {
+      showFault();
+      settle();
+    }
+    shown = state;
     if (!isDragged) {
       ends = limits(state);
-      scale = unitScale(Math.max(Math.abs(ends[0]), Math.abs(ends[1])), unit);
-      sign.textContent = scale.unit;
-      slider.value = Math.round(((value(state) - ends[0]) / (ends[1] - ends[0])) * 2000 - 1000);
+      const fits = powerOf(Math.max(Math.abs(ends[0]), Math.abs(ends[1])));
+      fitting = Math.max(Math.min(fits, POWERS[unit][0]), POWERS[unit].at(-1));
+      automatic.textContent = `${unitScale(10 ** fitting, unit).unit} (auto)`;
+      slider.value = Math.round(((value(state) - ends[0]) / (ends[1] - ends[0])) * POSITIONS);
+      if (!isEdited) box.value = display(value(state));
     }
-    if (!isDragged && document.activeElement !== box) box.value = display(value(state));
-    slider.setAttribute("aria-valuetext", `${display(value(state))} ${scale.unit}`);
-  };
-  return { element: form, show };
+    slider.setAttribute("aria-valuetext", formatQuantity(isDragged ? sliderValue() : value(state), unit, 6));
+  }
+  const element = el(
+    "form",
+    { class: "move-control", onsubmit: (event) => event.preventDefault() },
+    el("label", { for: `box-${name}` }, withSubscripts(label)),
+    el("div", { class: "value" }, box, choice),
+    slider,
+    toSend,
+    fault,
+  );
+  return { element, show, unit: choice };
 }

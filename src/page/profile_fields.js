@@ -3,6 +3,7 @@ import { el } from "./dom.js";
 import { Choice, NumberField, TextField } from "./form_fields.js";
 import { COLUMNS, PROFILES, WITHOUT_STRESS } from "./form_options.js";
 import { scanFit } from "./scan_fit.js";
+import { tableRows } from "./table_text.js";
 import { parseNumber } from "./units.js";
 
 /** An editor of a profile at the pointer that `at` gives; `changed` is called when its fields change. */
@@ -68,18 +69,7 @@ function columns(form, at, changed, body, type) {
   const text = new TextField(form, at, label, el("textarea", { rows: 8, spellcheck: "false", value: "" }));
   text.control.value = example;
   const read = () => {
-    const lines = text.value
-      .split("\n")
-      .map((line) => line.trim())
-      .filter((line) => line && !line.startsWith("#"));
-    // Lines before the first number are a header.
-    const rows = lines.slice(Math.max(0, lines.findIndex((line) => /^[+−-]?[\d.,]/.test(line))));
-    // Where something else separates a pair, a comma between digits is a decimal comma.
-    const pairs = rows.map((line) =>
-      (/[\t;]|\s/.test(line.replace(/,\s+/, "")) ? line.split(/[\t;]+|\s+/) : line.split(","))
-        .map((cell) => cell.replace(/,$/, ""))
-        .filter(Boolean),
-    );
+    const pairs = tableRows(text.value);
     const column = (index) => pairs.map((pair) => parseNumber(pair[index] ?? "", Number(units[index].value)) ?? null);
     return Object.fromEntries(described.map(([name], index) => [name, column(index)]));
   };

@@ -2,6 +2,7 @@
 import { call } from "./api.js";
 import { Chart } from "./chart.js";
 import { el, notice } from "./dom.js";
+import { fileInput } from "./table_text.js";
 import { formatQuantity } from "./units.js";
 
 /** Controls below the text field `control` of a table. `read` gives its columns in m, `write` takes those of the profile. */
@@ -15,15 +16,6 @@ export function scanFit(control, read, write) {
   });
   chart.element.hidden = true;
   const said = el("p", { class: "note", id: "scan-said", "aria-live": "polite" });
-  const open = async (file) => {
-    if (file) control.value = await file.text();
-  };
-  control.addEventListener("dragover", (event) => event.preventDefault());
-  control.addEventListener("drop", async (event) => {
-    if (!event.dataTransfer.files.length) return;
-    event.preventDefault();
-    await open(event.dataTransfer.files[0]);
-  });
   const fit = async () => {
     const { r, z } = read();
     try {
@@ -42,11 +34,10 @@ export function scanFit(control, read, write) {
       notice(error.message, true);
     }
   };
-  const file = el("input", { type: "file", onchange: (event) => open(event.target.files[0]) });
   return el(
     "div",
     {},
-    el("label", {}, "A scan through the axis, as a file ", file),
+    el("label", {}, "A scan through the axis, as a file ", fileInput(control)),
     el("button", { type: "button", id: "fit-scan", onclick: fit }, "Fit a profile to the scan"),
     said,
     chart.element,

@@ -12,8 +12,20 @@ function sentence({ regime, stick_radius: c, contact_radius: a }, moved) {
   return `Inside r = ${formatQuantity(c, "m", 3)} (${formatNumber((100 * c) / a, 2)} % of the contact radius) the surfaces stuck in the last move; the ring outside slipped.`;
 }
 
+/** A coefficient of friction with its interval. */
+function measuredText({ value, interval: [low, high], from, to }) {
+  const [middle, least, most] = [value, low, high].map((number) => formatNumber(number, 4));
+  return `${middle} (95 %: ${least} to ${most}, moves ${from} to ${to})`;
+}
+
+/** The largest shear stress, and what part of μ times the largest pressure it is. */
+function shearText({ max, relative }) {
+  if (max === null) return "∞ at one radius";
+  return [formatQuantity(max, "Pa"), ...(relative === null ? [] : withSubscripts(` = ${formatNumber(100 * relative, 3)} % of μ p_max`))];
+}
+
 /** Lines about a state. */
-export function stateText(state, { friction, history, first }) {
+export function stateText(state, { friction, history, first, measured, stress }) {
   const limit = friction * state.normal_force;
   const use = limit > 0 ? Math.min(1, Math.abs(state.force) / limit) : 0;
   const pair = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
@@ -33,8 +45,10 @@ export function stateText(state, { friction, history, first }) {
       pair("Force F", `${formatQuantity(state.force, "N")}`),
       pair("Load F_N", `${formatQuantity(state.normal_force, "N")}`),
       pair("Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
+      ...(stress && state.normal_force > 0 ? [pair("Largest shear stress", shearText(stress.residual))] : []),
       pair("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
       pair("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
+      ...(measured ? [pair("Measured friction μ", measuredText(measured))] : []),
     ),
   ];
 }

@@ -1,12 +1,15 @@
 // Studies of a virgin contact of this kind: a fretting map, remaining stress against the number of reversals, and speed against
-// error of the solvers.
+// error of the solvers; and a fit to a loop that was measured on it.
 import { call, offered } from "./api.js";
 import { Chart } from "./chart.js";
 import { copyButtons } from "./copy_as_code.js";
 import { el, notice, withSubscripts } from "./dom.js";
 import { frettingMap } from "./fretting_map.js";
+import { loopFit } from "./loop_fit.js";
 import { virginContact, PROTOCOLS } from "./protocol_run.js";
 
+/** Up to how many reversals the best protocol is searched for. */
+const MOST_SEARCHED = 10;
 const REVERSALS = [1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200];
 // Smaller errors are drawn as this one: a logarithmic axis has no zero.
 const SMALLEST_ERROR = 1e-17;
@@ -22,14 +25,27 @@ export function studyCards(model) {
     ...map,
   });
   const element = el("div", { class: "studies" }, mapCard, residual(model));
-  offered("/accuracy").then((is) => {
-    if (is) element.append(accuracy(model));
-  });
+  const fit = () =>
+    card({
+      id: "fit-loop",
+      signal: model.signal,
+      title: "Fit a measured loop",
+      text: "Force over displacement of a bench, for this contact: which friction and stiffness it has, and how surely.",
+      ...loopFit(model),
+    });
+  for (const [path, make] of [
+    ["/fit", fit],
+    ["/accuracy", () => accuracy(model)],
+  ]) {
+    offered(path).then((is) => {
+      if (is) element.append(make());
+    });
+  }
   return { element, show: map.mark };
 }
 
-/** A card with a button that computes a plot. */
-function card({ title, text, chart, calls, compute, id, signal }) {
+/** A card with a button that computes a plot; `body` stands before the button, and `results` after the plot. */
+function card({ title, text, chart, calls, compute, id, signal, body, results }) {
   const bar = el("progress", { max: 1, value: 0, hidden: true, "aria-label": `Progress: ${title}` });
   const button = el(
     "button",
@@ -60,8 +76,10 @@ function card({ title, text, chart, calls, compute, id, signal }) {
     { class: "card" },
     el("div", { class: "head" }, el("h2", {}, withSubscripts(title)), copyButtons(calls)),
     el("p", {}, withSubscripts(text)),
+    body,
     el("p", { class: "row" }, button, bar),
     chart.element,
+    results,
   );
 }
 
@@ -83,8 +101,9 @@ function residual(model) {
     residual: true,
   });
   const compute = async (report) => {
-    const found = { falling_amplitude: [], equal_peaks: [] };
+    const found = { falling_amplitude: [], equal_peaks: [], minimax: [] };
     const kinds = Object.keys(PROTOCOLS);
+    const hasProtocols = await offered("/protocols");
     let done = 0;
     for (const reversals of REVERSALS) {
       for (const kind of kinds) {
@@ -94,6 +113,10 @@ function residual(model) {
         // A logarithmic axis has no zero.
         found[kind].push([reversals, ...[most, left.mean, left.min].map((value) => value / (full || 1) || null)]);
         report((done += 1) / REVERSALS.length / kinds.length);
+      }
+      if (reversals <= MOST_SEARCHED && hasProtocols) {
+        const { largest } = await call("POST", "/protocols", { contact: model.definition, reversals }, model.signal);
+        found.minimax.push([reversals, (largest ?? 0) / (full || 1) || null]);
       }
       const line = (name, kind, column) => ({
         name,
@@ -108,6 +131,7 @@ function residual(model) {
           line("linear: mean peak", kinds[0], 2),
           line("linear: smallest peak", kinds[0], 3),
           line("equal peaks: largest", kinds[1], 1),
+          ...(hasProtocols ? [line("least possible (found by search): largest", "minimax", 1)] : []),
         ],
       });
     }

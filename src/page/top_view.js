@@ -15,7 +15,7 @@ export function topView() {
     height: 340,
     x: { label: "x, along the motion", unit: "m" },
     y: { label: "y", unit: "m" },
-    note: "Colour is the shear stress on the contact, green along the push and purple against it; in the striped ring the last move slipped.",
+    note: "Colour is the shear stress on the contact, green along the push and purple against it, on a scale up to the largest that is there; in the striped ring the last move slipped.",
   });
   let stress = null;
   let radius = 0;
@@ -73,9 +73,7 @@ function disc(plot, { stress, state, friction, history }) {
         "There is no area of contact.",
       ),
     ];
-  const finite = stress.pressure.filter((value) => value !== null);
-  const mean = state.normal_force / (Math.PI * a * a);
-  const full = friction * Math.min(Math.max(...finite), 4 * mean) || 1;
+  const full = fullScale(stress, state, friction);
   const [cx, cy] = [plot.x.at(0), plot.y.at(0)];
   const size = (radius) => Math.abs(plot.x.at(radius) - cx);
   const every = Math.max(1, Math.floor(stress.radius.length / STOPS));
@@ -108,6 +106,16 @@ function disc(plot, { stress, state, friction, history }) {
   return drawn;
 }
 
+/** The stress of the strongest colour: the largest that is there, so that what little is left shows too. */
+function fullScale({ pressure, shear, residual }, { normal_force: load, contact_radius: a }, friction) {
+  const largest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
+  // Where the pressure is infinite, four times its mean.
+  const bound = friction * Math.min(largest(pressure), (4 * load) / (Math.PI * a * a)) || 1;
+  const found = Math.max(largest(shear), largest(residual.peaks.map((peak) => peak.shear)));
+  // Round-off is no stress.
+  return found > 1e-9 * bound ? Math.min(found, bound) : bound;
+}
+
 /** The area between two circles. */
 function ring(x, y, outer, inner) {
   const circle = (r) => `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0Z`;
@@ -117,16 +125,17 @@ function ring(x, y, outer, inner) {
 /** The legend of the colours. */
 function colourScale(plot, full) {
   const { left, bottom } = plot.box;
-  const [x, y, width] = [left + 8, bottom - 14, 90];
+  const [x, y, width] = [left + 8, bottom - 14, 128];
   const id = `${plot.clip}-scale`;
   const stops = Array.from({ length: 21 }, (_, index) =>
     svg("stop", { offset: index / 20, "stop-color": colour(index / 10 - 1) }),
   );
-  const text = (at, anchor, words) => svg("text", { class: "small", x: at, y: y - 4, "text-anchor": anchor }, words);
+  const text = (at, anchor, words) => svg("text", { class: "small over", x: at, y: y - 4, "text-anchor": anchor }, words);
   return [
     svg("defs", {}, svg("linearGradient", { id }, ...stops)),
     svg("rect", { x, y, width, height: 8, fill: `url(#${id})` }),
-    text(x, "start", `τ = ∓${formatQuantity(full, "Pa", 2)}`),
+    text(x, "start", formatQuantity(-full, "Pa", 3)),
+    text(x + width, "end", `+${formatQuantity(full, "Pa", 3)}`),
   ];
 }
 

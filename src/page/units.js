@@ -20,6 +20,15 @@ export function unitScale(value, unit) {
   return { factor, unit: prefix + unit };
 }
 
+/** The power of ten of the prefix that fits a value. */
+export const powerOf = (value) => Math.round(Math.log10(unitScale(value, "").factor));
+
+/** A value in units of 10^power, as one would type it: by way of its digits, so that 0.3 µm are not 0.30000000000000004. */
+export function inPower(value, power) {
+  const [digits, own = 0] = value.toPrecision(6).split("e");
+  return String(Number(`${digits}e${Number(own) - power}`));
+}
+
 /** A number with `digits` significant digits, and a true minus. */
 export function formatNumber(value, digits = 4) {
   if (value === null || value === undefined) return "∞";

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// How long open connections may take to finish when the server stops.
+/// How long clients may take to read their last replies when the server stops.
 pub const GRACE: Duration = Duration::from_secs(3);
 /// Bytes of the head of a request: its first line and its headers.
 pub const HEAD: usize = 32 * 1024;

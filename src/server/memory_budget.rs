@@ -12,10 +12,18 @@ const KIB: u64 = 1024;
 pub const PROGRAM: u64 = 128 * KIB * KIB;
 /// A connection: what it has read and not served, what it has to write, and its task.
 pub const CONNECTION: u64 = 128 * KIB;
+/// What a connection by TLS takes besides: a record received, a record read, and what is to be sent.
+pub const TLS: u64 = 64 * KIB;
 /// A request that is small enough not to be counted among the work.
 pub const REQUEST: u64 = 64 * KIB;
 /// A client that listens to events: a page of the history.
 pub const STREAM: u64 = 64 * KIB;
+
+/// What TLS on all connections adds to the bound, bytes.
+#[must_use]
+pub fn tls(connections: &ConnectionLimits) -> u64 {
+    TLS.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64)
+}
 
 /// The bound, bytes.
 #[must_use]
@@ -24,6 +32,7 @@ pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64) -
     PROGRAM
         .saturating_add(cache)
         .saturating_add(capacity.bytes as u64)
+        .saturating_add(capacity.state_bytes() as u64)
         .saturating_add(CONNECTION.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
         .saturating_add(REQUEST.saturating_mul(requests))
         .saturating_add(STREAM * STREAMS as u64)

@@ -4,10 +4,11 @@ pub mod connections;
 pub mod fd_limit;
 pub mod limits;
 pub mod memory_budget;
+pub mod tls;
 
 use std::future::Future;
 use std::io;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,28 +16,32 @@ use std::time::Duration;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use connections::{ConnectionCounts, ConnectionPermit, Socket};
-use limits::{BUFFER, GRACE, HEAD, SPARE_TIME};
+use limits::{BUFFER, GRACE, HEAD, PIECE, SPARE_TIME};
+use tls::Tls;
 
-pub use connections::{ConnectionLimiter, ConnectionLimits, Service};
+pub use connections::{ClientAddress, ConnectionLimiter, ConnectionLimits, Network, OwnHosts, Service};
 
 /// How long to wait after a failure to accept a connection, most often because too many files are open.
 const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
 /// The least time between two log lines about refused connections.
 const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Serves on `listener` the connections that `limiter` admits, until `stop` is done. Then `end_streams` is called, and other
-/// requests may finish within [`GRACE`]; connections that are still open after that are closed, and their work stopped.
+/// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then `end_streams` is called, and other
+/// requests may be done within the time that the limits give; what is left then is refused. Connections that are still open
+/// [`GRACE`] later are closed.
 ///
 /// # Errors
 /// None at present: a failure to accept a connection is waited out.
 pub async fn serve(
     limiter: ConnectionLimiter,
     listener: TcpListener,
+    tls: Option<Tls>,
     service: Service,
     stop: impl Future<Output = ()> + Send + 'static,
     end_streams: impl FnOnce(),
@@ -52,7 +57,7 @@ pub async fn serve(
             () = &mut stop => break,
         };
         match accepted {
-            Ok((stream, address)) => accept(&limiter, stream, address, &service, &closing),
+            Ok((stream, address)) => accept(&limiter, stream, address, tls.as_ref(), &service, &closing),
             Err(error) if is_client_fault(&error) => {}
             Err(error) => {
                 tracing::warn!(%error, "no connection can be accepted; another attempt follows");
@@ -74,11 +79,16 @@ pub async fn serve(
             (logged, logged_at) = (counts, Some(Instant::now()));
         }
     }
-    tracing::info!(grace_ms = GRACE.as_millis() as u64, "stopping");
+    let drain = limiter.limits().drain;
+    tracing::info!(drain_ms = drain.as_millis() as u64, "stopping");
     drop(listener);
     end_streams();
     // Fails if there is no connection.
     let _ = closing.send(());
+    if timeout(drain, closing.closed()).await.is_err() {
+        tracing::warn!("requests that are not done are refused: the server stops");
+        service.stopping.send_replace(true);
+    }
     if timeout(GRACE, closing.closed()).await.is_err() {
         tracing::warn!("connections were still open and have been closed");
         limiter.close_all();
@@ -96,6 +106,7 @@ fn accept(
     limiter: &ConnectionLimiter,
     stream: TcpStream,
     address: SocketAddr,
+    tls: Option<&Tls>,
     service: &Arc<Service>,
     closing: &watch::Sender<()>,
 ) {
@@ -107,13 +118,28 @@ fn accept(
     let limits = *limiter.limits();
     let limits = if permit.is_spare() { ConnectionLimits { head: SPARE_TIME, ..limits } } else { limits };
     let number = permit.number;
-    let task = tokio::spawn(serve_connection(stream, permit, limits, Arc::clone(service), closing.subscribe()));
+    let (service, mut closing, peer) = (Arc::clone(service), closing.subscribe(), address.ip());
+    let task = match tls.map(Tls::acceptor) {
+        None => tokio::spawn(serve_connection(stream, peer, permit, limits, service, closing)),
+        Some(acceptor) => tokio::spawn(async move {
+            let accepted = tokio::select! {
+                accepted = timeout(limits.head, acceptor.accept_with(stream, |tls| tls.set_buffer_limit(Some(PIECE)))) => accepted,
+                _ = closing.changed() => return,
+            };
+            match accepted {
+                Ok(Ok(stream)) => serve_connection(stream, peer, permit, limits, service, closing).await,
+                Ok(Err(error)) => tracing::debug!(%error, "a client did not speak TLS as the server does"),
+                Err(_) => tracing::debug!("a client has taken too long to begin TLS"),
+            }
+        }),
+    };
     limiter.started(number, task.abort_handle());
 }
 
 /// Serves a connection to its end.
-async fn serve_connection(
-    stream: TcpStream,
+async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
+    stream: S,
+    peer: IpAddr,
     permit: ConnectionPermit,
     limits: ConnectionLimits,
     service: Arc<Service>,
@@ -121,7 +147,7 @@ async fn serve_connection(
 ) {
     let (activity, spare) = (Arc::clone(&permit.activity), permit.is_spare());
     let stream = TokioIo::new(Socket::new(stream, Arc::clone(&activity)));
-    let answer = service_fn(|request| Arc::clone(&service).serve(Arc::clone(&activity), spare, request));
+    let answer = service_fn(|request| Arc::clone(&service).serve(Arc::clone(&activity), spare, peer, request));
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new()).header_read_timeout(limits.idle);
     http.keep_alive(!spare).max_header_size(HEAD).max_buf_size(BUFFER);

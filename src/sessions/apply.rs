@@ -7,16 +7,17 @@ use jiff::Timestamp;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::Stop;
+use crate::admission::{Reservation, Stop};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
-use crate::store::{Record, Reply, RequestKey, StoreError};
+use crate::store::{Measured, Record, Reply, RequestKey, StoreError};
 use stickslip_wire::session::Advance;
-use stickslip_wire::{MoveReply, PathReply, Plan, RelaxReply, Steps, limits};
+use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, Steps, limits};
 
 use super::cache::Guard;
 use super::loaded::LoadedSession;
+use super::observe::check_plausible;
 use super::relax::{find_protocol, without_step};
 use super::{ATTEMPTS, SessionError, Sessions, written};
 
@@ -70,14 +71,19 @@ impl Sessions {
                 }
                 return Err(SessionError::Stale { expected, found: sequence });
             }
-            let (mut live, Done { records, reply }) = match self.compute(&advance, &mut guard, &stop).await {
+            let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
-                Err(SessionError::Failure(_)) if !caught_up && self.catch_up(&mut guard).await? => {
+                Err(SessionError::Failure(_) | SessionError::Rejected(_))
+                    if !caught_up && self.catch_up(&mut guard).await? =>
+                {
                     caught_up = true;
                     continue;
                 }
                 Err(error) => return Err(error),
             };
+            if let Plan::Observations(_) = advance.plan {
+                reply.body = self.observed(&mut guard, &mut live, &records, &stop).await?;
+            }
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
@@ -119,7 +125,7 @@ impl Sessions {
             && guard.live.as_ref().is_some_and(|live| !live.shared);
         // A copy can be large, and many requests may be under way.
         let copied = guard.live.as_ref().filter(|_| !in_place).map_or(0, |live| live.contact.memory_bytes());
-        let _held = self.common.pool.reserve(copied).await?;
+        let _held = if copied > 0 { self.reserve_copy(guard, copied).await? } else { Reservation::default() };
         let live = if in_place { guard.live.take() } else { guard.live.clone() };
         let live = live.ok_or(SessionError::NotFound(guard.id()))?;
         let radii = advance.stress.as_ref().map_or(0, |stress| stress.length());
@@ -163,6 +169,8 @@ fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done
     let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
     let plan = plan.as_ref().unwrap_or(&advance.plan);
     let protocol = equal_peaks(plan, &live.contact)?;
+    let observations = if let Plan::Observations(observations) = plan { &observations[..] } else { &[] };
+    check_plausible(observations, live.contact.normal_force())?;
     let (before, error_before) = (live.contact.contact_radius(), live.contact.path_error());
     let (mut largest, mut error) = (before, 0.0f64);
     let begin = Instant::now();
@@ -170,7 +178,8 @@ fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done
         sequence += 1;
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
-        records.push(Record { sequence, step, tolerance, state: contact.state().into(), at: now });
+        let measured = observations.get(records.len()).map(|&Observation { force, at, .. }| Measured { force, at });
+        records.push(Record { sequence, step, tolerance, state: contact.state().into(), measured, at: now });
     });
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     live.replay_cost.add(records.len(), begin.elapsed());
@@ -194,6 +203,8 @@ fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done
             let state = live.contact.state().into();
             written(&MoveReply { id, sequence, state, stress, accuracy, warnings })?
         }
+        // Written once the past has been read, for the estimate that is in it.
+        Plan::Observations(_) => Vec::new(),
         _ => {
             let steps = shown(advance.steps);
             written(&PathReply { id, sequence, steps, stress, protocol, accuracy, warnings })?

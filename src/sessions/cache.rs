@@ -42,7 +42,7 @@ struct LockEntry {
     users: usize,
 }
 
-/// States that no request uses, with their bytes.
+/// States that no request uses, with their bytes; `bytes` are theirs and those of the states that requests have taken out.
 struct States {
     by_key: LruCache<Key, (Box<LoadedSession>, usize)>,
     bytes: usize,
@@ -52,8 +52,10 @@ struct States {
 pub(super) struct Guard {
     /// The state, if it is cached: that after a stored move, though perhaps not the last.
     pub(super) live: Option<Box<LoadedSession>>,
-    /// The memory of a state that did not come out of the cache.
+    /// The memory of a state that did not come out of the cache, and of a copy of it.
     pub(super) held: Reservation,
+    /// Bytes of the state as it came out of the cache, which are counted there.
+    taken: usize,
     // Declared, and so released, before the user: a request that comes in between finds the entry and waits for its
     // lock.
     _lock: OwnedMutexGuard<()>,
@@ -77,7 +79,8 @@ impl Cache {
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
         let (lock, user) = self.enter((tenant.clone(), id));
         let lock = lock.lock_owned().await;
-        Guard { live: self.take(&user.key), held: Reservation::default(), _lock: lock, user }
+        let (live, taken) = self.take(&user.key).unzip();
+        Guard { live, held: Reservation::default(), taken: taken.unwrap_or(0), _lock: lock, user }
     }
 
     /// Whether the state of a session is cached.
@@ -90,7 +93,7 @@ impl Cache {
         self.capacity
     }
 
-    /// Bytes of the cached states, and how many they are.
+    /// Bytes of the cached states, with those in use, and how many nobody uses.
     pub(super) fn held(&self) -> (usize, usize) {
         let states = self.states();
         (states.bytes, states.by_key.len())
@@ -103,22 +106,21 @@ impl Cache {
         (Arc::clone(&entry.lock), LockUser { cache: Arc::clone(self), key })
     }
 
-    fn take(&self, key: &Key) -> Option<Box<LoadedSession>> {
-        let mut states = self.states();
-        let (live, bytes) = states.by_key.remove(key)?;
-        states.bytes -= bytes;
+    /// Takes a state out. It still counts, until it is given back.
+    fn take(&self, key: &Key) -> Option<(Box<LoadedSession>, usize)> {
+        let found = self.states().by_key.remove(key)?;
         self.hits.inc();
-        Some(live)
+        Some(found)
     }
 
-    fn put(&self, live: Box<LoadedSession>) {
-        let bytes = live.bytes();
-        if bytes > self.capacity {
-            // It would evict all others and itself.
-            return;
-        }
-        let mut gone = Vec::new();
+    /// Puts a state in, in place of `taken` bytes that had been taken out.
+    fn put(&self, live: Option<Box<LoadedSession>>, taken: usize) {
+        let bytes = live.as_ref().map_or(0, |live| live.bytes());
         let mut states = self.states();
+        states.bytes -= taken;
+        // One that is too large would evict all others and itself.
+        let Some(live) = live.filter(|_| bytes <= self.capacity) else { return };
+        let mut gone = Vec::new();
         states.bytes += bytes;
         let key = (live.session.tenant.clone(), live.session.id);
         if let Some((_, bytes)) = states.by_key.insert(key, (live, bytes)) {
@@ -153,8 +155,8 @@ impl Guard {
 
 impl Drop for Guard {
     fn drop(&mut self) {
-        if let Some(live) = self.live.take() {
-            self.user.cache.put(live);
+        if self.live.is_some() || self.taken > 0 {
+            self.user.cache.put(self.live.take(), self.taken);
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
-use crate::admission::{Nanoseconds, Stop};
+use crate::admission::{Interrupted, Nanoseconds, Stop};
 use crate::simulation::Failure;
 use crate::simulation::cost::Work;
 use crate::store::Record;
@@ -17,11 +17,11 @@ use stickslip_wire::{Cycle, CyclePage, HistoryPage, State, limits};
 
 use super::cycle_scan::{Answer, ClosedCycle, CycleScan};
 use super::loaded::LoadedSession;
-use super::replay::PAGE;
+use super::replay::{PAGE, damaged};
 use super::{SessionError, Sessions};
 
 /// Looking at one recorded state.
-const STATE_COST: Nanoseconds = 50;
+pub(super) const STATE_COST: Nanoseconds = 50;
 /// Moves whose cost that of a steady cycle is like.
 const CYCLE_MOVES: usize = 4;
 /// JSON pointer to the number of cycles.
@@ -35,9 +35,9 @@ const MARKED: &str = "/cycles";
 pub(super) struct CycleLog {
     scan: CycleScan,
     /// The last state that has been looked at.
-    sequence: u64,
+    pub(super) sequence: u64,
     /// As many as a reply can have.
-    newest: VecDeque<ClosedCycle>,
+    pub(super) newest: VecDeque<ClosedCycle>,
     /// The move that closed the last cycle that is no longer among them.
     dropped: u64,
 }
@@ -50,7 +50,7 @@ impl CycleLog {
     }
 
     /// Looks at the next state; returns the outermost of the cycles that it closes.
-    fn push(&mut self, sequence: u64, state: &State) -> Option<ClosedCycle> {
+    pub(super) fn push(&mut self, sequence: u64, state: &State) -> Option<ClosedCycle> {
         self.sequence = sequence;
         let (newest, dropped) = (&mut self.newest, &mut self.dropped);
         let mut outermost = None;
@@ -76,10 +76,10 @@ impl CycleLog {
         size_of::<CycleLog>() + self.scan.heap_bytes() + self.newest.capacity() * size_of::<ClosedCycle>()
     }
 
-    /// Bytes that it and a page of records take while they are looked at.
-    fn bytes_of_page(&self) -> usize {
+    /// Bytes that it and so many records take while they are looked at.
+    pub(super) fn bytes_with(&self, records: usize) -> usize {
         let newest = 2 * limits::CYCLES.end() * size_of::<ClosedCycle>();
-        self.scan.heap_bytes_after(PAGE) + newest + PAGE * size_of::<Record>()
+        self.scan.heap_bytes_after(records) + newest + records * size_of::<Record>()
     }
 }
 
@@ -132,7 +132,7 @@ impl Sessions {
             Some(known) if known.sequence >= after => known,
             known => self.look_on(id, after, known, &virgin, (&stop, MARKED)).await?,
         };
-        let _held = self.common.pool.reserve(log.bytes_of_page()).await?;
+        let _held = self.common.pool.reserve(log.bytes_with(PAGE)).await?;
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
         let look = move || {
@@ -160,21 +160,40 @@ impl Sessions {
         virgin: &Contact,
         (stop, place): (&Stop, &str),
     ) -> Result<Arc<CycleLog>, SessionError> {
-        let bytes = known.as_ref().map_or_else(|| CycleLog::default().bytes_of_page(), |known| known.bytes_of_page());
+        let (log, seen) = self.read_states(id, sequence, known, virgin, stop).await?;
+        if let Err(interrupted) = seen {
+            self.keep(id, &log).await?;
+            return Err(Failure::interrupted(interrupted, place).into());
+        }
+        Ok(log)
+    }
+
+    /// Looks at the states up to the move `sequence` that are not in `known`, as far as the time lasts.
+    pub(super) async fn read_states(
+        &self,
+        id: Uuid,
+        sequence: u64,
+        known: Option<Arc<CycleLog>>,
+        virgin: &Contact,
+        stop: &Stop,
+    ) -> Result<(Arc<CycleLog>, Result<(), Interrupted>), SessionError> {
+        let known = match known {
+            Some(known) if known.sequence == sequence => return Ok((known, Ok(()))),
+            known => known,
+        };
+        let bytes = known.as_ref().map_or_else(|| CycleLog::default().bytes_with(PAGE), |known| known.bytes_with(PAGE));
         let mut held = self.common.pool.reserve(bytes).await?;
         let mut log = known.map_or_else(|| CycleLog::new(&virgin.state().into()), Arc::unwrap_or_clone);
         while log.sequence < sequence {
             if let Err(interrupted) = stop.check() {
-                self.keep(id, &Arc::new(log)).await?;
-                return Err(Failure::interrupted(interrupted, place).into());
+                return Ok((Arc::new(log), Err(interrupted)));
             }
-            self.common.pool.resize(&mut held, log.bytes_of_page()).await?;
+            self.common.pool.resize(&mut held, log.bytes_with(PAGE)).await?;
             let most = usize::try_from(sequence - log.sequence).unwrap_or(PAGE).min(PAGE);
-            let next = log.sequence + 1;
             let records = self.common.store.history(id, log.sequence, most).await;
             let records = records.map_err(|error| self.store_error(id, error))?;
-            if records.first().is_none_or(|record| record.sequence != next) {
-                return Err(SessionError::Broken(format!("move {next} of contact {id} is missing")));
+            if records.is_empty() {
+                return Err(damaged(id, &format_args!("move {} is missing", log.sequence + 1)));
             }
             let look = move || {
                 for record in records {
@@ -185,7 +204,7 @@ impl Sessions {
             log = self.common.pool.run(STATE_COST * most as u64, look).await?;
         }
         log.scan.shrink();
-        Ok(Arc::new(log))
+        Ok((Arc::new(log), Ok(())))
     }
 
     /// Leaves what has been found with the session if that has come as far.
@@ -205,7 +224,7 @@ impl LoadedSession {
         logs.max_by_key(|log| log.sequence).cloned()
     }
 
-    fn keep_log(&mut self, log: &Arc<CycleLog>) {
+    pub(super) fn keep_log(&mut self, log: &Arc<CycleLog>) {
         let newest = self.cycles.as_ref().map(|kept| kept.sequence);
         match newest.cmp(&Some(log.sequence)) {
             Ordering::Less => self.cycles = Some(Arc::clone(log)),

@@ -33,6 +33,12 @@ pub enum SessionError {
         /// The present sequence.
         found: u64,
     },
+    /// A fork is to begin after a move that has not been made.
+    #[error("the contact has made {found} moves: give 0 to {found}")]
+    NoSuchMove {
+        /// The sequence of the session.
+        found: u64,
+    },
     /// Events are asked for from a move on that has not been made.
     #[error("the contact is at sequence {found}: there is no event {after} yet")]
     Ahead {
@@ -56,7 +62,7 @@ pub enum SessionError {
     /// The storage refused or failed.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// Stored data cannot be replayed, or a reply cannot be written: a fault of this program.
+    /// A reply cannot be written, or the like: a fault of this program.
     #[error("{0}")]
     Broken(String),
 }

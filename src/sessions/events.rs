@@ -10,7 +10,8 @@ use std::time::Duration;
 use futures::Stream;
 use uuid::Uuid;
 
-use crate::store::{Listener, StreamEvent};
+use crate::admission::{Quota, Share};
+use crate::store::{Listener, StoreError, StreamEvent};
 use stickslip_wire::{EndReason, HistoryPage, StateEvent};
 
 use super::{SessionError, Sessions};
@@ -30,6 +31,7 @@ struct Follower {
     seen: u64,
     ready: VecDeque<StateEvent>,
     listener: Listener,
+    _share: Share,
     ended: bool,
 }
 
@@ -45,6 +47,7 @@ impl Sessions {
         id: Uuid,
         after: Option<u64>,
     ) -> Result<impl Stream<Item = StreamEvent<StateEvent>> + Send + use<>, SessionError> {
+        let share = self.common.pool.share_of(Quota::Streams)?;
         // Every later change wakes the listener, so that none can fall between the first read and the first wait.
         let listener = self.common.listeners.listen(self.common.store.changes(), id);
         let listener = listener.ok_or(SessionError::TooManyStreams)?;
@@ -58,12 +61,12 @@ impl Sessions {
             None if found > 0 => found - 1,
             None => {
                 let (state, at) = (session.state, session.created_at);
-                ready.push_back(StateEvent { id, sequence: 0, step: None, state, cycle: None, at });
+                ready.push_back(StateEvent { id, sequence: 0, step: None, state, cycle: None, observation: None, at });
                 0
             }
         };
         let sessions = self.clone();
-        let follower = Follower { sessions, id, seen, ready, listener, ended: false };
+        let follower = Follower { sessions, id, seen, ready, listener, _share: share, ended: false };
         Ok(futures::stream::unfold(follower, Follower::next))
     }
 
@@ -103,11 +106,16 @@ impl Follower {
                         step: Some(item.step),
                         state: item.state,
                         cycle: item.cycle,
+                        observation: item.observation,
                         at: item.at,
                     }));
                 }
                 Err(SessionError::NotFound(_)) => break StreamEvent::End(EndReason::Deleted),
                 Err(SessionError::Expired(_)) => break StreamEvent::End(EndReason::Expired),
+                Err(SessionError::Store(StoreError::Damaged { contact, what })) => {
+                    tracing::error!(%contact, what, "events end: what is stored of the contact is damaged");
+                    break StreamEvent::End(EndReason::Damaged);
+                }
                 Err(_) => self.listener.pause(RETRY_DELAY).await,
             }
         };

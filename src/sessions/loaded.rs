@@ -6,9 +6,10 @@ use crate::simulation::{self, cost::bytes_of_shape, present_warnings};
 use crate::store::{Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
-use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, Warning};
+use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, SessionReply, Warning};
 
 use super::cycles::CycleLog;
+use super::friction::Estimated;
 use super::snapshot::ReplayCost;
 use super::{SessionError, written};
 
@@ -29,6 +30,8 @@ pub(super) struct LoadedSession {
     pub(super) cycles: Option<Arc<CycleLog>>,
     /// The same up to an earlier move: up to the page of the history that was read last.
     pub(super) past_cycles: Option<Arc<CycleLog>>,
+    /// The friction by its observations, once it has been estimated.
+    pub(super) estimated: Option<Estimated>,
 }
 
 /// Values that follow from the definition and never change.
@@ -45,8 +48,8 @@ impl LoadedSession {
         let derived = Derived { figures: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
         let replay_cost = ReplayCost::default();
-        let (cycles, past_cycles) = (None, None);
-        Ok(LoadedSession { session, derived, contact, replay_cost, shared: false, cycles, past_cycles })
+        let (cycles, past_cycles, estimated) = (None, None, None);
+        Ok(LoadedSession { session, derived, contact, replay_cost, shared: false, cycles, past_cycles, estimated })
     }
 
     /// The same of a session as it is stored, or why its definition is invalid.
@@ -68,6 +71,20 @@ impl LoadedSession {
             + warnings
             + cycles
             + bytes_of_shape(&self.session.definition.profile)
+    }
+
+    /// The reply that presents a session.
+    pub(super) fn reply(&self) -> SessionReply {
+        let Session { id, ref label, sequence, created_at, updated_at, .. } = self.session;
+        SessionReply {
+            id,
+            label: label.clone(),
+            sequence,
+            contact: self.derived.figures.clone(),
+            state: self.contact.state().into(),
+            created_at,
+            updated_at,
+        }
     }
 
     /// The reply that presents a session just made.

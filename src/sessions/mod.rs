@@ -21,25 +21,30 @@ mod cycles;
 mod error;
 mod events;
 mod expiry;
+mod friction;
 mod loaded;
 mod metrics;
+mod observe;
 mod read;
 mod relax;
 mod replay;
 mod snapshot;
 mod trace;
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use jiff::Timestamp;
 use tokio::sync::Semaphore;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::Pool;
+use crate::admission::{Pool, PoolError, Quota};
 use crate::otlp;
 use crate::store::{IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip_wire::session::Creation;
+use stickslip_wire::{ForkRequest, SessionReply};
 
 pub use cache::CAPACITY;
 use cache::{Cache, Guard};
@@ -51,6 +56,10 @@ pub use metrics::{Readings, SessionMetrics};
 
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
+
+/// How long a count of contacts is taken to hold, and how long one that fills its quota is.
+const RECOUNT: Duration = Duration::from_secs(60);
+const RECOUNT_FULL: Duration = Duration::from_secs(1);
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
@@ -68,6 +77,9 @@ struct Common {
     snapshots: Arc<Semaphore>,
     listeners: Listeners,
     metrics: SessionMetrics,
+    // How many contacts each tenant has, and since when that is known: counted now and then, because others on the same store
+    // create and delete too. A std mutex: held for a lookup, never across an await.
+    counted: Mutex<HashMap<Tenant, (usize, Instant)>>,
 }
 
 impl Sessions {
@@ -83,6 +95,7 @@ impl Sessions {
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             listeners: Listeners::new(STREAMS),
             metrics,
+            counted: Mutex::default(),
         };
         Sessions { tenant: Tenant::default(), common: Arc::new(common) }
     }
@@ -112,6 +125,35 @@ impl Sessions {
         IdempotentRequest::new(&*self.common.store, &self.tenant, key)
     }
 
+    /// Checks that the tenant may have another session.
+    async fn check_room(&self) -> Result<(), SessionError> {
+        let quotas = self.common.pool.quotas();
+        let known = self.counted().get(&self.tenant).copied().filter(|(count, since)| {
+            let full = *count >= quotas.limits().contacts;
+            since.elapsed() < if full { RECOUNT_FULL } else { RECOUNT }
+        });
+        let count = match known {
+            Some((count, _)) => count,
+            None => {
+                let count = usize::try_from(self.common.store.count(&self.tenant).await?).unwrap_or(usize::MAX);
+                self.counted().insert(self.tenant.clone(), (count, Instant::now()));
+                count
+            }
+        };
+        Ok(quotas.check(Quota::Contacts, count).map_err(PoolError::Quota)?)
+    }
+
+    /// Counts a session that was made.
+    fn count_new(&self) {
+        if let Some((count, _)) = self.counted().get_mut(&self.tenant) {
+            *count += 1;
+        }
+    }
+
+    fn counted(&self) -> MutexGuard<'_, HashMap<Tenant, (usize, Instant)>> {
+        self.common.counted.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
         Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
@@ -126,6 +168,7 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
+        self.check_room().await?;
         let now = Timestamp::now();
         let session = Session {
             id: Uuid::now_v7(),
@@ -144,47 +187,75 @@ impl Sessions {
         if let Err(error) = stored.instrument(otlp::part!("store")).await {
             return Ok(request.after_refusal(error).await?);
         }
+        self.count_new();
         guard.live = Some(Box::new(live));
         Ok(reply)
     }
 
-    /// Makes a session with the same moves.
+    /// Makes a session with the same moves, or with the first of them.
     ///
     /// # Errors
     /// [`SessionError`]; nothing has been made then.
-    pub async fn fork(&self, id: Uuid, label: Option<String>, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+    pub async fn fork(&self, id: Uuid, wanted: ForkRequest, key: Option<RequestKey>) -> Result<Reply, SessionError> {
+        let request = self.request(key);
+        if let Some(reply) = request.earlier_reply().await? {
+            return Ok(reply);
+        }
+        self.check_room().await?;
+        let mut guard = self.lock(id).await?;
+        let (mut copy, _held) = self.after(&mut guard, wanted.sequence).await?;
+        let now = Timestamp::now();
+        copy.session = Session {
+            id: Uuid::now_v7(),
+            label: wanted.label.or(copy.session.label),
+            created_at: now,
+            updated_at: now,
+            ..copy.session
+        };
+        let reply = copy.created_reply()?;
+        let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
+        // The original may have moved on meanwhile in another process: its past stays what it was.
+        let stored = self.common.store.fork(id, copy.session.clone(), request.receipt(&reply));
+        match stored.instrument(otlp::part!("store")).await {
+            Ok(()) => {
+                self.count_new();
+                new.live = Some(copy);
+                Ok(reply)
+            }
+            Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => Err(self.store_failure(&mut guard, error)),
+            Err(StoreError::Stale { found }) => Err(SessionError::Overtaken { found }),
+            Err(error) => Ok(request.after_refusal(error).await?),
+        }
+    }
+
+    /// Gives a session another label, or none, if it is at the sequence that the client expects, where it stays.
+    ///
+    /// # Errors
+    /// [`SessionError`]; its label stays then.
+    pub async fn rename(
+        &self,
+        id: Uuid,
+        label: Option<String>,
+        expected: Option<u64>,
+        key: Option<RequestKey>,
+    ) -> Result<Reply, SessionError> {
         let request = self.request(key);
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
         let mut guard = self.lock(id).await?;
-        let mut found = 0;
-        for _ in 0..ATTEMPTS {
-            let mut copy = self.current(&mut guard).await?.clone();
-            let now = Timestamp::now();
-            copy.session = Session {
-                id: Uuid::now_v7(),
-                label: label.clone().or(copy.session.label),
-                created_at: now,
-                updated_at: now,
-                ..copy.session
-            };
-            let reply = copy.created_reply()?;
-            let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
-            let stored = self.common.store.fork(id, copy.session.clone(), request.receipt(&reply));
-            match stored.instrument(otlp::part!("store")).await {
-                Ok(()) => {
-                    new.live = Some(Box::new(copy));
-                    return Ok(reply);
-                }
-                Err(StoreError::Stale { found: moved }) => found = moved,
-                Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
-                    return Err(self.store_failure(&mut guard, error));
-                }
-                Err(error) => return Ok(request.after_refusal(error).await?),
-            }
+        let now = self.current(&mut guard).await?.reply();
+        if let Some(expected) = expected.filter(|expected| *expected != now.sequence) {
+            return Err(SessionError::Stale { expected, found: now.sequence });
         }
-        Err(SessionError::Overtaken { found })
+        let renamed = SessionReply { label: label.clone(), ..now };
+        let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
+        let stored = self.common.store.rename(id, label, request.receipt(&reply));
+        match stored.instrument(otlp::part!("store")).await {
+            Ok(()) => Ok(reply),
+            Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => Err(self.store_failure(&mut guard, error)),
+            Err(error) => Ok(request.after_refusal(error).await?),
+        }
     }
 
     /// Deletes a session, if it is at the sequence that the client expects.

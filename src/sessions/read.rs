@@ -13,10 +13,11 @@ use stickslip_mechanics::Contact;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{
-    ContactDefinition, CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply,
-    SubsurfaceReply, SubsurfaceRequest,
+    CycleReply, HistoryItem, HistoryPage, Sampling, SessionPage, SessionReply, StressReply, SubsurfaceReply,
+    SubsurfaceRequest,
 };
 
+use super::cache::Guard;
 use super::loaded::table_points;
 use super::{SessionError, Sessions, written};
 
@@ -27,16 +28,7 @@ impl Sessions {
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
         let mut guard = self.lock(id).await?;
-        let live = self.current(&mut guard).await?;
-        Ok(SessionReply {
-            id,
-            label: live.session.label.clone(),
-            sequence: live.session.sequence,
-            contact: live.derived.figures.clone(),
-            state: live.contact.state().into(),
-            created_at: live.session.created_at,
-            updated_at: live.session.updated_at,
-        })
+        Ok(self.current(&mut guard).await?.reply())
     }
 
     /// The definition of a session as it was sent, as JSON, and the memory that it takes.
@@ -46,7 +38,11 @@ impl Sessions {
     pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
         let definition = {
             let mut guard = self.lock(id).await?;
-            Arc::clone(&self.current(&mut guard).await?.session.definition)
+            // It does not depend on the state, which is not loaded for it.
+            match guard.live {
+                Some(_) => Arc::clone(&self.current(&mut guard).await?.session.definition),
+                None => self.find_own(id).await?.definition,
+            }
         };
         let points = table_points(&definition.profile);
         let held = self.common.pool.reserve(points * cost::WRITTEN_POINT_BYTES).await?;
@@ -68,10 +64,12 @@ impl Sessions {
         write: impl FnOnce(&StressReply, &Contact, u64) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let (contact, sequence, held) = self.copy(id, cost::bytes_of_stress(sampling.length()) + more).await?;
+        let held = self.common.pool.reserve(cost::bytes_of_stress(sampling.length()) + more).await?;
+        let (contact, sequence, state) = self.copy(id).await?;
         let looking = Work { depth: contact.memory_depth(), radii: sampling.length(), residual, ..Work::default() };
         let cost = looking.cost(contact.profile()).saturating_add(longer);
         let work = move || {
+            let _state = state;
             let solving = otlp::part!("solve").entered();
             let stress = stresses(&contact, &sampling, &stop)?;
             let reply = StressReply {
@@ -100,9 +98,11 @@ impl Sessions {
         write: impl FnOnce(&CycleReply, &Contact, &CycleTask) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let (contact, sequence, held) = self.copy(id, cost::bytes_of_cycle(&task) + more).await?;
+        let held = self.common.pool.reserve(cost::bytes_of_cycle(&task) + more).await?;
+        let (contact, sequence, state) = self.copy(id).await?;
         let cost = cost::of_cycle(contact.profile(), &task).saturating_add(longer);
         let work = move || {
+            let _state = state;
             let contact = contact.without_history();
             let solve = || simulation::cycle(&contact, &task, Timer::start(), &stop);
             let reply = otlp::part!("solve").in_scope(solve)?;
@@ -124,14 +124,15 @@ impl Sessions {
         write: impl FnOnce(&SubsurfaceReply, &SubsurfaceTask) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let prepare = |definition: &ContactDefinition| {
-            let task = request.of_contact(definition)?;
-            let bytes = cost::bytes_of_subsurface(&task) + more(task.places.count());
-            Ok((task, bytes))
+        let task = {
+            let mut guard = self.lock(id).await?;
+            request.of_contact(&self.current(&mut guard).await?.session.definition)?
         };
-        let (contact, sequence, held, task) = self.copy_for(id, prepare).await?;
+        let held = self.common.pool.reserve(cost::bytes_of_subsurface(&task) + more(task.places.count())).await?;
+        let (contact, sequence, state) = self.copy(id).await?;
         let cost = cost::of_subsurface(contact.profile(), &task, contact.memory_depth()).saturating_add(longer);
         let work = move || {
+            let _state = state;
             let solve = || simulation::subsurface_reply(&contact, &task, &stop);
             let reply = otlp::part!("solve").in_scope(solve)?;
             Ok::<_, SessionError>(write(&reply, &task))
@@ -139,33 +140,39 @@ impl Sessions {
         Ok((sequence, self.common.pool.run(cost, work).await??, held))
     }
 
-    /// A copy of the contact with its sequence, and memory for it and for so many bytes more. The lock is held for the copy
-    /// alone, so that the session can move on meanwhile.
-    async fn copy(&self, id: Uuid, more: usize) -> Result<(Contact, u64, Reservation), SessionError> {
-        let (contact, sequence, held, ()) = self.copy_for(id, |_| Ok(((), more))).await?;
-        Ok((contact, sequence, held))
-    }
-
-    /// The same for a task that follows from the definition, with the bytes that it takes.
-    async fn copy_for<T>(
-        &self,
-        id: Uuid,
-        prepare: impl FnOnce(&ContactDefinition) -> Result<(T, usize), SessionError>,
-    ) -> Result<(Contact, u64, Reservation, T), SessionError> {
+    /// A copy of the contact with its sequence, and memory for it. The lock is held for the copy alone, so that the session can
+    /// move on meanwhile.
+    async fn copy(&self, id: Uuid) -> Result<(Contact, u64, Reservation), SessionError> {
         let mut guard = self.lock(id).await?;
         let live = self.current(&mut guard).await?;
-        let (task, more) = prepare(&live.session.definition)?;
-        let held = self.common.pool.reserve(live.contact.memory_bytes() + more).await?;
-        Ok((live.contact.clone(), live.session.sequence, held, task))
+        let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
+        let mut held = self.reserve_copy(&mut guard, contact).await?;
+        held.shrink(contact);
+        let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;
+        Ok((live.contact.clone(), sequence, held))
     }
 
-    /// A page of sessions, oldest first.
+    /// Memory for a copy of the state in a guard: that of a state which was brought from the store has it already, so that
+    /// nobody waits for memory while he holds some.
+    pub(super) async fn reserve_copy(&self, guard: &mut Guard, bytes: usize) -> Result<Reservation, SessionError> {
+        if guard.held.is_counted() {
+            return Ok(std::mem::take(&mut guard.held));
+        }
+        Ok(self.common.pool.reserve_states(bytes).await?)
+    }
+
+    /// A page of sessions, oldest first; of those alone whose label contains `label`.
     ///
     /// # Errors
     /// A failure of the store.
-    pub async fn list(&self, after: Option<Uuid>, limit: usize) -> Result<SessionPage, SessionError> {
+    pub async fn list(
+        &self,
+        label: Option<String>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<SessionPage, SessionError> {
         // One more than requested shows whether there is a next page.
-        let mut found = self.common.store.list(Some(self.tenant.clone()), after, limit + 1).await?;
+        let mut found = self.common.store.list(Some(self.tenant.clone()), label, after, limit + 1).await?;
         let more = found.len() > limit;
         found.truncate(limit);
         let next = found.last().filter(|_| more).map(|session| session.id);
@@ -180,7 +187,8 @@ impl Sessions {
         if !self.common.cache.holds(&self.tenant, id) {
             return Ok(self.find_own(id).await?.sequence);
         }
-        self.common.store.sequence(id).await.map_err(|error| self.store_error(id, error))
+        let heading = self.common.store.heading(id).await;
+        heading.map(|heading| heading.sequence).map_err(|error| self.store_error(id, error))
     }
 
     /// A page of a session's moves, oldest first.
@@ -206,6 +214,7 @@ impl Sessions {
             step: record.step,
             state: record.state,
             cycle: None,
+            observation: record.observation(),
             at: record.at,
         });
         Ok(HistoryPage { items: items.collect(), next })

@@ -13,6 +13,9 @@ use super::{SessionError, Sessions, written};
 
 /// The protocol that begins from the present state of a session.
 pub(super) fn find_protocol(live: &LoadedSession, task: &ProtocolTask, stop: &Stop) -> Result<ProtocolReply, Failure> {
+    if live.contact.contact_radius() <= 0.0 {
+        return Err(Failure::Lifted);
+    }
     simulation::protocol(&Subject { contact: &live.contact, first: None, setup: None }, task, stop)
 }
 
@@ -22,8 +25,13 @@ pub(super) fn without_step(failure: Failure) -> Failure {
         Failure::Refused { error, .. } => Failure::Refused { pointer: String::new(), error },
         Failure::MemoryFull { depth, .. } => Failure::MemoryFull { pointer: String::new(), depth },
         Failure::TooLong { allowed, .. } => Failure::TooLong { pointer: "/reversals".to_owned(), allowed },
-        // A contact has no cycle to be rated, and no scan.
-        Failure::Stopped | Failure::CycleTooLarge { .. } | Failure::Scan { .. } => failure,
+        // A contact has no cycle to be rated, no scan and no measured loop.
+        Failure::Stopped
+        | Failure::Search { .. }
+        | Failure::Lifted
+        | Failure::CycleTooLarge { .. }
+        | Failure::Scan { .. }
+        | Failure::Loops { .. } => failure,
     }
 }
 
@@ -83,7 +91,8 @@ impl Sessions {
         work: impl FnOnce(&mut LoadedSession, &Stop) -> Result<Vec<u8>, SessionError> + Send + 'static,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
-        let (mut live, held) = {
+        let held = self.common.pool.reserve(cost::bytes_of_protocol(&task)).await?;
+        let (mut live, state) = {
             let mut guard = self.lock(id).await?;
             let live = self.current(&mut guard).await?;
             let found = live.session.sequence;
@@ -93,12 +102,17 @@ impl Sessions {
             if said.is_some_and(|said| said != *live.session.definition) {
                 return Err(SessionError::OtherDefinition(id));
             }
-            let held = self.common.pool.reserve(live.contact.memory_bytes() + cost::bytes_of_protocol(&task)).await?;
-            (live.clone(), held)
+            let bytes = live.contact.memory_bytes();
+            let state = self.reserve_copy(&mut guard, bytes).await?;
+            (guard.live.clone().ok_or(SessionError::NotFound(id))?, state)
         };
         let sequence = live.session.sequence;
         let cost = cost::of_protocol(live.contact.profile(), &task, live.contact.memory_depth());
-        let body = self.common.pool.run(cost, move || work(&mut live, &stop)).await??;
+        let work = move || {
+            let _state = state;
+            work(&mut live, &stop)
+        };
+        let body = self.common.pool.run(cost, work).await??;
         Ok((sequence, body, held))
     }
 }

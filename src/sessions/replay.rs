@@ -4,8 +4,9 @@ use std::time::Instant;
 
 use uuid::Uuid;
 
-use crate::simulation::cost::Work;
-use crate::store::{Record, Session, StoreError};
+use crate::admission::Reservation;
+use crate::simulation::cost::{EXPANSION, Work};
+use crate::store::{Extent, Record, Session, StoreError};
 use stickslip_wire::limits;
 
 use super::cache::Guard;
@@ -18,6 +19,10 @@ pub(super) const PAGE: usize = 10_000;
 const PIECES: usize = 4;
 /// Bytes of one piece.
 pub(super) const PIECE_BYTES: usize = 96;
+/// A state that grows has room for up to twice its pieces; a copy has none to spare.
+const COPIES: usize = 3;
+/// Bytes of a definition that holds no table.
+const SHORT_DEFINITION: u64 = 1_024;
 
 impl Sessions {
     /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
@@ -33,11 +38,14 @@ impl Sessions {
     /// The session as it is stored: with what other processes have done to it up to now.
     pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
-            let stored =
-                self.common.store.sequence(guard.id()).await.map_err(|error| self.store_failure(guard, error))?;
-            if stored > cached {
+            let stored = self.common.store.heading(guard.id()).await;
+            let stored = stored.map_err(|error| self.store_failure(guard, error))?;
+            if let Some(live) = &mut guard.live {
+                live.session.label = stored.label;
+            }
+            if stored.sequence > cached {
                 self.catch_up(guard).await?;
-            } else if stored < cached {
+            } else if stored.sequence < cached {
                 // The store has been restored from a backup.
                 guard.live = None;
             }
@@ -54,13 +62,8 @@ impl Sessions {
                 Ok(page) => page,
                 Err(error) => return Err(self.store_failure(guard, error)),
             };
-            let (first, last_page) = (page.first().map(|record| record.sequence), page.len() < PAGE);
-            if let Some(first) = first
-                && first != sequence + 1
-            {
-                return Err(broken(guard, &format_args!("move {} is missing", sequence + 1)));
-            }
-            if first.is_some()
+            let last_page = page.len() < PAGE;
+            if !page.is_empty()
                 && let Some(live) = guard.live.take()
             {
                 guard.live = Some(self.follow(live, page).await?);
@@ -80,13 +83,21 @@ impl Sessions {
     /// Loads a session that is not cached from the store.
     async fn load(&self, guard: &mut Guard) -> Result<(), SessionError> {
         let (id, begin) = (guard.id(), Instant::now());
-        // The snapshot first: taken later, it might be of a move that the session found has not made yet.
+        let extent = self.own_extent(id).await?;
+        guard.held = self.common.pool.reserve_states(bytes_to_load(&extent)).await?;
+        let mut session = self.find_own(id).await?;
         let snapshot = self.common.store.snapshot(id).await;
-        let session = self.find_own(id).await?;
+        // The session may have moved on in between.
+        if matches!(&snapshot, Ok(Some(snapshot)) if snapshot.sequence > session.sequence) {
+            session = self.find_own(id).await?;
+        }
         let (sequence, updated_at) = (session.sequence, session.updated_at);
-        let pieces = usize::try_from(sequence).unwrap_or(usize::MAX).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
-        guard.held = self.common.pool.reserve(pieces * PIECE_BYTES).await?;
-        let mut live = Box::new(LoadedSession::of_stored(session).map_err(|error| broken(guard, &error))?);
+        if let Ok(Some(ahead)) = &snapshot
+            && ahead.sequence > sequence
+        {
+            return Err(damaged(id, &format_args!("move {} is missing", sequence + 1)));
+        }
+        let mut live = Box::new(LoadedSession::of_stored(session).map_err(|error| damaged(id, &error))?);
         (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, sequence).await?;
         guard.live = Some(live);
         self.catch_up(guard).await?;
@@ -94,15 +105,54 @@ impl Sessions {
             let reached = live.session.sequence;
             if reached < sequence {
                 guard.live = None;
-                return Err(broken(guard, &format_args!("moves are missing after {reached}")));
+                return Err(damaged(id, &format_args!("moves are missing after {reached}")));
             }
             if reached == sequence {
                 live.session.updated_at = updated_at;
             }
             live.shared = false;
+            // The state, and a copy of it.
+            guard.held.shrink(2 * live.bytes());
         }
         self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
+    }
+
+    /// A copy of the session after so many of its moves, or after all of them, and the memory of a state that is made for it.
+    ///
+    /// # Errors
+    /// [`SessionError::NoSuchMove`] if it has made fewer, and as [`Sessions::current`].
+    pub(super) async fn after(
+        &self,
+        guard: &mut Guard,
+        sequence: Option<u64>,
+    ) -> Result<(Box<LoadedSession>, Reservation), SessionError> {
+        let id = guard.id();
+        let now = self.current(guard).await?;
+        let found = now.session.sequence;
+        let wanted = sequence.unwrap_or(found);
+        if wanted > found {
+            return Err(SessionError::NoSuchMove { found });
+        }
+        let (bytes, session) = (now.contact.memory_bytes(), now.session.clone());
+        let held = self.reserve_copy(guard, bytes).await?;
+        if let (Some(now), true) = (&guard.live, wanted == found) {
+            return Ok((now.clone(), held));
+        }
+        let snapshot = self.common.store.snapshot(id).await;
+        let mut live = Box::new(LoadedSession::of_stored(session).map_err(|error| damaged(id, &error))?);
+        (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, wanted).await?;
+        while live.session.sequence < wanted {
+            let reached = live.session.sequence;
+            let limit = usize::try_from(wanted - reached).map_or(PAGE, |left| left.min(PAGE));
+            let page = self.common.store.history(id, reached, limit).await;
+            let page = page.map_err(|error| self.store_failure(guard, error))?;
+            if page.is_empty() {
+                return Err(damaged(id, &format_args!("move {} is missing", reached + 1)));
+            }
+            live = self.follow(live, page).await?;
+        }
+        Ok((live, held))
     }
 
     /// Applies stored moves.
@@ -112,6 +162,7 @@ impl Sessions {
         page: Vec<Record>,
     ) -> Result<Box<LoadedSession>, SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
+        let id = live.session.id;
         let cost = Work { moves: page.len(), curved, ..Work::default() }.cost(live.contact.profile());
         let replayed = self.common.pool.run(cost, move || {
             let begin = Instant::now();
@@ -124,8 +175,17 @@ impl Sessions {
             Ok(live)
         });
         replayed.await?.map_err(|error: stickslip_mechanics::Error| {
-            SessionError::Broken(format!("a stored move cannot be made again: {error}"))
+            damaged(id, &format_args!("a stored move cannot be made again: {error}"))
         })
+    }
+
+    /// How much of a session there is to read, if it belongs to the tenant.
+    async fn own_extent(&self, id: Uuid) -> Result<Extent, SessionError> {
+        match self.common.store.extent(id).await {
+            Ok(extent) if extent.tenant == self.tenant => Ok(extent),
+            Ok(_) => Err(SessionError::NotFound(id)),
+            Err(error) => Err(self.store_error(id, error)),
+        }
     }
 
     /// The session as it is stored, if it belongs to the tenant.
@@ -155,6 +215,19 @@ impl Sessions {
     }
 }
 
-fn broken(guard: &Guard, error: &dyn std::fmt::Display) -> SessionError {
-    SessionError::Broken(format!("contact {} cannot be replayed: {error}", guard.id()))
+/// Bytes that a session takes while it is brought from the store, with a copy of its state; rather too many than too few.
+fn bytes_to_load(extent: &Extent) -> usize {
+    let number = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
+    let pieces = number(extent.sequence).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
+    let page = number(extent.sequence).min(PAGE) * size_of::<Record>();
+    // A definition of more than a few lines is a table, of which each point becomes a series.
+    let definition = if extent.definition > SHORT_DEFINITION { number(extent.definition) } else { 0 };
+    (COPIES * PIECE_BYTES * pieces)
+        .saturating_add(number(extent.snapshot) + page)
+        .saturating_add(definition.saturating_mul(EXPANSION))
+}
+
+/// A session that cannot be replayed from what is stored.
+pub(super) fn damaged(contact: Uuid, why: &dyn std::fmt::Display) -> SessionError {
+    StoreError::Damaged { contact, what: why.to_string() }.into()
 }

@@ -9,7 +9,7 @@ use crate::store::Record;
 use stickslip_mechanics::Contact;
 use stickslip_wire::{HistoryItem, LoopPage, limits};
 
-use super::replay::{PAGE, PIECE_BYTES};
+use super::replay::{PAGE, PIECE_BYTES, damaged};
 use super::{SessionError, Sessions};
 
 /// Bytes of a point in the longest of the formats, with the room that growing texts and columns take.
@@ -33,25 +33,26 @@ impl Sessions {
     ) -> Result<LoopPage, SessionError> {
         let mut page = LoopPage::after(after);
         let (Some(last), true) = (past.last().map(|item| item.sequence), points > 1) else {
-            past.iter().for_each(|item| page.push_end(item.sequence, &item.state));
+            for item in past {
+                page.push_end(item.sequence, &item.state, item.observation.map(|observation| observation.force));
+            }
             return Ok(page);
         };
         let (stop, _guard) = self.common.pool.deadline();
         // A move is assumed to leave one piece of slip history.
         let pieces = usize::try_from(after).unwrap_or(usize::MAX).min(limits::MEMORY_DEPTH);
         let _held = self.common.pool.reserve(2 * PIECE_BYTES * pieces).await?;
-        let snapshot = self.common.store.snapshot(id).await;
         let initial = {
             let mut guard = self.lock(id).await?;
             self.current(&mut guard).await?.contact.virgin()
         };
+        let snapshot = self.common.store.snapshot(id).await;
         let (mut contact, mut at) = self.load_snapshot(snapshot, initial, after).await?;
         while at < last {
             let most = usize::try_from(last - at).unwrap_or(PAGE).min(PAGE);
             let records = self.common.store.history(id, at, most).await.map_err(|error| self.store_error(id, error))?;
-            let Some(end) = records.last().filter(|_| records[0].sequence == at + 1).map(|record| record.sequence)
-            else {
-                return Err(SessionError::Broken(format!("move {} of contact {id} is missing", at + 1)));
+            let Some(end) = records.last().map(|record| record.sequence) else {
+                return Err(damaged(id, &format_args!("move {} is missing", at + 1)));
             };
             let drawn = records.iter().filter(|record| record.sequence > after).count();
             let curved = records.iter().filter(|record| record.step.is_curved()).count();
@@ -63,9 +64,9 @@ impl Sessions {
             let work = move || {
                 for record in &records {
                     let wanted = if record.sequence > after { points } else { 1 };
-                    trace_move(&mut contact, record, wanted, &stop, &mut page)?;
+                    trace_move((&mut contact, id), record, wanted, &stop, &mut page)?;
                     if record.sequence > after {
-                        page.push_end(record.sequence, &record.state);
+                        page.push_end(record.sequence, &record.state, record.measured.map(|measured| measured.force));
                     }
                 }
                 Ok::<_, SessionError>((contact, page))
@@ -85,7 +86,7 @@ impl Sessions {
 
 /// Applies an earlier move, after adding the points on its way to the page.
 fn trace_move(
-    contact: &mut Contact,
+    (contact, id): (&mut Contact, Uuid),
     record: &Record,
     points: usize,
     stop: &Stop,
@@ -110,6 +111,6 @@ fn trace_move(
     check()?;
     contact.apply_while(&step, record.tolerance, &go_on).map_err(|error| match check() {
         Err(failure) => failure.into(),
-        Ok(()) => SessionError::Broken(format!("a stored move cannot be made again: {error}")),
+        Ok(()) => damaged(id, &format_args!("a stored move cannot be made again: {error}")),
     })
 }

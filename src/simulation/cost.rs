@@ -6,9 +6,12 @@
 //! estimates need only be right to a factor of a few: `cargo bench --bench request` and `--bench growth` show
 //! what they come from.
 
+use std::time::Duration;
+
 use crate::admission::Nanoseconds;
 use stickslip_mechanics::{self as mechanics, Profile};
 use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::fit::FitTask;
 use stickslip_wire::fretting::FrettingTask;
 use stickslip_wire::profile_fit::ProfileFitTask;
 use stickslip_wire::protocol::{Aim, ProtocolTask};
@@ -21,12 +24,27 @@ use stickslip_wire::{self as wire, Comparison, Plan, Solver, Steps, limits};
 /// microseconds.
 pub const INLINE_BODY: usize = 1024;
 
+/// Bytes that a byte of a long body or definition may become while it is parsed: a point of a table is a few digits, and then a
+/// series.
+pub const EXPANSION: usize = 100;
+
 /// Time of a fit, and for each of its points.
 const SCAN_COST: Nanoseconds = 100_000_000;
 const SCAN_POINT_COST: Nanoseconds = 4_000;
 /// Bytes of a fit with its reply, and for each of its points.
 const SCAN_BYTES: usize = 4 * 1024 * 1024;
 const SCAN_POINT_BYTES: usize = 256;
+/// Time of a fit to loops, and for each of their points.
+const FIT_COST: Nanoseconds = 100_000_000;
+const FIT_POINT_COST: Nanoseconds = 100_000;
+/// Bytes of a fit to loops with its reply, and for each of their points.
+const FIT_BYTES: usize = 4 * 1024 * 1024;
+const FIT_POINT_BYTES: usize = 256;
+/// Time of a fit of the friction to a cycle, and for each of its points.
+const FRICTION_COST: Nanoseconds = 500_000;
+const FRICTION_POINT_COST: Nanoseconds = 10_000;
+/// Bytes of such a fit for each of its points.
+const FRICTION_POINT_BYTES: usize = 256;
 /// One move of the exact solver, with its state, and the state written as JSON.
 const MOVE_COST: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
@@ -154,10 +172,26 @@ impl Work {
     }
 }
 
-/// The cost, on a sphere, of the search for extrema with a slip history of this many pieces.
+/// By how much an estimate may be wrong: work that is estimated to take longer than this many times what is allowed is refused
+/// before it begins.
+pub const MARGIN: u32 = 4;
+
+/// The cost of the search for extrema with a slip history of this many pieces.
 #[must_use]
-pub fn of_search(depth: usize) -> Nanoseconds {
-    Work { depth, residual: true, ..Work::default() }.with_piece_cost(SPHERE_PIECE_COST)
+pub fn of_search(profile: &Profile, depth: usize) -> Nanoseconds {
+    Work { depth, residual: true, ..Work::default() }.cost(profile)
+}
+
+/// The longest slip history whose search for extrema is not refused before it begins.
+#[must_use]
+pub fn longest_search(profile: &Profile, allowed: Duration) -> usize {
+    let most = allowed.saturating_mul(MARGIN);
+    let (mut fits, mut not) = (0, limits::MEMORY_DEPTH + 1);
+    while not - fits > 1 {
+        let middle = fits.midpoint(not);
+        if Duration::from_nanos(of_search(profile, middle)) <= most { fits = middle } else { not = middle }
+    }
+    fits
 }
 
 /// The cost of writing a table of this many points as JSON.
@@ -394,4 +428,34 @@ pub fn of_profile_fit(task: &ProfileFitTask) -> Nanoseconds {
 #[must_use]
 pub fn bytes_of_profile_fit(task: &ProfileFitTask) -> usize {
     SCAN_BYTES + SCAN_POINT_BYTES * task.points.len()
+}
+
+/// The cost of a fit to measured loops.
+#[must_use]
+pub fn of_fit(task: &FitTask) -> Nanoseconds {
+    FIT_COST + FIT_POINT_COST * task.points() as u64
+}
+
+/// Bytes that it takes, with its reply.
+#[must_use]
+pub fn bytes_of_fit(task: &FitTask) -> usize {
+    FIT_BYTES + FIT_POINT_BYTES * task.points() + bytes_of_shape(&task.definition.profile)
+}
+
+/// The cost of writing so many observations as JSON.
+#[must_use]
+pub fn writing_observations(observations: usize) -> Nanoseconds {
+    4 * NUMBER_COST * observations as u64
+}
+
+/// The cost of fitting the friction to a cycle of so many moves.
+#[must_use]
+pub fn of_friction(moves: usize) -> Nanoseconds {
+    FRICTION_COST + FRICTION_POINT_COST * moves as u64
+}
+
+/// Bytes that it takes.
+#[must_use]
+pub fn bytes_of_friction(moves: usize) -> usize {
+    FRICTION_POINT_BYTES * moves
 }

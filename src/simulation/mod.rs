@@ -10,6 +10,7 @@ mod cycle;
 mod cycle_map;
 mod cycle_studies;
 mod fretting;
+mod loop_fit;
 mod profile_fit;
 mod protocol;
 mod reply_template;
@@ -25,17 +26,18 @@ pub use compare_solvers::compare_solvers;
 pub use cycle::{cycle, cycle_of};
 pub use cycle_map::cycles_under;
 pub use fretting::fretting;
+pub use loop_fit::fit_loops;
 pub use profile_fit::fit_profile;
 pub use protocol::{Subject, protocol, protocol_for};
 pub use run::{Timer, accuracy, contact, equal_peaks, follow, residual, simulate, stresses};
 pub use solver::Solver;
 pub use subsurface::{subsurface, subsurface_reply};
-pub use sweep::{Sweep, SweepError, SweepResult, Workers};
+pub use sweep::{Sweep, SweepError, SweepResult};
 pub use warnings::{excess_error, new_warnings, present_warnings};
 
 use std::time::Duration;
 
-use stickslip_measured::scan;
+use stickslip_measured::{loops, scan};
 use stickslip_mechanics::{self as mechanics, range::Quantity};
 use stickslip_wire::{Code, limits};
 
@@ -59,6 +61,14 @@ pub enum Failure {
         pointer: &'static str,
         /// Why.
         error: scan::Error,
+    },
+    /// The loops determine nothing, or not what is free.
+    #[error("{pointer}: {error}")]
+    Loops {
+        /// JSON pointer to what is at fault.
+        pointer: String,
+        /// Why.
+        error: loops::Error,
     },
     /// The slip history would exceed its limit.
     #[error("the slip history of the contact would have {depth} pieces: allowed are {}", limits::MEMORY_DEPTH)]
@@ -84,6 +94,26 @@ pub enum Failure {
         /// How long work may take.
         allowed: Duration,
     },
+    /// The extrema cannot be found within the time limit of one request.
+    #[error(
+        "finding the extrema of a slip history of up to {depth} pieces is estimated at {estimate} s, and {} s are allowed: up to {fits} pieces fit",
+        allowed.as_secs_f64()
+    )]
+    Search {
+        /// JSON pointer to the member that requests them.
+        pointer: String,
+        /// The estimate, s.
+        estimate: u64,
+        /// Pieces of slip history.
+        depth: usize,
+        /// How many would not be refused.
+        fits: usize,
+        /// How long work may take.
+        allowed: Duration,
+    },
+    /// A contact that is to be relaxed does not touch.
+    #[error("the indenter is lifted off, so there is no stress to relax: move it back into contact first")]
+    Lifted,
     /// The client no longer waits for the result.
     #[error("stopped: the client no longer waits for the result")]
     Stopped,
@@ -116,7 +146,7 @@ impl Failure {
                 | mechanics::Error::NoSurface { .. }
                 | mechanics::Error::BodiesNeeded
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
-                mechanics::Error::NoStressField => Code::NoStressField,
+                mechanics::Error::NoStressField { .. } => Code::NoStressField,
                 mechanics::Error::BeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
@@ -124,9 +154,9 @@ impl Failure {
                 mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },
             Failure::Scan { error: scan::Error::TooShort { .. }, .. } => Code::BeyondProfile,
-            Failure::Scan { .. } => Code::InvalidInput,
-            Failure::MemoryFull { .. } => Code::Conflict,
-            Failure::TooLong { .. } | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
+            Failure::Scan { .. } | Failure::Loops { .. } => Code::InvalidInput,
+            Failure::MemoryFull { .. } | Failure::Lifted => Code::Conflict,
+            Failure::TooLong { .. } | Failure::Search { .. } | Failure::CycleTooLarge { .. } => Code::TooMuchWork,
             Failure::Stopped => Code::Overloaded,
         }
     }
@@ -137,10 +167,7 @@ impl Failure {
 /// # Errors
 /// [`Failure::Refused`] with [`Error::NoStressField`](mechanics::Error::NoStressField).
 pub fn needs_stress_field(contact: &mechanics::Contact, pointer: &str) -> Result<(), Failure> {
-    if contact.profile().has_stress_field() {
-        return Ok(());
-    }
-    Err(Failure::Refused { pointer: pointer.to_owned(), error: mechanics::Error::NoStressField })
+    contact.profile().check_stress_field().map_err(|error| Failure::Refused { pointer: pointer.to_owned(), error })
 }
 
 /// The quantity that an error is about, if it is about one.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use stickslip_mechanics::{
-    self as mechanics, Contact, ErrorEstimate, Preload, Setup, Springs, protocol, range::Quantity, springs,
+    self as mechanics, Contact, ErrorEstimate, Preload, Profile, Setup, Springs, protocol, range::Quantity, springs,
 };
 use stickslip_wire::reply::{Accuracy, State, finite};
 use stickslip_wire::simulate::Simulation;
@@ -14,7 +14,7 @@ use stickslip_wire::{
 use super::{
     Failure, Solver, cost, needs_stress_field, quantity,
     subsurface::subsurface,
-    warnings::{Observed, assumption, bulk_warning, excess_error, warnings},
+    warnings::{Observed, assumption, bulk_warning, excess_error, stress_warning, warnings},
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
@@ -81,6 +81,9 @@ pub(super) fn run<S: Solver>(
     if !all {
         steps.push(solver.state().into());
     }
+    if simulation.residual {
+        check_search(&simulation.setup.profile, solver.depth(), stop)?;
+    }
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
     let below = simulation.subsurface.as_ref().zip(solver.in_depth());
@@ -107,6 +110,7 @@ pub(super) fn run<S: Solver>(
         protocol,
         warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &observed)
             .into_iter()
+            .chain(stress_warning(simulation.stress.is_some() || simulation.residual, estimate.stress_error))
             .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))
             .collect(),
         accuracy,
@@ -135,7 +139,8 @@ pub(super) fn spring_foundation(setup: &Setup, plan: &Plan, count: usize) -> Res
     springs.map_err(refused_at("/contact", setup.preload))
 }
 
-fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
+/// What the mechanics refuses of a definition at the JSON pointer `base`, whose preload this is.
+pub(super) fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> Failure {
     move |error| {
         let place_of = |quantity| ContactDefinition::place_of(quantity, &preload);
         let place = match error {
@@ -185,6 +190,9 @@ fn moves<'a>(
             Box::new(moves.map_err(|error| Failure::Refused { pointer: place(plan, 0, None, &error), error })?)
         }
         Plan::Single(step) => Box::new(std::iter::once(*step)),
+        Plan::Observations(observations) => {
+            Box::new(observations.iter().map(|observation| Move::displacement(observation.displacement)))
+        }
     })
 }
 
@@ -268,17 +276,27 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
     Ok(Stress { radius, pressure, shear, slip, displacement })
 }
 
+/// Refuses a search for extrema that cannot end in time.
+///
+/// # Errors
+/// [`Failure::Search`] with the estimate, and what would fit.
+pub fn check_search(profile: &Profile, depth: usize, stop: &Stop) -> Result<(), Failure> {
+    let (estimate, allowed) =
+        (Duration::from_nanos(cost::of_search(profile, depth)), stop.time_limit().unwrap_or(LONGEST_WORK));
+    if estimate <= allowed.saturating_mul(cost::MARGIN) {
+        return Ok(());
+    }
+    let (estimate, fits) = (estimate.as_secs(), cost::longest_search(profile, allowed));
+    Err(Failure::Search { pointer: "/residual".to_owned(), estimate, depth, fits, allowed })
+}
+
 /// The extrema of the shear stress.
 ///
 /// # Errors
 /// [`Failure`] if the slip history is so deep that the search would exceed the time limit, or the client hung up.
 pub fn residual<S: Solver>(solver: &S, stop: &Stop) -> Result<Residual, Failure> {
     needs_stress_field(solver.exact(), "/residual")?;
-    let cost = Duration::from_nanos(cost::of_search(solver.depth()));
-    let allowed = stop.time_limit().unwrap_or(LONGEST_WORK);
-    if cost > allowed {
-        return Err(Failure::TooLong { pointer: "/residual".to_owned(), allowed });
-    }
+    check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => Ok(Residual::new(residual, solver.unit_shear())),
         None => Err(stop.check().err().map_or(Failure::Stopped, Failure::from)),

@@ -21,6 +21,9 @@ pub(super) const HUGE_TABLE_RADIUS: f64 = 100.0;
 /// Noise of g over the indentation beyond which a table is called noisy.
 const MAX_RELATIVE_NOISE: f64 = 1e-3;
 
+/// Error of the stresses, over the largest shear stress there can be, beyond which they show hardly more than their order.
+const MAX_STRESS_ERROR: f64 = 0.05;
+
 /// Results of a run that may require a warning.
 pub(super) struct Observed {
     /// The largest contact radius, m.
@@ -54,6 +57,17 @@ pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: 
     let mut found = at(largest, excess_error);
     found.retain(|warning| known.iter().all(|old| old.code != warning.code));
     found
+}
+
+/// The warning for stresses that were asked for, and whose estimated error is large.
+pub(super) fn stress_warning(asked: bool, error: f64) -> Option<Warning> {
+    (asked && error > MAX_STRESS_ERROR).then(|| Warning {
+        code: "stress_error".to_owned(),
+        message: format!(
+            "the stresses have an estimated error of {:.0} % of the largest there can be",
+            100.0 * error.min(10.0)
+        ),
+    })
 }
 
 /// The warnings for a contact at another radius, m, and indentation, m.

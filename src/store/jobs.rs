@@ -124,6 +124,9 @@ pub trait JobStore: Send + Sync + 'static {
     /// The job.
     async fn job(&self, id: Uuid) -> Result<Job>;
 
+    /// The jobs of a tenant, oldest first.
+    async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>>;
+
     /// The request that the job was made of.
     async fn job_request(&self, id: Uuid) -> Result<String>;
 

@@ -13,6 +13,7 @@ pub mod listeners;
 pub mod memory;
 pub mod open;
 pub mod postgres;
+mod probe;
 mod rows;
 pub mod schema;
 pub mod sqlite;
@@ -23,7 +24,7 @@ use async_trait::async_trait;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use stickslip_wire::{ContactDefinition, Move, SessionSummary, State};
+use stickslip_wire::{ContactDefinition, Move, ObservedForce, SessionSummary, State};
 
 pub use changes::Changes;
 pub use commits::Commits;
@@ -76,6 +77,15 @@ pub struct Session {
     pub updated_at: Timestamp,
 }
 
+/// What can change of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Heading {
+    /// The number of its moves.
+    pub sequence: u64,
+    /// Its label.
+    pub label: Option<String>,
+}
+
 /// A move as it is stored, with the state after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
@@ -87,8 +97,27 @@ pub struct Record {
     pub tolerance: f64,
     /// The state after it, for the history alone.
     pub state: State,
+    /// What was measured there, if it is an observation. A replay does not need it.
+    pub measured: Option<Measured>,
     /// When it was applied.
     pub at: Timestamp,
+}
+
+impl Record {
+    /// What was measured beside what the contact predicts, if it is an observation.
+    #[must_use]
+    pub fn observation(&self) -> Option<ObservedForce> {
+        self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
+    }
+}
+
+/// What a bench measured at the displacement that a move goes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Tangential force, N.
+    pub force: f64,
+    /// The instant of the measurement, if it is known; from 1678 to 2261.
+    pub at: Option<Timestamp>,
 }
 
 /// A request with an idempotency key.
@@ -140,6 +169,19 @@ pub struct Snapshot {
     pub state: Vec<u8>,
 }
 
+/// What can be known of a session before it is read: whose it is, and how much there is to read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Its tenant.
+    pub tenant: Tenant,
+    /// How many moves it has made.
+    pub sequence: u64,
+    /// Bytes of its definition as JSON.
+    pub definition: u64,
+    /// Bytes of its snapshot, if there is one.
+    pub snapshot: u64,
+}
+
 /// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
 #[derive(Debug, thiserror::Error)]
@@ -165,6 +207,14 @@ pub enum StoreError {
     /// The tenant has as many jobs as it may; the text says which limit is reached.
     #[error("{0}")]
     TooManyJobs(String),
+    /// Moves of a contact are missing, or cannot be made again: whatever is shown of it might be wrong.
+    #[error("contact {contact}: {what}")]
+    Damaged {
+        /// The contact.
+        contact: Uuid,
+        /// What is wrong with it.
+        what: String,
+    },
     /// There is no room left. Nothing has changed.
     #[error("the storage is full: {0}")]
     Full(String),
@@ -183,30 +233,50 @@ pub type Result<T, E = StoreError> = std::result::Result<T, E>;
 /// accepted here.
 #[async_trait]
 pub trait Store: JobStore {
-    /// Whether it can serve.
+    /// Whether it can serve: whether a change can be written now.
     async fn ready(&self) -> Result<()>;
 
     /// Stores a new session that has not moved, and the receipt with it.
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()>;
 
+    /// What can be known of a session without reading it.
+    async fn extent(&self, id: Uuid) -> Result<Extent>;
+
+    /// How many sessions a tenant has.
+    async fn count(&self, tenant: &Tenant) -> Result<u64>;
+
     /// The session.
     async fn find(&self, id: Uuid) -> Result<Session>;
 
-    /// The sequence of a session: all that a caller who has the rest cached needs to ask.
-    async fn sequence(&self, id: Uuid) -> Result<u64>;
+    /// The sequence of a session and its label: all that a caller who has the rest cached needs to ask.
+    async fn heading(&self, id: Uuid) -> Result<Heading>;
 
-    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order.
-    /// Without their definitions: a page of those could be larger than the memory.
-    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>>;
+    /// At most `limit` sessions of a tenant, or of all tenants, with identifiers greater than `after`, in order; of those
+    /// alone whose label contains `label`, whatever the case of ASCII letters. Without their definitions: a page of those
+    /// could be larger than the memory.
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        label: Option<String>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Vec<SessionSummary>>;
+
+    /// Gives a session another label, or none, and stores the receipt with it. Its sequence and its times stay.
+    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()>;
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()>;
 
-    /// At most `limit` moves of a session with sequences greater than `after`, in order.
+    /// At most `limit` moves of a session with sequences greater than `after`, in order and without a gap.
+    ///
+    /// # Errors
+    /// [`StoreError::Damaged`] if one of them is missing.
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>>;
 
-    /// Stores `copy`, with the moves of `id` as its own, and the receipt with it. The copy's sequence is that of `id`.
+    /// Stores `copy`, with the moves of `id` up to the copy's sequence as its own, and the receipt with it.
+    /// [`StoreError::Stale`] if `id` has not made that many.
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()>;
 
     /// Deletes a session that is at sequence `expected`, and its moves.

@@ -9,7 +9,7 @@ use serde::de::IntoDeserializer;
 use serde::de::value::Error as NameError;
 use uuid::Uuid;
 
-use super::{Job, Receipt, Record, Reply, RequestKey, Session, Snapshot, Tenant};
+use super::{Heading, Job, Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, StoreError, Tenant};
 use stickslip_wire::{Move, Regime, SessionSummary, State};
 
 /// A type that every database reads by itself.
@@ -58,6 +58,11 @@ pub(super) fn summary<R: RowReader>(row: &mut R) -> Result<SessionSummary, R::Er
     })
 }
 
+/// Sequence and label.
+pub(super) fn heading<R: RowReader>(row: &mut R) -> Result<Heading, R::Error> {
+    Ok(Heading { sequence: row.count()?, label: row.next()? })
+}
+
 /// The columns of [`summary`], definition and tenant.
 pub(super) fn session<R: RowReader>(row: &mut R) -> Result<Session, R::Error> {
     let SessionSummary { id, label, sequence, created_at, updated_at } = summary(row)?;
@@ -71,7 +76,8 @@ pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
     row.text(|name| Ok::<_, std::convert::Infallible>(Tenant::new(name)))
 }
 
-/// Sequence, time, the four targets, whether they are relative, the tolerance, and the state in the order of [`State`].
+/// Sequence, time, the four targets, whether they are relative, the tolerance, the state in the order of [`State`], and
+/// the columns of [`measured`].
 pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
     Ok(Record {
         sequence: row.count()?,
@@ -96,7 +102,40 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             elastic_energy: row.next()?,
             memory_depth: usize::try_from(row.count()?).map_err(|error| row.invalid(error))?,
         },
+        measured: measured(row)?,
     })
+}
+
+/// Refuses a page of at most `limit` moves after the move `after` in which a move is missing; `last` is that of the contact.
+pub(super) fn check_page(
+    contact: Uuid,
+    after: u64,
+    page: &[Record],
+    limit: usize,
+    last: u64,
+) -> Result<(), StoreError> {
+    let mut reached = after;
+    for record in page {
+        if record.sequence - reached != 1 {
+            break;
+        }
+        reached = record.sequence;
+    }
+    let is_whole = page.last().is_none_or(|record| record.sequence == reached);
+    if is_whole && (page.len() == limit || reached >= last) {
+        return Ok(());
+    }
+    Err(StoreError::Damaged { contact, what: format!("move {} is missing", reached + 1) })
+}
+
+/// Measured force, and the instant of the measurement in nanoseconds since 1970; both empty if nothing was measured.
+fn measured<R: RowReader>(row: &mut R) -> Result<Option<Measured>, R::Error> {
+    let (force, at): (Option<f64>, Option<i64>) = (row.next()?, row.next()?);
+    let at = at.map(|at| Timestamp::from_nanosecond(at.into())).transpose().map_err(|error| row.invalid(error))?;
+    match (force, at) {
+        (None, Some(_)) => Err(row.invalid("there is no force for the instant of a measurement")),
+        (force, at) => Ok(force.map(|force| Measured { force, at })),
+    }
 }
 
 /// Fingerprint, created session, sequence and body of the receipt for a key.

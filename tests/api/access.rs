@@ -9,8 +9,9 @@ use common::process::Process;
 use common::{ball, problem, until};
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
-use stickslip::access::{Keys, Role, new_key};
+use stickslip::access::{Keys, Role, new_key, new_key_until};
 use stickslip::store::Tenant;
+use stickslip_wire::JobState;
 use stickslip_wire::client::Options;
 use tempfile::{TempDir, tempdir};
 use uuid::Uuid;
@@ -19,6 +20,7 @@ use uuid::Uuid;
 const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/accuracy", "simulation", 200, &["read", "write"]),
     ("POST", "/sweep", "sweep", 200, &["write"]),
+    ("GET", "/jobs", "", 200, &["read", "write"]),
     ("GET", "/jobs/{id}", "", 200, &["read", "write"]),
     ("DELETE", "/jobs/{id}", "", 204, &["write"]),
     ("GET", "/jobs/{id}/result", "", 200, &["read", "write"]),
@@ -28,15 +30,19 @@ const ENDPOINTS: &[(&str, &str, &str, u16, &[&str])] = &[
     ("POST", "/cycle", "cycle", 200, &["read", "write"]),
     ("POST", "/fretting", "fretting", 200, &["read", "write"]),
     ("POST", "/profiles/fit", "scan", 200, &["read", "write"]),
+    ("POST", "/fit", "loop", 200, &["read", "write"]),
     ("POST", "/contacts", "ball", 201, &["write"]),
     ("GET", "/contacts", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}", "", 200, &["read", "write"]),
+    ("PATCH", "/contacts/{id}", "label", 200, &["write"]),
     ("DELETE", "/contacts/{id}", "", 204, &["write"]),
     ("GET", "/contacts/{id}/definition", "", 200, &["read", "write"]),
     ("POST", "/contacts/{id}/fork", "", 201, &["write"]),
     ("POST", "/contacts/{id}/move", "move", 200, &["write"]),
     ("POST", "/contacts/{id}/path", "path", 200, &["write"]),
     ("POST", "/contacts/{id}/relax", "relax", 200, &["write"]),
+    ("POST", "/contacts/{id}/observations", "observations", 200, &["write"]),
+    ("GET", "/contacts/{id}/friction", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/stress", "", 200, &["read", "write"]),
     ("GET", "/contacts/{id}/cycle", "", 200, &["read", "write"]),
     ("POST", "/contacts/{id}/subsurface", "subsurface", 200, &["read", "write"]),
@@ -63,9 +69,20 @@ fn body(name: &str) -> Option<Value> {
             let x: Vec<f64> = (-10..=10).map(|index| f64::from(index) * 1e-5).collect();
             Some(json!({"scan": {"line": {"z": x.iter().map(|x| x * x / 0.02).collect::<Vec<_>>(), "x": x}}}))
         }
+        "loop" => {
+            let angles = (0..=40).map(|index| f64::from(index) * std::f64::consts::TAU / 40.0);
+            let (u, f): (Vec<f64>, Vec<f64>) =
+                angles.map(|angle| (3e-7 * angle.cos(), 3.0 * (angle + 0.5).cos())).unzip();
+            let record = json!({"displacement": u, "force": f, "start": "steady"});
+            Some(
+                json!({"contact": ball(), "loops": [record], "free": ["friction"], "known": {"machine_compliance": {"value": 0.0}}}),
+            )
+        }
         "relax" => Some(json!({"reversals": 2})),
+        "observations" => Some(json!({"observations": [{"displacement": 1e-8, "force": 0.1}]})),
         "subsurface" => Some(json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]})),
         "ball" => Some(ball()),
+        "label" => Some(json!({"label": "renamed"})),
         "move" => Some(json!({"displacement": 1e-8})),
         "sweep" => {
             Some(json!({"base": {"contact": ball(), "path": {"force": [1.0]}}, "outputs": ["/steps/0/displacement"],
@@ -81,7 +98,7 @@ struct Guarded {
     process: Process,
     http: reqwest::Client,
     keys: Vec<(&'static str, String)>,
-    _folder: TempDir,
+    folder: TempDir,
 }
 
 impl Guarded {
@@ -97,7 +114,7 @@ impl Guarded {
         let arguments = ["--store", store, "--keys", file.to_str().unwrap()];
         let process = Process::start_with(&[&arguments, more].concat(), &log).await;
         let keys = made.into_iter().map(|(name, new)| (name, new.key)).collect();
-        Guarded { process, http: reqwest::Client::new(), keys, _folder: folder }
+        Guarded { process, http: reqwest::Client::new(), keys, folder }
     }
 
     fn key(&self, name: &str) -> &str {
@@ -391,7 +408,28 @@ async fn a_job_is_there_for_its_tenant_alone() {
         places.insert(response.headers()["location"].to_str().unwrap().to_owned());
     }
     assert_eq!(places.len(), 2);
-    while server.send(Some("north"), "POST", "/sweep", Some(&sweep), &[]).await.status() == 202 {}
+    let full = loop {
+        let response = server.send(Some("north"), "POST", "/sweep", Some(&sweep), &[]).await;
+        if response.status() != 202 {
+            break response;
+        }
+    };
+    // The oldest of them that has ended is kept for a day from then.
+    let wait: u64 = full.headers()["retry-after"].to_str().unwrap().parse().unwrap();
+    assert!((86_000..=86_400).contains(&wait), "{wait}");
+    let refusal = problem(full).await;
+    assert!(refusal.code == "too_many_jobs" && refusal.detail.contains("GET /jobs"), "{refusal:?}");
+    let client = |who: &str| server.process.client.clone().with_key(server.key(who));
+    let listed = client("north").jobs(None).await.unwrap().items;
+    assert_eq!((listed.len(), client("south").jobs(None).await.unwrap().items.len()), (50, 1));
+    assert!(listed.is_sorted_by_key(|job| job.id) && listed[0].id.to_string() == job);
+    let done = client("north").jobs(Some(JobState::Done)).await.unwrap().items;
+    assert!(done.iter().all(|job| job.state == JobState::Done) && done[0].id.to_string() == job);
+    assert!(client("north").jobs(Some(JobState::Failed)).await.unwrap().items.is_empty());
+    assert_eq!(server.send(Some("north"), "GET", "/jobs?state=lost", None, &[]).await.status(), 422);
+    // Room is made by deleting what is listed.
+    client("north").delete_job(listed[0].id).await.unwrap();
+    assert_eq!(server.send(Some("north"), "POST", "/sweep", Some(&sweep), &[]).await.status(), 202);
     assert_eq!(server.send(Some("south"), "POST", "/sweep", Some(&sweep), &[]).await.status(), 202);
 }
 
@@ -407,6 +445,103 @@ async fn only_its_tenant_learns_that_a_contact_has_expired() {
     assert_eq!(get("south").await, 404);
     let history = server.send(Some("south"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;
     assert_eq!(history.status().as_u16(), 404);
+}
+
+impl Guarded {
+    /// Replaces the file of keys.
+    fn replace(&self, entries: &str) {
+        let new = self.folder.path().join("new");
+        std::fs::write(&new, entries).unwrap();
+        std::fs::rename(new, self.folder.path().join("keys")).unwrap();
+    }
+}
+
+#[tokio::test]
+async fn a_changed_file_of_keys_counts_at_once_and_ends_the_events_of_revoked_keys() {
+    let keys: [(&'static str, &[Role], &str); 2] = [("kept", &[Role::Write], "lab"), ("revoked", &[Role::Read], "lab")];
+    let server = Guarded::start("memory:", &[], &keys).await;
+    let file = server.folder.path().join("keys");
+    let before = std::fs::read_to_string(&file).unwrap();
+    let kept: String =
+        before.lines().filter(|line| !line.starts_with("revoked")).map(|line| format!("{line}\n")).collect();
+    let events = format!("/contacts/{}/events", server.contact("kept").await);
+    let mut followed = server.send(Some("revoked"), "GET", &events, None, &[]).await;
+    let mut followed_on = server.send(Some("kept"), "GET", &events, None, &[]).await;
+    assert!(followed.chunk().await.unwrap().is_some() && followed_on.chunk().await.unwrap().is_some());
+    let list = async |who: &str| server.send(Some(who), "GET", "/contacts", None, &[]).await.status().as_u16();
+
+    server.replace(&kept);
+    server.process.signal("HUP");
+    until("the key is revoked", async || (list("revoked").await == 401).then_some(())).await;
+    assert_eq!(list("kept").await, 200);
+    let end = async { while followed.chunk().await.unwrap().is_some() {} };
+    tokio::time::timeout(common::PATIENCE, end).await.expect("the events of a revoked key go on");
+    // Other keys do not notice.
+    let path = events.replace("/events", "/move");
+    assert_eq!(server.send(Some("kept"), "POST", &path, body("move").as_ref(), &[]).await.status(), 200);
+    assert!(followed_on.chunk().await.unwrap().is_some());
+
+    // Without a signal too. What is wrong changes nothing.
+    server.replace(&before);
+    until("the key is known again", async || (list("revoked").await == 200).then_some(())).await;
+    server.replace("nonsense");
+    let said = || std::fs::read_to_string(server.folder.path().join("log")).unwrap();
+    until("the log says so", async || said().contains("the keys are still those before").then_some(())).await;
+    assert_eq!((list("revoked").await, list("kept").await), (200, 200));
+}
+
+#[tokio::test]
+async fn a_key_with_an_end_counts_until_then() {
+    let server = Guarded::start("memory:", &[], &[("kept", &[Role::Write], "lab")]).await;
+    let id = server.contact("kept").await;
+    let end = jiff::Timestamp::now() + jiff::SignedDuration::from_secs(5);
+    let brief = new_key_until("brief", &[Role::Read], "lab", Some(end)).unwrap();
+    let all = std::fs::read_to_string(server.folder.path().join("keys")).unwrap() + &brief.entry + " # for a moment\n";
+    server.replace(&all);
+    server.process.signal("HUP");
+    let send = async |path: String| {
+        let call = server.http.get(format!("{}{path}", server.process.base));
+        call.header("authorization", format!("Bearer {}", brief.key)).send().await.unwrap()
+    };
+    let follow = async || Some(send(format!("/contacts/{id}/events")).await).filter(|reply| reply.status() == 200);
+    let mut followed = until("the key is known", follow).await;
+    let end = async { while followed.chunk().await.unwrap().is_some() {} };
+    tokio::time::timeout(common::PATIENCE, end).await.expect("the events of an expired key go on");
+    let refused = problem(send("/contacts".to_owned()).await).await;
+    assert_eq!((refused.status, refused.detail.as_str()), (401, "the key has expired"));
+}
+
+#[test]
+fn the_command_line_makes_keys_with_several_roles_an_end_and_a_note() {
+    let made = |more: &[&str]| {
+        let mut command = common::clean(std::process::Command::new(env!("CARGO_BIN_EXE_stickslip")));
+        command.args(["key", "new", "--name", "a", "--tenant", "lab"]).args(more);
+        let output = common::process::ended(&mut command);
+        let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        if output.status.success() { Ok(text) } else { Err(text) }
+    };
+    for roles in
+        [&["--role", "read+metrics"][..], &["--role", "read,metrics"], &["--role", "read", "--role", "metrics"]]
+    {
+        let printed =
+            made(&[roles, &["--expires-at", "2027-01-31T13:00:00+01:00", "--note", "room 3"]].concat()).unwrap();
+        let entry = printed.lines().nth(1).unwrap().strip_prefix("entry ").unwrap();
+        assert!(entry.starts_with("a:read+metrics:lab:sha256:"), "{entry}");
+        assert!(entry.ends_with(":2027-01-31T12:00:00Z # room 3"), "{entry}");
+        let mut keys = Keys::default();
+        keys.add(entry).unwrap();
+        let key = printed.lines().next().unwrap().strip_prefix("key   ").unwrap();
+        let holder = keys.holder(key.as_bytes()).unwrap();
+        assert_eq!(holder.expires_at, Some("2027-01-31T12:00:00Z".parse().unwrap()));
+    }
+    for (wrong, why) in [
+        (&["--role", "reed"][..], "write, read, metrics"),
+        (&["--role", "read", "--expires-at", "soon"], "--expires-at"),
+        (&["--role", "read", "--note", "a, b"], "commas"),
+    ] {
+        let said = made(wrong).unwrap_err();
+        assert!(said.lines().count() == 1 && said.contains(why), "{said}");
+    }
 }
 
 #[test]
@@ -445,6 +580,7 @@ fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
         (format!("a:read:t t:sha256:{hash}"), "tenant"),
         (format!("a:read::sha256:{}", &hash[1..]), "64 hexadecimal digits"),
         (format!("a:read::sha256:{}g", &hash[1..]), "64 hexadecimal digits"),
+        (format!("a:read::sha256:{hash}:soon"), "2027-01-31T12:00:00Z"),
         (format!("a:read::sha256:{hash}"), "two entries"),
         (good.replace(&hash[..4], "0000"), "of this name"),
     ] {

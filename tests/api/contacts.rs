@@ -115,6 +115,107 @@ async fn a_fork_has_the_same_past_and_its_own_future() {
 }
 
 #[tokio::test]
+async fn a_fork_begins_after_any_move_and_is_what_the_contact_was_then() {
+    // Without a cache, every state is replayed.
+    let pool = Pool::with_defaults();
+    let server = Server::over(Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), 0), pool).await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    let virgin = client.contact(id).await.unwrap().state;
+    let path = client.path(id, &along(wandering(40)), &options).await.unwrap();
+    for sequence in [0_u64, 1, 17, 39, 40] {
+        let wanted = ForkRequest { sequence: Some(sequence), label: None };
+        let fork = client.fork(id, &wanted, &options).await.unwrap();
+        let then = usize::try_from(sequence).unwrap();
+        let expected = then.checked_sub(1).map_or(virgin, |last| path.steps[last]);
+        assert_eq!((fork.sequence, fork.state), (sequence, expected));
+        let past = client.history(fork.id, None, None).await.unwrap().items;
+        assert_eq!(past, client.history(id, None, None).await.unwrap().items[..then]);
+        // It goes on as the contact did.
+        let rest = client.path(fork.id, &along(wandering(40).split_off(then)), &options).await;
+        assert!(then == 40 || rest.unwrap().steps == path.steps[then..]);
+    }
+    let target = format!("/contacts/{id}/fork");
+    for wrong in ["41", "9223372036854775807"] {
+        let refused =
+            problem(server.post(&target, &serde_json::from_str(&format!("{{\"sequence\": {wrong}}}")).unwrap()).await)
+                .await;
+        let place = (refused.status, refused.errors[0].pointer.as_str(), refused.errors[0].detail.as_str());
+        assert_eq!(place, (422, "/sequence", "the contact has made 40 moves: give 0 to 40"));
+    }
+    for wrong in ["-1", "1.5", "9223372036854775808", "\"3\"", "null"] {
+        let refused =
+            problem(server.post(&target, &serde_json::from_str(&format!("{{\"sequence\": {wrong}}}")).unwrap()).await)
+                .await;
+        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/sequence"), "{wrong}");
+    }
+    assert_eq!(client.contacts(None, None).await.unwrap().items.len(), 6);
+}
+
+#[tokio::test]
+async fn a_new_label_is_no_move_and_is_found() {
+    let server = Server::start().await;
+    let (client, options) = (&server.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    let other = client.create(&create(), &options).await.unwrap().id;
+    client.apply(id, &Move::displacement(1e-7).into(), &options).await.unwrap();
+    let before = client.contact(id).await.unwrap();
+    let target = format!("/contacts/{id}");
+    let tags = async || server.get(&target).await.headers()["etag"].to_str().unwrap().to_owned();
+    let old = tags().await;
+    let found = async |label: &str| {
+        let items = client.contacts_labelled(label, None, None).await.unwrap().items;
+        items.into_iter().map(|item| item.id).collect::<Vec<_>>()
+    };
+    assert!(found("").await.is_empty(), "a contact without a label is not found by one");
+
+    let renamed = client.rename(id, Some("Ärger im STAHL, 3 %_"), &options).await.unwrap();
+    assert_eq!(renamed, client.contact(id).await.unwrap());
+    assert_eq!(renamed.label.as_deref(), Some("Ärger im STAHL, 3 %_"));
+    assert_eq!((renamed.sequence, renamed.state, renamed.updated_at), (1, before.state, before.updated_at));
+    // A browser that has the old name asks for the new one.
+    let headers = [("if-none-match", old.as_str())];
+    assert_eq!(server.send(Method::GET, &target, None, &headers).await.status(), StatusCode::OK);
+    let new = tags().await;
+    let headers = [("if-none-match", new.as_str())];
+    assert_eq!(server.send(Method::GET, &target, None, &headers).await.status(), StatusCode::NOT_MODIFIED);
+    for label in ["Stahl", "ärger", "Ärger", "3 %_", "%_", ""] {
+        // Beyond A to Z, letters are what they are.
+        let expected = if label == "ärger" { vec![] } else { vec![id] };
+        assert_eq!(found(label).await, expected, "{label}");
+    }
+    assert!(found("3 %%").await.is_empty() && found("S_AHL").await.is_empty());
+    client.rename(other, Some("stahl"), &options).await.unwrap();
+    assert_eq!(found("stahl").await, [id, other]);
+    let page = client.contacts_labelled("stahl", None, Some(1)).await.unwrap();
+    assert_eq!((page.items[0].id, page.next), (id, Some(id)));
+    assert_eq!(client.contacts_labelled("stahl", page.next, Some(1)).await.unwrap().items[0].id, other);
+
+    // Its tag serves as a condition, and a retry gets the first reply.
+    let body = json!({"label": null}).to_string();
+    let headers = [("if-match", new.as_str()), ("idempotency-key", "nameless")];
+    let first = server.send(Method::PATCH, &target, Some(&body), &headers).await;
+    assert_eq!(first.status(), StatusCode::OK);
+    client.rename(id, Some("again"), &options).await.unwrap();
+    let again = server.send(Method::PATCH, &target, Some(&body), &headers).await;
+    assert_eq!(first.bytes().await.unwrap(), again.bytes().await.unwrap());
+    assert_eq!(client.contact(id).await.unwrap().label.as_deref(), Some("again"));
+    assert_eq!(client.history(id, None, None).await.unwrap().items.len(), 1);
+
+    let long = json!({"label": "x".repeat(201)}).to_string();
+    for (body, pointer) in
+        [("{}", "/label"), (&*long, "/label"), (r#"{"label": 3}"#, "/label"), (r#"{"label": "\u0000"}"#, "/label")]
+    {
+        let refused = problem(server.send(Method::PATCH, &target, Some(body), &[]).await).await;
+        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, pointer), "{body}");
+    }
+    for query in [format!("label={}", "x".repeat(201)), "label=%00".to_owned()] {
+        let refused = problem(server.get(&format!("/contacts?{query}")).await).await;
+        assert_eq!((refused.status, refused.errors[0].pointer.as_str()), (422, "/label"));
+    }
+}
+
+#[tokio::test]
 async fn a_stale_sequence_is_refused_and_changes_nothing() {
     let server = Server::start().await;
     let (client, plain) = (&server.client, Options::default());
@@ -124,6 +225,7 @@ async fn a_stale_sequence_is_refused_and_changes_nothing() {
     for refused in [
         client.apply(id, &Move::displacement(0.0).into(), &at(0)).await.map(drop),
         client.path(id, &along(vec![Move::displacement(0.0)]), &at(2)).await.map(drop),
+        client.rename(id, Some("late"), &at(0)).await.map(drop),
         client.delete(id, &at(0)).await,
     ] {
         let refused = refused.unwrap_err();
@@ -132,7 +234,8 @@ async fn a_stale_sequence_is_refused_and_changes_nothing() {
             Some((412, "stale_sequence"))
         );
     }
-    assert_eq!(client.contact(id).await.unwrap().sequence, 1);
+    let now = client.contact(id).await.unwrap();
+    assert_eq!((now.sequence, now.label), (1, None));
     let any = server.send(Method::DELETE, &format!("/contacts/{id}"), None, &[("if-match", "*")]).await;
     assert_eq!(any.status(), StatusCode::NO_CONTENT);
 }

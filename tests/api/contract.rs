@@ -92,7 +92,10 @@ async fn every_endpoint_answers_the_client() {
     assert_eq!(history.items.iter().map(|item| item.sequence).collect::<Vec<_>>(), [2, 3]);
     assert_eq!(history.next, Some(3));
 
-    let fork = client.fork(contact.id, &ForkRequest { label: Some("what if".to_owned()) }, &plain).await.unwrap();
+    let fork = client
+        .fork(contact.id, &ForkRequest { label: Some("what if".to_owned()), sequence: None }, &plain)
+        .await
+        .unwrap();
     assert_eq!((fork.sequence, fork.state), (5, followed.steps[3]));
 
     let shown = client.contact(contact.id).await.unwrap();

@@ -6,7 +6,7 @@ use stickslip_wire::json_value::{JsonValue, Pointer};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::{
     AccuracyRequest, CreateRequest, Document, ForkRequest, MoveRequest, PathRequest, Peak, ProtocolRequest, Rejection,
-    RelaxRequest, Residual, SimulateRequest, Stress, SweepRequest, parse, read,
+    RelaxRequest, RenameRequest, Residual, SimulateRequest, Stress, SweepRequest, parse, read,
 };
 
 fn refused(body: &str) -> (String, String) {
@@ -114,7 +114,8 @@ fn cases() -> Vec<Case> {
         ),
         (faults::<SweepRequest>, sweep, &["/axes/0/linear/count", "/axes/1/logarithmic/count", "/axes/2/linear/count"]),
         (faults::<CreateRequest>, create, &[]),
-        (faults::<ForkRequest>, json!({"label": "ball"}), &[]),
+        (faults::<ForkRequest>, json!({"label": "ball", "sequence": 3}), &[]),
+        (faults::<RenameRequest>, json!({"label": "ball"}), &[]),
     ]
 }
 

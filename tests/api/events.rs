@@ -53,6 +53,7 @@ async fn past(client: &Client, id: Uuid, after: u64) -> Vec<StateEvent> {
             step: Some(item.step),
             state: item.state,
             cycle: item.cycle,
+            observation: item.observation,
             at: item.at,
         };
         all.extend(page.items.into_iter().map(event));

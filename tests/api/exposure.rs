@@ -9,7 +9,7 @@ use common::{ball, clean};
 use reqwest::header::HeaderMap;
 use serde_json::Value;
 use stickslip::access::{Role, new_key};
-use stickslip_wire::client::Client;
+use stickslip_wire::client::{Client, Options};
 use tempfile::tempdir;
 
 fn binary(arguments: &[&str]) -> Command {
@@ -64,14 +64,18 @@ async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
     by_environment.env("STICKSLIP_INSECURE", "true");
     let mut keys_in_environment = with(&[]);
     keys_in_environment.env("STICKSLIP_KEYS", &entry);
-    for command in [
-        with(&["--insecure"]),
-        by_environment,
-        with(&["--config", settings.to_str().unwrap()]),
-        with(&["--keys", empty.to_str().unwrap()]),
-        keys_in_environment,
+    for (command, keyed) in [
+        (with(&["--insecure"]), false),
+        (by_environment, false),
+        (with(&["--config", settings.to_str().unwrap()]), false),
+        (with(&["--keys", empty.to_str().unwrap()]), true),
+        (keys_in_environment, true),
     ] {
+        std::fs::write(&log, "").unwrap();
         let process = Process::of(command).await;
+        let said = std::fs::read_to_string(&log).unwrap();
+        assert_eq!(said.contains("keys are sent unencrypted"), keyed, "{said}");
+        assert_eq!(said.contains("there are no keys"), !keyed, "{said}");
         let client = Client::new(process.base.replace("0.0.0.0", "127.0.0.1"));
         client.healthz().await.unwrap();
         let address = process.base.trim_start_matches("http://").to_owned();
@@ -79,6 +83,56 @@ async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
         assert!(check.await.unwrap().unwrap().success());
         process.stop().await;
     }
+}
+
+#[tokio::test]
+async fn without_keys_pages_of_other_sites_see_and_change_nothing() {
+    let folder = tempdir().unwrap();
+    let arguments = ["--store", "memory:", "--allowed-hosts", "lab.example", "--cors-origins", "https://page.example"];
+    let server = Process::start_with(&arguments, &folder.path().join("log")).await;
+    let (http, port) = (reqwest::Client::new(), server.base.rsplit_once(':').unwrap().1.to_owned());
+    let id = server.client.create(&common::create(), &Options::default()).await.unwrap().id;
+    let send = async |method: &str, path: &str, headers: &[(&str, &str)]| {
+        let mut call = http.request(method.parse().unwrap(), format!("{}{path}", server.base));
+        for (name, value) in headers {
+            call = call.header(*name, *value);
+        }
+        let response = call.send().await.unwrap();
+        let status = response.status().as_u16();
+        if status == 403 {
+            assert_eq!(common::problem(response).await.code, "foreign_origin");
+        }
+        status
+    };
+    let (fork, contact) = (format!("/contacts/{id}/fork"), format!("/contacts/{id}"));
+    // A name that points here for a moment is that of another site.
+    let rebound = format!("evil.example:{port}");
+    for (method, path) in
+        [("GET", "/contacts"), ("POST", &*fork), ("DELETE", &*contact), ("GET", "/metrics"), ("GET", "/")]
+    {
+        assert_eq!(send(method, path, &[("host", &rebound)]).await, 403, "{method} {path}");
+        assert_eq!(send(method, path, &[("host", "192.0.2.1")]).await, 403, "{method} {path}");
+    }
+    for host in [rebound.as_str(), "lab.example", "localhost"] {
+        assert_eq!(send("GET", "/healthz", &[("host", host)]).await, 200);
+        assert_eq!(send("GET", "/contacts", &[("host", host)]).await, if host == rebound { 403 } else { 200 });
+    }
+    // A change without a body needs no permission of a browser to be sent.
+    let own = format!("http://localhost:{port}");
+    for (headers, status) in [
+        (&[("origin", "https://evil.example")][..], 403),
+        (&[("origin", "null")], 403),
+        (&[("sec-fetch-site", "cross-site")], 403),
+        (&[("origin", "http://localhost:1")], 403),
+        (&[("origin", "https://page.example"), ("sec-fetch-site", "cross-site")], 201),
+        (&[("origin", &server.base), ("sec-fetch-site", "same-origin")], 201),
+        (&[("origin", &own), ("host", own.trim_start_matches("http://"))], 201),
+        (&[("origin", "https://lab.example"), ("host", "lab.example")], 201),
+    ] {
+        assert_eq!(send("POST", &fork, headers).await, status, "{headers:?}");
+    }
+    assert_eq!(send("DELETE", &contact, &[("origin", "https://evil.example")]).await, 403);
+    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 1 + 4);
 }
 
 fn header<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
@@ -174,7 +228,7 @@ async fn a_page_of_a_named_origin_may_do_what_its_key_allows_and_others_nothing(
         ] {
             assert!(list("access-control-allow-headers").split(',').any(|allowed| allowed == name), "{name}");
         }
-        assert_eq!(list("access-control-allow-methods"), "get,post,delete");
+        assert_eq!(list("access-control-allow-methods"), "get,post,patch,delete");
         assert!(!answer.headers().contains_key("access-control-allow-credentials"));
         // Then it sends the request, and shows the page what it may see.
         let call = http.post(&url).header("origin", origin).json(&ball());

@@ -116,6 +116,8 @@ async fn a_history_is_the_same_in_every_format() {
     // The load changes within the cycle that the last move closes.
     let moves = json!({"path": {"moves": [{"displacement": -5e-8}, {"displacement": 1e-7, "normal_force": 11.0}]}});
     assert!(server.post(&format!("{contact}/path"), &moves).await.status().is_success());
+    let measured = json!({"observations": [{"displacement": 2e-8, "force": -0.25}]});
+    assert!(server.post(&format!("{contact}/observations"), &measured).await.status().is_success());
     let path = format!("{contact}/history");
     let page: Value = server.get(&path).await.json().await.unwrap();
     let names = [
@@ -137,13 +139,21 @@ async fn a_history_is_the_same_in_every_format() {
         "cycle_dissipated_energy",
         "cycle_secant_stiffness",
         "cycle_sliding_ratio",
+        "observed_force",
+        "predicted_force",
+        "innovation",
     ];
     let items = page["items"].as_array().unwrap();
-    assert_eq!(items.len(), 5);
+    assert_eq!(items.len(), 6);
+    assert!(items[5]["observation"].is_object() && items[4]["observation"].is_null());
     assert!(items[4]["cycle"].is_object() && items[4]["cycle"]["sliding_ratio"].is_null());
     let value = |item: &Value, name: &str| {
         let place = name.strip_prefix("cycle_").map_or(&item["state"], |_| &item["cycle"]);
         let own = name.strip_prefix("cycle_").unwrap_or(name);
+        let observed = [("observed_force", "force"), ("predicted_force", "predicted"), ("innovation", "innovation")];
+        if let Some((_, own)) = observed.iter().find(|(column, _)| *column == name) {
+            return item["observation"][*own].clone();
+        }
         if item[name].is_null() { place[own].clone() } else { item[name].clone() }
     };
     let rows: Vec<Vec<Value>> = items.iter().map(|item| names.iter().map(|name| value(item, name)).collect()).collect();
@@ -407,7 +417,8 @@ async fn the_loop_between_recorded_states_is_that_of_masing() {
         .map(str::to_owned)
         .collect();
     assert_eq!(whole, rows);
-    let names = ["sequence", "part", "displacement", "force"];
+    // Nothing was measured.
+    let names = ["sequence", "part", "displacement", "force", "observed_force", "predicted_force", "innovation"];
     let rows: Vec<Vec<Value>> =
         (0..sequence.len()).map(|row| names.iter().map(|name| page[*name][row].clone()).collect()).collect();
     hold(&server, &path, &names, &rows).await;

@@ -1,4 +1,4 @@
-//! Random bodies of `POST /simulate`, `POST /cycle` and `POST /fretting`: each is answered with a reply that obeys the laws, or refused with the place of the
+//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting` and `POST /fit`: each is answered with a reply that obeys the laws, or refused with the place of the
 //! fault. None panics.
 //!
 //! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` sets
@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use crate::cycle_laws;
 use crate::cycle_requests::RandomCycle;
 use crate::depth_requests::RandomFretting;
+use crate::fit_laws::{self, RandomFit};
 use crate::fretting_laws;
 use crate::harness::{Outcome, examine};
 use proptest::strategy::{Strategy, ValueTree as _};
@@ -141,4 +142,10 @@ fn cycles() {
 fn fretting() {
     let write = |request: &RandomFretting| request.to_json().to_string().into_bytes();
     fuzz(800, crate::depth_requests::random_fretting(), write, fretting_laws::examine);
+}
+
+#[test]
+fn fits() {
+    let write = |request: &RandomFit| request.to_json().to_string().into_bytes();
+    fuzz(150, fit_laws::random_fit(), write, fit_laws::examine);
 }

@@ -219,7 +219,7 @@ async fn bytes_on_the_socket() {
         ),
         crate::common::raw::post(&format!("/contacts/{id}/move"), r#"{"displacement": 1e-8}"#),
         crate::common::raw::get(&format!("/contacts/{id}/stress?points=5")),
-        "POST /simulate HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ntransfer-encoding: chunked\r\n\r\n\
+        "POST /simulate HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ntransfer-encoding: chunked\r\n\r\n\
          5\r\n{\"a\":\r\n2\r\n1}\r\n0\r\n\r\n"
             .to_owned(),
     ];

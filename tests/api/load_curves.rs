@@ -70,7 +70,7 @@ async fn they_are_stored_moved_swept_and_cycled() {
         assert_eq!(status, 200, "{cycled}");
         assert!(cycled["cycles"][0]["dissipated_energy"].as_f64().unwrap() > 0.0);
         let sweep = json!({
-            "base": {"contact": contact(profile), "path": {"displacement": [1e-7]}, "steps": "last"},
+            "base": {"contact": contact(profile.clone()), "path": {"displacement": [1e-7]}, "steps": "last"},
             "axes": [{"pointer": "/contact/friction", "values": [0.1, 0.2]}],
             "outputs": ["/steps/0/force"]
         });
@@ -86,8 +86,10 @@ async fn they_are_stored_moved_swept_and_cycled() {
             ("relax", json!({"reversals": 3})),
             ("subsurface", json!({"body": "first", "points": [[0.0, 0.0, 1e-5]]})),
         ] {
-            let found = refusal(post(&server.base, &format!("{place}/{path}"), &body).await);
-            assert_eq!((found.0, found.1.as_str()), (422, "no_stress_field"), "{path}");
+            let (status, reply) = post(&server.base, &format!("{place}/{path}"), &body).await;
+            let named = format!("`{}`", profile["type"].as_str().unwrap());
+            assert!(reply["detail"].as_str().unwrap().contains(&named), "{reply}");
+            assert_eq!((status, refusal((status, reply)).1.as_str()), (422, "no_stress_field"), "{path}");
         }
         let now: Value = reqwest::get(format!("{}{place}", server.base)).await.unwrap().json().await.unwrap();
         assert_eq!(now["sequence"], json!(1), "a refused move changes nothing");

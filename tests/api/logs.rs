@@ -8,8 +8,13 @@ use std::process::Command;
 use common::{Binary, create};
 use reqwest::Client;
 use serde_json::Value;
+use stickslip::access::{Role, new_key};
 use stickslip_wire::Move;
 use stickslip_wire::client::Options;
+
+async fn get_text(address: &str) -> String {
+    reqwest::get(address).await.unwrap().text().await.unwrap()
+}
 
 /// Ends the server as an operator would, and returns its log.
 fn end(mut server: Binary) -> Vec<Value> {
@@ -32,7 +37,10 @@ async fn a_request_is_one_line_and_the_life_of_the_server_a_few() {
     let mut log = end(server);
     for line in &log {
         assert!(line["timestamp"].is_string() && line["level"].is_string(), "{line}");
-        assert!(!line.to_string().contains(&id.to_string()), "a route, and not a path: {line}");
+        // A route, and not a path; a change names its contact.
+        let contact = line["contact"].as_str();
+        assert_eq!(contact.is_some(), line["method"] == "POST", "{line}");
+        assert_eq!(line.to_string().contains(&id.to_string()), contact == Some(&id.to_string()), "{line}");
     }
     let requests: Vec<Value> = log.extract_if(.., |line| line["message"] == "request").collect();
     let lives: Vec<&str> = log.iter().map(|line| line["message"].as_str().unwrap()).collect();
@@ -47,14 +55,56 @@ async fn a_request_is_one_line_and_the_life_of_the_server_a_few() {
 }
 
 #[tokio::test]
+async fn the_line_of_a_change_says_who_made_it() {
+    let new = new_key("bench", &[Role::Write], "lab").unwrap();
+    let server = Binary::start(&["--log-format", "json", "--keys", &new.entry, "--trusted-proxies", "127.0.0.1"]);
+    let client = server.client.clone().with_key(&new.key);
+    let id = client.create(&create(), &Options::default()).await.unwrap().id;
+    let url = |path: &str| format!("{}/contacts/{id}{path}", server.address);
+    let send = async |call: reqwest::RequestBuilder, request_id: &str| {
+        let call = call.bearer_auth(&new.key).header("x-request-id", request_id);
+        call.header("x-forwarded-for", "10.0.0.1, 192.0.2.7").send().await.unwrap()
+    };
+    let http = Client::new();
+    let moved = serde_json::json!({"displacement": 1e-9});
+    assert_eq!(send(http.post(url("/move")).json(&moved), "moved").await.status(), 200);
+    let fork = common::good(send(http.post(url("/fork")), "forked").await).await;
+    assert_eq!(send(http.get(url("")), "read").await.status(), 200);
+    assert_eq!(send(http.delete(url("")), "deleted").await.status(), 204);
+    assert_eq!(http.delete(url("")).header("x-request-id", "keyless").send().await.unwrap().status(), 401);
+
+    let log = end(server);
+    let who = |request_id: &str| {
+        let line = log.iter().find(|line| line["request_id"] == request_id).unwrap();
+        ["client", "key", "tenant", "contact"].map(|name| line[name].as_str().map(str::to_owned))
+    };
+    let id = id.to_string();
+    let by = |contact: Option<&str>| {
+        [Some("192.0.2.7"), Some("bench"), Some("lab"), contact].map(|it| it.map(str::to_owned))
+    };
+    assert_eq!(who("moved"), by(Some(&id)));
+    assert_eq!(who("forked"), by(fork["id"].as_str()));
+    assert_eq!(who("deleted"), by(Some(&id)));
+    assert_eq!(who("read"), by(None));
+    assert_eq!(who("keyless"), [Some("127.0.0.1"), None, None, Some(&*id)].map(|it| it.map(str::to_owned)));
+    assert!(!log.iter().any(|line| line.to_string().contains(&new.key["stickslip_".len()..])));
+}
+
+#[tokio::test]
 async fn a_client_that_leaves_has_its_line_too() {
     let server = Binary::start(&["--log-format", "json"]);
     let long = serde_json::json!({"contact": common::ball(), "path": {"falling_amplitude": {"reversals": 1900}},
         "steps": "last", "solver": {"springs": {"count": 1_000_000}}});
     let address = server.address.clone();
     let call = Client::new().post(format!("{address}/simulate")).json(&long).header("x-request-id", "mine").send();
-    let left = tokio::time::timeout(std::time::Duration::from_millis(300), call).await;
-    assert!(left.is_err(), "too quick to leave");
+    let call = tokio::spawn(call);
+    // It leaves once its work has begun, however long that takes.
+    while !get_text(&format!("{address}/metrics")).await.lines().any(|line| line == "stickslip_solver_running 1") {
+        assert!(!call.is_finished(), "too quick to leave");
+        tokio::time::sleep(std::time::Duration::from_millis(10)).await;
+    }
+    call.abort();
+    assert!(call.await.unwrap_err().is_cancelled(), "too quick to leave");
     server.client.healthz().await.unwrap();
     let log = end(server);
     let line = log.iter().find(|line| line["message"] == "the client left").unwrap_or_else(|| panic!("{log:?}"));

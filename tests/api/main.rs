@@ -10,6 +10,8 @@ mod cycle_requests;
 mod damage;
 #[path = "../harness/depth_requests.rs"]
 mod depth_requests;
+#[path = "../harness/fit_laws.rs"]
+mod fit_laws;
 #[path = "../harness/fretting_laws.rs"]
 mod fretting_laws;
 #[path = "../harness/mod.rs"]
@@ -29,6 +31,7 @@ mod cycles_path;
 mod documents;
 mod events;
 mod exposure;
+mod fit;
 mod formats;
 mod fretting;
 mod fuzz_bodies;
@@ -38,6 +41,7 @@ mod load_curves;
 mod logs;
 mod metrics;
 mod newest_moves;
+mod observations;
 mod openapi;
 mod otlp;
 mod profile_fit;
@@ -47,4 +51,5 @@ mod schema;
 mod settings;
 mod subsurface;
 mod sweeps;
+mod tls;
 mod warnings;

@@ -2,9 +2,11 @@
 
 use crate::common;
 
-use common::Server;
+use common::{Server, until};
+use jiff::Timestamp;
 use reqwest::Method;
-use serde_json::Value;
+use serde_json::{Value, json};
+use uuid::Uuid;
 
 fn document() -> Value {
     serde_json::from_str(stickslip::api::document()).unwrap()
@@ -145,4 +147,131 @@ async fn every_example_works_unchanged() {
         }
     }
     assert!(sent >= 10, "{sent} examples");
+}
+
+/// A reply without what differs from call to call: identifiers, instants, and measured times.
+fn settle(name: &str, value: &mut Value) {
+    match value {
+        Value::Object(members) => members.iter_mut().for_each(|(name, member)| settle(name, member)),
+        Value::Array(elements) => elements.iter_mut().for_each(|element| settle(name, element)),
+        Value::Number(number) if number.is_f64() && name.ends_with("time") => *value = json!(1e-5),
+        Value::String(text) if text.parse::<Timestamp>().is_ok() => *value = json!("2026-01-01T00:00:00Z"),
+        Value::String(text) => {
+            let fixed =
+                |part| if Uuid::parse_str(part).is_ok() { "019b7700-0000-7000-8000-000000000000" } else { part };
+            *value = json!(text.split('/').map(fixed).collect::<Vec<_>>().join("/"));
+        }
+        _ => {}
+    }
+}
+
+/// Whether two replies are the same but for the last digits of numbers, which depend on the machine.
+fn is_alike(one: &Value, other: &Value) -> bool {
+    match (one, other) {
+        (Value::Object(one), Value::Object(other)) => {
+            one.keys().eq(other.keys()) && one.iter().all(|(name, member)| is_alike(member, &other[name]))
+        }
+        (Value::Array(one), Value::Array(other)) => {
+            one.len() == other.len() && one.iter().zip(other).all(|(one, other)| is_alike(one, other))
+        }
+        (Value::Number(one), Value::Number(other)) => {
+            let [one, other] = [one, other].map(|number| number.as_f64().unwrap());
+            (one - other).abs() <= 1e-6 * one.abs().max(other.abs())
+        }
+        _ => one == other,
+    }
+}
+
+/// The reply to the first example of an operation, by a server of its own.
+async fn shown_reply(document: &Value, method: &str, path: &str, operation: &Value) -> Value {
+    let server = Server::start().await;
+    let mut id = server.contact().await;
+    let body = |text: &str| serde_json::from_str::<Value>(text).unwrap();
+    let post = async |path: &str, sent: &Value| {
+        let response = server.send(Method::POST, path, Some(&sent.to_string()), &[]).await;
+        assert!(response.status().is_success(), "{path}");
+        body(&response.text().await.unwrap())
+    };
+    let schemas = &document["components"]["schemas"];
+    let content = &operation["requestBody"]["content"]["application/json"];
+    let named = content["examples"].as_object().and_then(|named| named.values().next());
+    let schema = reference(&content["schema"]).map(|name| &schemas[name]["example"]);
+    let sent = named.map(|named| &named["value"]).or(content.get("example")).or(schema);
+    if path.starts_with("/jobs") {
+        let mut sweep = schemas["SweepRequest"]["example"].clone();
+        sweep["job"] = json!(true);
+        sweep["axes"] = json!([{"pointer": "/contact/friction", "values": [0.1, 0.2, 0.3]}]);
+        id = post("/sweep", &sweep).await["id"].as_str().unwrap().to_owned();
+        let job = format!("/jobs/{id}");
+        until("the job ends", async || {
+            (body(&server.get(&job).await.text().await.unwrap())["state"] != "running").then_some(())
+        })
+        .await;
+    } else if path.contains("{id}") {
+        post(&format!("/contacts/{id}/path"), &json!({"path": {"displacement": [1e-7, -1e-7, 1e-7]}})).await;
+    }
+    let query = match operation["operationId"].as_str().unwrap() {
+        "get_stress" => "?points=3",
+        "get_loop" => "?points_per_move=2",
+        "get_steady_cycle" => "?displacement=1e-7",
+        "watch_contact" => "?limit=1",
+        _ => "",
+    };
+    if method == "post" {
+        return post(&path.replace("{id}", &id), sent.unwrap()).await;
+    }
+    let text = server.get(&format!("{}{query}", path.replace("{id}", &id))).await.text().await.unwrap();
+    match operation["operationId"].as_str().unwrap() {
+        "watch_contact" | "watch_job" => {
+            let line = |line: &str| match line.strip_prefix("data: ") {
+                Some(data) => {
+                    let mut data = body(data);
+                    settle("", &mut data);
+                    format!("data: {data}\n")
+                }
+                None => format!("{line}\n"),
+            };
+            json!(text.lines().map(line).collect::<String>())
+        }
+        "get_metrics" => {
+            let lines = text.lines().filter(|line| line.contains("stickslip_moves_total"));
+            json!(lines.map(|line| format!("{line}\n")).collect::<String>())
+        }
+        _ => body(&text),
+    }
+}
+
+/// Every operation that replies with something shows what: its own example is made by the program. Its schema holds it
+/// (`the_linters_have_nothing_to_say`). `UPDATE=1` writes them anew.
+#[tokio::test]
+async fn every_operation_shows_a_reply_of_the_program() {
+    let document = document();
+    let mut shown = serde_json::Map::new();
+    for (path, method, operation) in operations(&document) {
+        let name = operation["operationId"].as_str().unwrap();
+        let responses = operation["responses"].as_object().unwrap();
+        let (_, found) = responses.iter().find(|(status, _)| status.starts_with('2')).unwrap();
+        let Some(content) = found["content"].as_object() else {
+            assert_eq!(method, "delete");
+            continue;
+        };
+        // The document itself, and what is written beside its handler.
+        if ["get_openapi", "check_health", "check_readiness", "get_problem"].contains(&name) {
+            continue;
+        }
+        let content =
+            ["application/json", "text/event-stream", "text/plain"].iter().find_map(|kind| content.get(*kind));
+        let mut reply = shown_reply(&document, method, path, operation).await;
+        settle("", &mut reply);
+        if std::env::var_os("UPDATE").is_none() {
+            let example = &content.unwrap()["example"];
+            assert!(is_alike(&reply, example), "{name}: run this test with UPDATE=1\n{reply}\n{example}");
+        }
+        shown.insert(name.to_owned(), reply);
+    }
+    assert!(shown.len() > 25, "{}", shown.len());
+    if std::env::var_os("UPDATE").is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/openapi/examples.json");
+        std::fs::write(path, format!("{:#}\n", Value::Object(shown))).unwrap();
+    }
 }

@@ -166,6 +166,19 @@ async fn relaxing_is_all_or_nothing_under_a_condition_and_repeatable() {
 }
 
 #[tokio::test]
+async fn what_is_lifted_off_has_nothing_to_relax() {
+    let server = Server::start().await;
+    let id = wandered(&server, &ball(), 2).await;
+    let lift = json!({"indentation": -1e-6}).to_string();
+    good(server.send(Method::POST, &format!("/contacts/{id}/move"), Some(&lift), &[]).await).await;
+    for body in [r#"{"reversals":3}"#, r#"{"reversals":3,"dry_run":true}"#, r#"{"reversals":3,"kind":"equal_peaks"}"#] {
+        let refusal = problem(server.send(Method::POST, &format!("/contacts/{id}/relax"), Some(body), &[]).await).await;
+        assert_eq!((refusal.status, refusal.code.as_str()), (409, "conflict"), "{body}");
+        assert!(refusal.detail.contains("lifted off") && refusal.errors.is_empty(), "{refusal:?}");
+    }
+}
+
+#[tokio::test]
 async fn robustness_is_the_same_for_the_same_seed_and_grows_with_the_error() {
     let server = Server::start().await;
     let ask = |errors: Value| {
@@ -225,7 +238,7 @@ async fn every_fault_has_its_pointer() {
     // Apart there is nothing to move against.
     good(server.post(&format!("/contacts/{id}/move"), &json!({"indentation": -1e-6})).await).await;
     let refused = problem(server.post(&format!("/contacts/{id}/relax"), &json!({"reversals": 3})).await).await;
-    assert!(refused.status == 422 && refused.detail.contains("do not touch"), "{refused:?}");
+    assert!(refused.status == 409 && refused.detail.contains("lifted off"), "{refused:?}");
     let nobody = json!({"reversals": 3, "start": {"contact_id": "018f0000-0000-7000-8000-000000000000"}});
     assert_eq!(problem(server.post("/protocols", &nobody).await).await.code, "contact_not_found");
     let said = of(&ball(), &json!({"reversals": 3, "start": {"contact_id": server.contact().await}}));

@@ -11,11 +11,14 @@ use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 22] = [
+const CASES: [(&str, [&str; 3]); 30] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
     ("keys", ["a.keys", "b.keys", "c.keys"]),
     ("insecure", ["true", "true", "true"]),
+    ("allowed-hosts", ["a.example", "b.example:81", "[2001:db8::1]"]),
     ("cors-origins", ["https://a.example", "http://b.example:81", "http://[::1]"]),
+    ("tls-cert", ["a.pem", "b.pem", "c.pem"]),
+    ("tls-key", ["a.pem", "b.pem", "c.pem"]),
     ("store", ["memory:", "sqlite:a.db", "sqlite:b.db"]),
     ("cache-bytes", ["1MiB", "2MiB", "3000"]),
     ("expire-after", ["1h", "2h", "30d"]),
@@ -25,8 +28,12 @@ const CASES: [(&str, [&str; 3]); 22] = [
     ("otlp-endpoint", ["http://a.example:4318", "http://b.example", "http://c.example"]),
     ("max-connections", ["10", "20", "30"]),
     ("max-connections-per-client", ["1", "2", "3"]),
+    ("trusted-proxies", ["10.0.0.0/8", "::1", "192.0.2.1"]),
     ("max-requests", ["10", "20", "30"]),
     ("max-queue", ["10", "20", "30"]),
+    ("max-requests-per-client", ["10", "20", "30"]),
+    ("max-streams-per-client", ["10", "20", "30"]),
+    ("max-contacts-per-tenant", ["10", "20", "30"]),
     ("max-wait", ["1s", "2s", "500ms"]),
     ("work-bytes", ["256MiB", "300MiB", "1GiB"]),
     ("deadline", ["1s", "2s", "1h"]),
@@ -34,6 +41,7 @@ const CASES: [(&str, [&str; 3]); 22] = [
     ("body-time", ["1s", "2s", "1m"]),
     ("idle-time", ["1s", "2s", "1h"]),
     ("stall-time", ["1s", "2s", "1m"]),
+    ("drain-time", ["1s", "2s", "1m"]),
 ];
 
 fn variable(key: &str) -> String {
@@ -187,6 +195,11 @@ fn whatever_is_wrong_ends_the_start_with_one_line_that_says_what_and_what_is_all
             assert!(said.contains(what) && said.contains(allowed), "{said}");
         }
     }
+    // The near name alone, or else those of this command alone.
+    let near = refusal(&mut binary(&["serve", "--allowed-host", "x"]));
+    assert!(near.ends_with("is it --allowed-hosts?\n"), "{near}");
+    let far = refusal(&mut binary(&["key", "new", "--quite-another", "x"]));
+    assert!(far.contains("--expires-at, --name, --note, --role, --tenant") && !far.contains("--listen"), "{far}");
     // Kubernetes sets these for every container beside a service of this name.
     let beside = [("STICKSLIP_SERVICE_HOST", "10.0.0.1"), ("STICKSLIP_PORT_8080_TCP", "tcp://10.0.0.1:8080")];
     in_force(binary(&["config"]).envs(beside));

@@ -138,6 +138,20 @@ async fn each_warning_has_its_cause_and_its_page() {
     }
 }
 
+/// Twenty springs have the force to a share of a per cent, and stresses only by their order.
+#[tokio::test]
+async fn stresses_that_are_far_off_warn_where_they_are_asked_for() {
+    let server = common::Server::start().await;
+    let mut scene = flawless();
+    scene["solver"] = json!({"springs": {"count": 20}});
+    assert_eq!(codes(&server, &scene).await, [""; 0]);
+    scene["residual"] = json!(true);
+    assert_eq!(codes(&server, &scene).await, ["stress_error"]);
+    scene["solver"] = json!("exact");
+    assert_eq!(codes(&server, &scene).await, [""; 0]);
+    assert!(include_str!("../../docs/warnings.md").contains("\n## stress_error\n"));
+}
+
 /// The codes of the warnings of a reply, and whether it has the member at all.
 fn codes_if_present(reply: &Value) -> Option<Vec<&str>> {
     let warnings = reply.get("warnings")?.as_array().unwrap();

@@ -7,6 +7,7 @@ pub mod postgres;
 pub mod process;
 pub mod prometheus;
 pub mod raw;
+pub mod small_disk;
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Output, Stdio};
@@ -122,8 +123,13 @@ impl Binary {
 
     /// The same over another store.
     pub fn over(store: &str, arguments: &[&str]) -> Binary {
+        Binary::at("127.0.0.1:0", store, arguments)
+    }
+
+    /// The same at an address.
+    pub fn at(address: &str, store: &str, arguments: &[&str]) -> Binary {
         let mut child = clean(Command::new(env!("CARGO_BIN_EXE_stickslip")))
-            .args(["--listen", "127.0.0.1:0", "--store", store])
+            .args(["--listen", address, "--store", store])
             .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

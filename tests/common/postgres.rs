@@ -73,6 +73,18 @@ impl Cluster {
         self.run("pg_ctl", &["-D", &self.data(), "-m", "immediate", "-w", "-s", "stop"]);
     }
 
+    /// Stops the processes of the server where they are, until the result is dropped.
+    pub fn freeze(&self) -> Frozen {
+        let file = std::fs::read_to_string(self.folder.join("data/postmaster.pid")).unwrap();
+        let main = file.lines().next().unwrap().trim().to_owned();
+        // It makes no more processes once it is stopped.
+        signal("-STOP", std::slice::from_ref(&main));
+        let children = std::fs::read_to_string(format!("/proc/{main}/task/{main}/children")).unwrap();
+        let children: Vec<String> = children.split_whitespace().map(str::to_owned).collect();
+        signal("-STOP", &children);
+        Frozen(children.into_iter().chain([main]).collect())
+    }
+
     /// Starts the server again with TLS, and with nothing else for connections over TCP. Returns the path of its
     /// certificate, which is for `localhost` and signed by itself.
     pub fn encrypt(&self) -> PathBuf {
@@ -125,6 +137,20 @@ impl Cluster {
         let errors = std::fs::read_to_string(self.folder.join("errors")).unwrap_or_default();
         assert!(status.success(), "{program} failed: {errors}");
     }
+}
+
+/// Processes that are stopped, and run on when this is dropped.
+pub struct Frozen(Vec<String>);
+
+impl Drop for Frozen {
+    fn drop(&mut self) {
+        signal("-CONT", &self.0);
+    }
+}
+
+fn signal(name: &str, processes: &[String]) {
+    // One of them may have ended meanwhile.
+    let _ = Command::new("kill").arg(name).args(processes).stderr(Stdio::null()).status();
 }
 
 /// Where the server's programs are: on Debian, not on the path.

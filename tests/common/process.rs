@@ -51,8 +51,21 @@ impl Process {
         let Some(Ok(line)) = line else {
             panic!("the server ended at once: {:?}", child.wait());
         };
-        let base = line.split_whitespace().find(|word| word.starts_with("http://")).unwrap().trim_end_matches(',');
+        let base = line.split_whitespace().find(|word| word.starts_with("http")).unwrap().trim_end_matches(',');
         Process { child: Some(child), base: base.to_owned(), client: Client::new(base) }
+    }
+
+    /// The most memory that the process has had so far, bytes.
+    pub fn peak(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.as_ref().unwrap().id())).unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+        line.split_whitespace().next().unwrap().parse::<u64>().unwrap() * 1024
+    }
+
+    /// Sends a signal, such as `HUP`.
+    pub fn signal(&self, name: &str) {
+        let id = self.child.as_ref().unwrap().id().to_string();
+        assert!(Command::new("kill").args([&format!("-{name}"), &id]).status().unwrap().success());
     }
 
     /// SIGKILL, and the end awaited.
@@ -64,9 +77,8 @@ impl Process {
 
     /// SIGTERM, and a graceful end awaited.
     pub async fn stop(mut self) {
+        self.signal("TERM");
         let mut child = self.child.take().unwrap();
-        let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
-        assert!(sent.success());
         let status = tokio::task::spawn_blocking(move || child.wait().unwrap()).await.unwrap();
         assert!(status.success(), "{status}");
     }

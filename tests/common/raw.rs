@@ -41,6 +41,7 @@ impl Service {
             // Not settings of the service, which refuses unknown ones.
             .env_remove("STICKSLIP_FUZZ_CASES")
             .env_remove("STICKSLIP_FUZZ_SEED")
+            .env_remove("STICKSLIP_SOAK_MINUTES")
             .stdout(Stdio::piped())
             .stderr(log)
             .spawn()
@@ -66,6 +67,11 @@ impl Service {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
         let line = status.lines().find(|line| line.starts_with(name)).unwrap();
         line.split_whitespace().nth(1).unwrap().parse::<usize>().unwrap() * 1024
+    }
+
+    /// Tells it to stop.
+    pub fn terminate(&self) {
+        assert!(Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap().success());
     }
 
     /// Files that the process has open; a connection is one of them.
@@ -141,7 +147,7 @@ async fn talk(stream: TcpStream, bytes: &[u8], end: bool) -> Answer {
 /// A request with a JSON body, after which the connection is closed.
 pub fn post(path: &str, body: &str) -> String {
     format!(
-        "POST {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\ncontent-type: application/json\r\n\
+        "POST {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\ncontent-type: application/json\r\n\
          content-length: {}\r\n\r\n{body}",
         body.len()
     )
@@ -149,7 +155,7 @@ pub fn post(path: &str, body: &str) -> String {
 
 /// A request without a body, after which the connection is closed.
 pub fn get(path: &str) -> String {
-    format!("GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n")
+    format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n")
 }
 
 /// Raises the limit of open files of this process for this many connections.

@@ -1,6 +1,12 @@
-//! Third-party programs use the OpenAPI document alone: a generated client, and a tester of APIs.
+//! Third-party programs use the OpenAPI document alone: linters, generated clients, and a tester of APIs.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
 
 use crate::common::process::Process;
+use crate::node::{modules, node, npm_program};
 use crate::python::{file, program, succeed};
 
 #[tokio::test(flavor = "multi_thread")]
@@ -28,4 +34,56 @@ async fn schemathesis_finds_nothing() {
     ask.env("SCHEMATHESIS_HOOKS", "hooks").env("PYTHONPATH", file("tests/python"));
     let said = succeed(&mut ask, "it is installed");
     assert!(said.contains("API Links"), "{said}");
+}
+
+#[test]
+fn the_linters_have_nothing_to_say() {
+    let document = file("openapi/openapi.json");
+    let mut redocly = npm_program("redocly");
+    redocly.arg("lint").arg(&document).arg("--config").arg(file("tests/node/redocly.yaml")).arg("--format=json");
+    let said: Value = serde_json::from_str(&succeed(&mut redocly, "it is installed")).unwrap();
+    assert_eq!((&said["totals"]["errors"], &said["totals"]["warnings"]), (&0.into(), &0.into()), "{said:#}");
+    let mut spectral = npm_program("spectral");
+    spectral.arg("lint").arg(&document).arg("--ruleset").arg(file("tests/node/spectral.yaml"));
+    // It ends with 1 for anything that it finds.
+    succeed(spectral.arg("--fail-severity=hint"), "it is installed");
+}
+
+/// The example as a project of its own, with the types of the document.
+fn typescript(folder: &Path) {
+    for name in ["client.ts", "package.json", "tsconfig.json"] {
+        std::fs::copy(file("examples/typescript").join(name), folder.join(name)).unwrap();
+    }
+    std::os::unix::fs::symlink(modules(), folder.join("node_modules")).unwrap();
+    let mut generate = npm_program("openapi-typescript");
+    generate.arg(file("openapi/openapi.json")).arg("--output").arg(folder.join("stickslip.ts"));
+    succeed(&mut generate, "it is installed");
+}
+
+fn compile(folder: &Path) -> Command {
+    let mut compile = npm_program("tsc");
+    compile.current_dir(folder);
+    compile
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_client_in_typescript_compiles_strictly_and_works() {
+    let server = Process::start("memory:").await;
+    let folder = tempfile::tempdir().unwrap();
+    typescript(folder.path());
+    succeed(&mut compile(folder.path()), "it is installed");
+    let said = succeed(node().arg(folder.path().join("client.js")).arg(&server.base), "");
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines.len(), 2 + 5 + 1 + 2 + 1, "{said}");
+    assert!(lines[0].starts_with("1: 1.") && lines[0].ends_with("partial_slip"), "{said}");
+    assert_eq!(lines[7], "refused: force_exceeds_friction");
+    assert!(lines[8].starts_with("event 1: ") && lines[9].starts_with("event 2: -0.5"), "{said}");
+    assert_eq!(lines[10], "deleted");
+    assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
+
+    // The types are of use: they know a member that is misspelt.
+    let source = std::fs::read_to_string(folder.path().join("client.ts")).unwrap();
+    std::fs::write(folder.path().join("client.ts"), source.replace("friction: 0.3", "fricton: 0.3")).unwrap();
+    let refused = compile(folder.path()).output().unwrap();
+    assert!(!refused.status.success() && String::from_utf8_lossy(&refused.stdout).contains("fricton"), "{refused:?}");
 }

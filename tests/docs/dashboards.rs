@@ -4,17 +4,15 @@ use std::collections::BTreeMap;
 use std::process::Command;
 use std::time::Duration;
 
-use serde_json::Value;
-use stickslip_wire::{Move, MoveRequest};
-use tokio_postgres::NoTls;
+use serde_json::{Value, json};
+use stickslip_wire::Move;
 
 use crate::common::create;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
 use crate::common::prometheus::{MISSING, Prometheus};
+use crate::node::node;
 use crate::python::{file, program, succeed};
-
-const MOVES: usize = 5;
 
 /// What a query finds: a number for each set of labels. None if there is no answer.
 async fn ask(prometheus: &Prometheus, http: &reqwest::Client, query: &str) -> Option<Vec<(Value, f64)>> {
@@ -81,58 +79,91 @@ async fn every_query_of_the_dashboards_is_answered() {
     assert!(values["sum(rate(stickslip_moves_total[1m]))"] > 0.0, "{values:?}");
     let share = values.iter().find(|(query, _)| query.contains("cache_hits")).unwrap().1;
     assert!((0.0..=1.0).contains(share), "{share}");
-
-    contact_dashboard(&server, &database, made.id, steps as usize).await;
 }
 
-/// The queries of the dashboard of a contact that has made so many moves.
-async fn contact_dashboard(server: &Process, database: &str, id: uuid::Uuid, moves: usize) {
-    for force in 0..MOVES {
-        let request = MoveRequest { force: Some(0.1 * force as f64), ..MoveRequest::default() };
-        server.client.apply(id, &request, &Default::default()).await.unwrap();
-    }
-    let moves = moves + MOVES;
-    let (client, connection) = tokio_postgres::connect(database, NoTls).await.unwrap();
-    tokio::spawn(connection);
-    let board = dashboard("contact");
-    let variable = &board["templating"]["list"][0];
-    let rows = client.query(variable["query"].as_str().unwrap(), &[]).await.unwrap();
-    assert_eq!(rows.iter().map(|row| row.get::<_, String>("__value")).collect::<Vec<_>>(), [id.to_string()]);
-    assert!(rows[0].get::<_, String>("__text").ends_with(&id.to_string()));
+/// A cycle of displacements to and fro, beyond the gross slip of the contact of the examples, m.
+fn measured_cycle() -> Vec<f64> {
+    let turn = |step: u32| (f64::from(step) * std::f64::consts::TAU / 20.0).cos();
+    (0..=20).map(|step| 3e-7 * turn(step)).collect()
+}
 
-    let (mut tables, mut urls) = (0, 0);
+/// A contact that follows a bench which is exactly as it predicts.
+async fn follow_bench(server: &Process) -> String {
+    let http = reqwest::Client::new();
+    let post = async |path: String, body: Value| -> Value {
+        let reply = http.post(format!("{}{path}", server.base)).json(&body).send().await.unwrap();
+        reply.error_for_status().unwrap().json().await.unwrap()
+    };
+    let displacements = measured_cycle();
+    let (bench, contact) = (server.client.create(&create(), &Default::default()).await.unwrap().id, create());
+    let path = json!({"path": {"displacement": displacements}, "steps": "all"});
+    let states = post(format!("/contacts/{bench}/path"), path).await;
+    let measured = states["steps"].as_array().unwrap().iter();
+    let observations: Vec<Value> =
+        measured.map(|state| json!({"displacement": state["displacement"], "force": state["force"]})).collect();
+    assert_eq!(observations.len(), displacements.len());
+    let id = server.client.create(&contact, &Default::default()).await.unwrap().id;
+    post(format!("/contacts/{id}/observations"), json!({"observations": observations})).await;
+    id.to_string()
+}
+
+/// What a data source finds in a reply by a selector with dots.
+fn select<'a>(reply: &'a Value, selector: &str) -> &'a Value {
+    let pointer: String = selector.split('.').filter(|part| !part.is_empty()).map(|part| format!("/{part}")).collect();
+    reply.pointer(&pointer).unwrap_or_else(|| panic!("no {selector} in {reply}"))
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn every_panel_of_a_contact_works_on_sqlite() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Process::start(&format!("sqlite:{}", folder.path().join("contacts.db").display())).await;
+    let id = follow_bench(&server).await;
+    let board = dashboard("contact");
+    let of = |text: &Value| text.as_str().unwrap().replace("${service}", &server.base).replace("${contact}", &id);
+
+    // The list of contacts, by the language in which the data source selects.
+    let variable = &board["templating"]["list"][1]["query"]["infinityQuery"];
+    let page: Value = reqwest::get(of(&variable["url"])).await.unwrap().json().await.unwrap();
+    let mut select_contacts = node();
+    let script = "const [, expression, page] = process.argv;\
+                  require('jsonata')(expression).evaluate(JSON.parse(page)).then((found) => console.log(JSON.stringify(found)))";
+    let expression = variable["root_selector"].as_str().unwrap();
+    let said = succeed(select_contacts.args(["-e", script, expression, &page.to_string()]), "it is installed");
+    let choices: Vec<Value> = serde_json::from_str(&said).unwrap();
+    assert_eq!((choices.len(), choices[0]["__value"].as_str()), (2, Some(id.as_str())), "the newest first: {said}");
+    assert!(choices[0]["__text"].as_str().unwrap().ends_with(&id), "{said}");
+
+    let mut titles = Vec::new();
     for (title, target) in targets(&board) {
-        match target["datasource"]["uid"].as_str().unwrap() {
-            "postgres" => {
-                let query = target["rawSql"].as_str().unwrap().replace("$contact", &id.to_string());
-                let query = query.replace("$__timeFilter(at)", "at BETWEEN now() - interval '1 hour' AND now()");
-                let rows = client.query(&query, &[]).await.unwrap();
-                assert_eq!(rows.len(), moves, "{title}");
-                assert_eq!(rows[0].columns()[0].name(), "time", "{title}");
-                rows.iter().for_each(|row| assert!(row.get::<_, f64>(1).is_finite(), "{title}"));
-                tables += 1;
-            }
-            "infinity" => {
-                let url = target["url"].as_str().unwrap().replace("$contact", &id.to_string());
-                let url = url.replace("http://stickslip:8080", &server.base);
-                let rows: Vec<Value> = reqwest::get(url).await.unwrap().json().await.unwrap();
-                assert!(rows.len() > 100, "{title}: {}", rows.len());
-                for column in target["columns"].as_array().unwrap() {
-                    let name = column["selector"].as_str().unwrap();
-                    assert!(rows.iter().all(|row| row[name].is_number()), "{title}: {name}");
-                }
-                urls += 1;
-            }
-            other => panic!("{title}: {other}"),
+        assert_eq!(target["datasource"]["uid"], "infinity", "{title}");
+        assert!(target["url"].as_str().unwrap().starts_with("${service}/"), "{title}: the address is a variable");
+        let reply = reqwest::get(of(&target["url"])).await.unwrap().error_for_status().unwrap();
+        let reply: Value = reply.json().await.unwrap();
+        let found = select(&reply, target["root_selector"].as_str().unwrap());
+        let rows = found.as_array().map_or(vec![found], |rows| rows.iter().collect());
+        assert!(!rows.is_empty(), "{title}");
+        for column in target["columns"].as_array().unwrap() {
+            let cells = rows.iter().map(|row| select(row, column["selector"].as_str().unwrap()));
+            let shown = |cell: &Value| match column["type"].as_str() {
+                Some("number") => cell.is_number(),
+                Some("timestamp") => cell.as_str().is_some_and(|at| at.ends_with('Z')),
+                _ => false,
+            };
+            assert!(cells.clone().all(shown), "{title}: {column} {cells:?}");
         }
+        titles.push(title);
     }
-    assert_eq!((tables, urls), (4, 2));
+    assert_eq!(titles.len(), 10, "{titles:?}");
 }
 
 #[test]
 fn what_is_provisioned_is_there_and_fits_together() {
     let check = Command::new("promtool").args(["check", "config"]).arg(file("deploy/prometheus.yml")).output();
     assert!(check.expect(MISSING).status.success());
+    let mut compose = Command::new("docker-compose");
+    compose.arg("--file").arg(file("deploy/compose.yaml")).args(["config", "--quiet"]);
+    compose.env("POSTGRES_PASSWORD", "letters").env("GRAFANA_PASSWORD", "digits");
+    succeed(&mut compose, "this test needs docker-compose: `./check` installs it");
     let mut read = program("python");
     let said = succeed(read.arg(file("tests/python/deploy.py")).arg(file("deploy")), "it is installed");
     assert!(said.contains("deploy fits together"), "{said}");

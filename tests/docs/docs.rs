@@ -2,6 +2,7 @@
 
 use std::process::Command;
 
+use stickslip::api::middleware::access_control::{Need, need};
 use stickslip_wire::Code;
 
 use crate::common::process::Process;
@@ -20,7 +21,8 @@ async fn every_command_of_the_pages_runs_as_printed() {
         ("fretting.md", 1),
         ("rough-contacts.md", 1),
         ("measured-surfaces.md", 1),
-        ("contacts.md", 6),
+        ("measured-loops.md", 1),
+        ("contacts.md", 7),
         ("gallery.md", 1),
         ("errors.md", 1),
     ] {
@@ -34,8 +36,8 @@ async fn every_command_of_the_pages_runs_as_printed() {
         let said = succeed(&mut run, "bash is there");
         assert!(name == "gallery.md" || said.contains('{'), "{name}: {said}");
     }
-    // The pages leave nothing behind but the contact of the gallery and a fork.
-    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 2);
+    // The pages leave nothing behind but the contact of the gallery and two forks.
+    assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 3);
 }
 
 #[test]
@@ -46,8 +48,14 @@ fn every_link_between_the_pages_leads_somewhere() {
         "fretting.md",
         "rough-contacts.md",
         "measured-surfaces.md",
+        "measured-loops.md",
         "contacts.md",
+        "clients.md",
         "dashboards.md",
+        "access.md",
+        "operation.md",
+        "overload.md",
+        "sweeps.md",
         "limits.md",
         "gallery.md",
         "errors.md",
@@ -114,6 +122,26 @@ fn the_crates_depend_on_no_more_than_the_readme_says() {
     for absent in ["axum", "rusqlite", "tokio-postgres", "deadpool-postgres"] {
         assert!(!wire.iter().any(|name| name == absent), "stickslip-wire depends on {absent}");
     }
+}
+
+#[test]
+fn the_page_of_access_lists_every_route_with_what_it_needs() {
+    let document: serde_json::Value = serde_json::from_str(stickslip::api::document()).unwrap();
+    let mut rows = Vec::new();
+    for (path, item) in document["paths"].as_object().unwrap() {
+        for method in item.as_object().unwrap().keys().map(|method| method.to_uppercase()) {
+            let needs = match need(&method, path) {
+                Need::Key(role) => format!("`{}`", role.name()),
+                Need::Nothing => "no key".to_owned(),
+            };
+            rows.push((path.clone(), format!("| `{method} {path}` | {needs} |")));
+        }
+    }
+    rows.sort();
+    let page = page("access.md");
+    let (_, table) = page.split_once("| route | needs |\n|---|---|\n").unwrap();
+    let listed: Vec<&str> = table.lines().take_while(|line| line.starts_with('|')).collect();
+    assert_eq!(listed, rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>());
 }
 
 /// The page is printed anew by `UPDATE=1 cargo test --test docs errors`.

@@ -1,6 +1,7 @@
 //! The examples run unchanged, against the real program.
 
 use std::io::{BufRead as _, BufReader};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
@@ -8,6 +9,7 @@ use stickslip_wire::Move;
 
 use crate::common::create;
 use crate::common::process::Process;
+use crate::node::node;
 use crate::python::{file, program, succeed};
 
 #[allow(dead_code, reason = "its `main` is for the example alone")]
@@ -94,22 +96,57 @@ async fn a_curve_of_another_program_becomes_a_contact_and_a_closed_loop() {
     assert!((rows[150][1] / turned[1] + 1.0).abs() < 1e-12, "the lower end mirrors the upper: {:?}", rows[150]);
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn the_notebook_runs_from_its_first_cell_to_its_last() {
-    let server = Process::start("memory:").await;
-    let notebook: Value =
-        serde_json::from_str(&std::fs::read_to_string(file("examples/python/stickslip.ipynb")).unwrap()).unwrap();
+/// Runs the cells of a notebook in order in a folder, and then the assertions of a test.
+fn run_notebook(name: &str, folder: &Path, server: &Process, held: &str) {
+    let path = file("examples/python").join(name);
+    let notebook: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     let cells = notebook["cells"].as_array().unwrap().iter();
+    assert!(cells.clone().all(|cell| cell["id"].is_string()), "nbformat 4.5 asks for identifiers");
     let code: Vec<&str> =
         cells.filter(|cell| cell["cell_type"] == "code").map(|cell| cell["source"].as_str().unwrap()).collect();
     assert!(code.len() > 6, "{}", code.len());
+    let mut run = program("python");
+    run.current_dir(folder).env("STICKSLIP_URL", &server.base);
+    succeed(run.arg("-c").arg(format!("{}\n{held}", code.join("\n"))), "");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_notebook_runs_from_its_first_cell_to_its_last() {
+    let server = Process::start("memory:").await;
     // The law is a column of the table: compare it with the results.
     let held = "assert (abs(reduction['max'] / reduction['law'] - 1)[1:] < 1e-9).all() and len(history) == 3\n\
-                assert len(stress) == 200 and plot.startswith('<svg') and list(live['sequence']) == [3]\n\
+                assert len(stress) == 200 and plot.startswith('<svg') and event['sequence'] == 3\n\
                 assert requests.get(contact).status_code == 404";
-    let mut run = program("python");
-    run.current_dir(file("examples/python")).env("STICKSLIP_URL", &server.base);
-    succeed(run.arg("-c").arg(format!("{}\n{held}", code.join("\n"))), "");
+    run_notebook("stickslip.ipynb", tempfile::tempdir().unwrap().path(), &server, held);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_file_of_a_bench_becomes_friction_and_a_contact() {
+    let server = Process::start("memory:").await;
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("loop.svg");
+    let mut script = program("python");
+    let printed = succeed(script.arg(file("examples/python/fit_loop.py")).arg(&server.base).arg(&picture), "");
+    assert!(printed.starts_with("name,value,low,high\nfriction,0.4"), "{printed}");
+    let of = |name: &str| {
+        let line = printed.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+        line.split(',').skip(1).map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<_>>()
+    };
+    // What make_ball_loop.py has made the file of.
+    for (name, truth) in [("friction", 0.42), ("machine_compliance", 5e-8), ("force_offset", 0.15)] {
+        let [value, low, high] = of(name)[..] else { panic!("{printed}") };
+        let reach = high - low;
+        assert!(low < value && value < high && low - reach < truth && truth < high + reach, "{printed}");
+    }
+    assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg"));
+    let held = "codes = [warning['code'] for warning in open_ended['warnings']]\n\
+                assert 'machine_compliance_unknown' in codes and 'partial_slip_only' in codes, codes\n\
+                assert picture.startswith('<svg') and moved['force'] > 0\n\
+                friction = closed['estimates']['friction']\n\
+                assert abs(friction['value'] / 0.42 - 1) < 0.1, friction";
+    // It reads the file of the bench by the script beside it.
+    run_notebook("measured_loop.ipynb", &file("examples/python"), &server, held);
+    assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -141,48 +178,22 @@ async fn the_example_of_the_client_lives_a_life() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn the_calls_of_the_flow_for_node_red_are_answered() {
+async fn the_flow_runs_in_node_red() {
     let server = Process::start("memory:").await;
-    let flow: Vec<Value> =
-        serde_json::from_str(&std::fs::read_to_string(file("examples/node-red.json")).unwrap()).unwrap();
-    let leads = |node: &Value, to: &Value| node["wires"].to_string().contains(&to["id"].to_string());
-    let node = |id: &Value| flow.iter().find(|node| node["id"] == *id).unwrap();
-    let http = reqwest::Client::new();
-    let (mut id, mut calls) = (String::new(), 0);
-    for call in flow.iter().filter(|node| node["type"] == "http request") {
-        // What is pressed, perhaps by way of a node that names the contact.
-        let before: Vec<&Value> = flow.iter().filter(|node| leads(node, call)).collect();
-        let pressed = flow.iter().filter(|start| {
-            start["type"] == "inject" && before.iter().any(|step| step["id"] == start["id"] || leads(start, step))
-        });
-        for start in pressed {
-            let url = call["url"].as_str().unwrap().replace("${STICKSLIP_URL}", &server.base);
-            let request =
-                http.request(call["method"].as_str().unwrap().parse().unwrap(), url.replace("{{{contact}}}", &id));
-            let body = start["payload"].as_str().unwrap().to_owned();
-            let request = if call["method"] == "POST" {
-                request.header("content-type", "application/json").body(body)
-            } else {
-                request
-            };
-            let reply = request.send().await.unwrap();
-            assert!(reply.status().is_success(), "{}: {}", call["name"], reply.text().await.unwrap());
-            let reply: Value = reply.json().await.unwrap();
-            if call["name"] == "POST /contacts" {
-                reply["id"].as_str().unwrap().clone_into(&mut id);
-            } else if call["method"] == "GET" {
-                assert!(reply.as_array().unwrap().iter().all(|row| row["shear"].is_number()));
-            }
-            calls += 1;
-        }
-    }
-    assert_eq!(calls, 4);
-    // Every wire leads somewhere.
-    for wire in flow
-        .iter()
-        .flat_map(|node| node["wires"].as_array().into_iter().flatten())
-        .flat_map(|wires| wires.as_array().unwrap())
-    {
-        node(wire);
-    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = node();
+    run.arg(file("tests/node/flow.cjs")).arg(folder.path()).arg(file("examples/node-red.json"));
+    let said = succeed(run.env("STICKSLIP_URL", &server.base), "it is installed");
+    let shown: Vec<Value> = said.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    // What each button shows, and nothing that a node complains of.
+    let [created, moved, back, stress] = &shown[..] else { panic!("{said}") };
+    assert_eq!(created["create-in"]["sequence"], 0, "{said}");
+    let force = |reply: &Value| reply["state"]["force"].as_f64().unwrap();
+    assert!((force(&moved["move-in"]) - 1.5).abs() < 1e-9 && (force(&back["back-in"]) - 1.0).abs() < 1e-9, "{said}");
+    // In the ring that slips the shear stress is mu p, and largest near the edge of the stick zone.
+    let contact = &created["create-in"]["contact"];
+    let [radius, pressure] = ["contact_radius", "max_pressure"].map(|name| contact[name].as_f64().unwrap());
+    let stick = moved["move-in"]["state"]["stick_radius"].as_f64().unwrap() / radius;
+    let largest = 0.3 * pressure * (1.0 - stick * stick).sqrt();
+    assert!((stress["stress-in"].as_f64().unwrap() / largest - 1.0).abs() < 0.3, "{said}");
 }

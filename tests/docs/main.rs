@@ -7,5 +7,6 @@ mod clients;
 mod dashboards;
 mod docs;
 mod examples;
+mod node;
 mod python;
 mod report;

@@ -37,7 +37,10 @@ pub fn examine(body: &[u8]) -> Outcome {
     };
     // Curved moves leave a slip history whose length is not known beforehand, of which the search for extrema costs the square; and where a
     // load has no closed inverse, each of their many chords costs a search.
-    let searched = matches!(request.contact.profile, Profile::Sum(_) | Profile::Tabulated(_));
+    let searched = matches!(
+        request.contact.profile,
+        Profile::Sum(_) | Profile::Tabulated(_) | Profile::Asperities(_) | Profile::LoadCurve(_)
+    );
     let slow = simulation.plan.curved() > 0 && (simulation.residual || searched);
     if slow || cost::of_simulation(&simulation) > MAX_COST {
         return Outcome::TooExpensive;

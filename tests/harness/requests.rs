@@ -145,10 +145,45 @@ fn table() -> impl Strategy<Value = Value> {
     })
 }
 
+/// Contacts that are known by their load curve alone: asperities of even, crowded or repeated gaps, a power of the indentation
+/// with or without noise, ellipses.
+fn curve() -> impl Strategy<Value = Value> {
+    let radius = || quantity(&range::RADIUS, -5.0, 0.0);
+    let gaps = prop::collection::vec(prop_oneof![4 => 0.0..1.0_f64, 1 => 0.0..1e-9_f64, 1 => Just(0.5)], 1..80);
+    let asperities = (gaps, radius(), -9.0..-4.0_f64, any::<bool>()).prop_map(|(gaps, radius, scale, each)| {
+        let gaps: Vec<f64> = gaps.iter().map(|gap| gap * 10_f64.powf(scale)).collect();
+        if each {
+            let radii: Vec<f64> = (0..gaps.len()).map(|index| radius * (1.0 + 0.1 * (index % 7) as f64)).collect();
+            json!({"type": "asperities", "radii": radii, "gaps": gaps})
+        } else {
+            json!({"type": "asperities", "radius": radius, "gaps": gaps})
+        }
+    });
+    let steps = prop::collection::vec(prop_oneof![6 => 0.5..1.5_f64, 1 => 1e-9..1e3_f64], 1..40);
+    let noise = prop_oneof![4 => Just(0.0), 1 => 1e-6..0.5_f64];
+    let load_curve =
+        (steps, -8.0..-4.0_f64, -2.0..4.0_f64, 1.0..3.0_f64, noise).prop_map(|(steps, length, force, power, noise)| {
+            let total: f64 = steps.iter().sum();
+            let mut at = 0.0;
+            let (mut indentation, mut normal_force) = (vec![0.0], vec![0.0]);
+            for step in steps {
+                at += step / total;
+                indentation.push(10_f64.powf(length) * at);
+                normal_force.push(10_f64.powf(force) * at.powf(power) * (1.0 + noise * step));
+            }
+            json!({"type": "load_curve", "indentation": indentation, "normal_force": normal_force})
+        });
+    let ellipsoid = (radius(), radius(), any::<bool>()).prop_map(
+        |(x, y, along)| json!({"type": "ellipsoid", "radii": [x, y], "direction": if along { "x" } else { "y" }}),
+    );
+    prop_oneof![asperities, load_curve, ellipsoid]
+}
+
 fn profile() -> impl Strategy<Value = Value> {
     prop_oneof![
-        8 => family(),
-        1 => prop::collection::vec(family(), 1..4).prop_map(|parts| json!({"type": "sum", "parts": parts})),
+        16 => family(),
+        3 => curve(),
+        2 => prop::collection::vec(family(), 1..4).prop_map(|parts| json!({"type": "sum", "parts": parts})),
     ]
 }
 

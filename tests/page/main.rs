@@ -1,8 +1,11 @@
 //! The page at `/`, in a real browser.
 
+mod axe;
 mod browser;
 #[path = "../common/mod.rs"]
 mod common;
+mod comparing;
+mod moving;
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -14,7 +17,9 @@ use reqwest::header;
 use serde_json::{Value, json};
 use stickslip::access::{Role, new_key};
 use stickslip_wire::client::Options;
-use stickslip_wire::{CreateRequest, Move, MoveRequest, NewSession};
+use stickslip_wire::{
+    CreateRequest, Move, MoveRequest, NewSession, Observation, ObservationsRequest, PathRequest, Steps,
+};
 use tempfile::tempdir;
 use tokio::time::{sleep, timeout};
 
@@ -34,6 +39,12 @@ async fn moved(server: &Binary, session: &NewSession, parts: &[f64]) {
 /// A number of one to a thousand with four digits, without trailing zeros.
 fn four(value: f64) -> String {
     let places = 3 - value.log10().floor() as usize;
+    format!("{value:.places$}").parse::<f64>().unwrap().to_string()
+}
+
+/// A number of one to a thousand with three digits, without trailing zeros.
+fn three(value: f64) -> String {
+    let places = 2 - value.log10().floor() as usize;
     format!("{value:.places$}").parse::<f64>().unwrap().to_string()
 }
 
@@ -101,7 +112,11 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     // The history is still there after a reload.
     let moves = server.client.contact(id).await.unwrap().sequence;
     browser.page.refresh().await.unwrap();
-    browser.until("document.querySelector('.badge.on') !== null").await;
+    browser
+        .until(
+            "document.querySelector('.badge.on') !== null && document.querySelector('#plot-loop .line.past') !== null",
+        )
+        .await;
     browser.until(&turned).await;
     browser.until(&format!("{WAY}.length > {moves}")).await;
     assert_eq!(browser.value("document.querySelector('h1').innerText").await, "Steel ball");
@@ -138,6 +153,12 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
             browser.page.goto(&format!("{}/{view}", server.address)).await.unwrap();
             browser.until("document.querySelector('h1') !== null").await;
             browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+            // What is folded must fit, be readable, and have names too.
+            browser
+                .value("document.querySelectorAll('details:not(.menu)').forEach((one) => one.open = true) ?? null")
+                .await;
+            browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+            assert_eq!(axe::serious(&browser).await, [""; 0], "{view} {name}");
         }
         browser.until("document.querySelectorAll('.plot .slipping').length === 1").await;
         browser.until("document.querySelector('#plot-below .shade') !== null").await;
@@ -218,10 +239,15 @@ async fn a_protocol_run_reduces_the_stress_and_shows_how_much() {
     assert_eq!((now.sequence, now.state.displacement), (7, 0.0));
 
     browser.click("#compute-residual").await;
-    browser.until("document.querySelectorAll('#plot-residual .dot').length >= 4 * 15").await;
+    browser.until("document.querySelectorAll('#plot-residual .dot').length >= 4 * 15 + 7").await;
     browser.press("#plot-residual svg", "\u{e011}").await;
     let one = browser.value("document.querySelector('#plot-residual .said').textContent").await;
     assert!(one.as_str().unwrap().contains("linear: largest 0.7071"), "{one}");
+    // With two reversals the least is 3/(4 sqrt 2), and with one no protocol is better than another.
+    assert!(one.as_str().unwrap().contains("least possible (found by search): largest 0.7071"), "{one}");
+    browser.press("#plot-residual svg", "\u{e014}").await;
+    let two = browser.value("document.querySelector('#plot-residual .said').textContent").await;
+    assert!(two.as_str().unwrap().contains("largest 0.5303"), "{two}");
     browser.picture("run").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
@@ -280,6 +306,11 @@ async fn the_best_run_keeps_its_promise_and_solvers_are_compared() {
     browser.until("document.querySelectorAll('#plot-accuracy .dot').length >= 3").await;
     let names = browser.value("document.querySelector('#plot-accuracy').textContent").await;
     assert!(names.as_str().unwrap().contains("exact") && names.as_str().unwrap().contains("springs"), "{names}");
+    // No name lies on another.
+    let lie = "(() => { const boxes = [...document.querySelectorAll('#plot-accuracy .series-name')].map((name) => name.getBoundingClientRect()); \
+               return boxes.length >= 3 && boxes.every((one, index) => boxes.slice(index + 1).every((two) => \
+               one.right < two.left || two.right < one.left || one.bottom - 2 < two.top || two.bottom - 2 < one.top)); })()";
+    assert_eq!(browser.value(lie).await, true);
     browser.picture("accuracy").await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
@@ -325,6 +356,40 @@ async fn the_steady_cycle_follows_the_slider() {
     browser.until(&format!("{card}.includes('Without a load') && !{card}.includes('J')")).await;
     browser.click("#compute-map").await;
     browser.until("document.querySelector('#plot-map .line.bound') !== null").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn measured_points_are_drawn_over_the_loop_with_the_friction_that_they_show() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    // Measured on a contact with another friction.
+    let bench = server.client.create(&CreateRequest { friction: 0.4, ..create() }, &Options::default()).await.unwrap();
+    let reach = 3.0 * session.contact.gross_slip_displacement;
+    let turn = |step: usize| reach * (std::f64::consts::TAU * step as f64 / 20.0).cos();
+    let slide = async |steps: std::ops::Range<usize>| {
+        let path = stickslip_wire::Path::Displacement(steps.map(turn).collect());
+        let path = PathRequest { path, stress: None, steps: Steps::All, tolerance: None };
+        let states = server.client.path(bench.id, &path, &Options::default()).await.unwrap().steps;
+        let measured =
+            states.iter().map(|state| Observation { displacement: state.displacement, force: state.force, at: None });
+        let request = ObservationsRequest { observations: measured.collect() };
+        server.client.observe(session.id, &request, &Options::default()).await.unwrap();
+    };
+    slide(0..15).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let dots = "document.querySelectorAll('#plot-loop .dot.measured').length";
+    let said = "document.querySelector('.state-text').innerText";
+    browser.until(&format!("{dots} === 15 && !{said}.includes('Measured')")).await;
+    slide(15..21).await;
+    browser.until(&format!("{dots} === 21 && {said}.includes('Measured friction μ')")).await;
+    browser.until(&format!("{said}.includes('0.4 (95 %: 0.4 to 0.4, moves 1 to 21)')")).await;
+    browser.picture("measured").await;
+    // A contact that nobody measures says nothing of it.
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, bench.id)).await.unwrap();
+    browser.until(&format!("{dots} === 0 && document.querySelector('#plot-loop .line.past') !== null")).await;
     browser.stayed_quiet_and_at(&server.address, &[]).await;
     browser.close().await;
 }
@@ -377,8 +442,7 @@ fn below(session: &NewSession, poisson: f64, depth: f64) -> (f64, f64) {
 /// Three digits in MPa or GPa, as the page shows them.
 fn pascals(value: f64) -> String {
     let (value, unit) = if value >= 1e9 { (value / 1e9, "GPa") } else { (value / 1e6, "MPa") };
-    let places = 2 - value.log10().floor() as usize;
-    format!("{} {unit}", format!("{value:.places$}").parse::<f64>().unwrap())
+    format!("{} {unit}", three(value))
 }
 
 #[tokio::test]
@@ -397,7 +461,7 @@ async fn the_stress_below_the_surface_follows_the_moves() {
     assert_eq!(browser.value(bodies).await, "first", "a rigid body has no stress");
     assert_eq!(browser.value("document.querySelectorAll('#below-card input').length").await, 0);
     // The edges are at a quarter and three quarters of four contact radii, and the darkest shade is where the ring is.
-    let drawn = "(() => { const frame = document.querySelector('#plot-below .frame').getBBox(); \
+    let drawn = "(() => { const frame = document.querySelector('#plot-below rect.field').getBBox(); \
                  const edges = [...document.querySelectorAll('#plot-below .contact-edge')].map((line) => (line.getBBox().x - frame.x) / frame.width); \
                  const dark = [...document.querySelectorAll('#plot-below .shade')].at(-1).getBBox(); \
                  const ring = document.querySelector('#plot-below .mark'); \
@@ -522,13 +586,23 @@ async fn what_is_on_screen_can_be_taken_away() {
         match name {
             "loop.png" => assert!(file.starts_with(b"\x89PNG\r\n\x1a\n")),
             "loop.svg" => {
-                assert!(text.starts_with("<svg") && text.contains("Displacement U") && !text.contains("class="))
+                assert!(text.starts_with("<svg") && text.contains("Displacement U") && !text.contains("class="));
+                for name in ["Hysteresis loop", "whole path", "since the last reversal"] {
+                    assert!(text.contains(name), "the title and the legend are part of it: {name}");
+                }
+                let view = text.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();
+                assert!(view.split(' ').all(|number| number.parse::<i32>().is_ok()), "whole pixels: {view}");
             }
             _ => assert_eq!(text.lines().count(), 3, "{text}"),
         }
     }
     browser.click("#plot-above .menu button:nth-of-type(5)").await;
     let drawing = String::from_utf8(saved(&folder.path().join("above.svg")).await).unwrap();
+    // The colours go up to the largest stress that is there.
+    let state = reqwest::get(format!("{}/contacts/{}/stress?points=2&residual=true", server.address, session.id)).await;
+    let largest = state.unwrap().json::<Value>().await.unwrap()["residual"]["max"].as_f64().unwrap();
+    let most = pascals(largest);
+    assert!(drawing.contains(&format!(">−{most}<")) && drawing.contains(&format!(">+{most}<")), "{most}");
     assert!(drawing.contains("<stop") && drawing.contains("rgb(") && !drawing.contains("oklab("));
     // The commands are those of this contact, and they work.
     browser.click(".copying button").await;
@@ -621,6 +695,41 @@ async fn a_pasted_scan_becomes_the_profile_of_the_contact() {
 }
 
 #[tokio::test]
+async fn a_pasted_loop_becomes_friction_and_a_contact() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    browser.find("textarea[name=loop]").await;
+    // What a rig has recorded of such a ball with a friction of 0.42: time, displacement in µm and force, with decimal commas.
+    let table = std::fs::read_to_string("examples/data/ball_loop.csv").unwrap();
+    let paste = format!("document.querySelector('textarea[name=loop]').value = {} ?? null", json!(table));
+    browser.value(&paste).await;
+    // The first column is the time: the loop is none, and its fault is shown.
+    browser.click("#fit-loop").await;
+    let card = "document.querySelector('#fit-loop').closest('.card')";
+    browser.until(&format!("[...{card}.querySelectorAll('.fault')].some((one) => one.innerText.length > 20)")).await;
+    for (name, column) in [("displacements", "2"), ("forces", "3")] {
+        let place = format!("document.querySelector('[aria-label=\"Column of {name}\"]').value = '{column}' ?? null");
+        browser.value(&place).await;
+    }
+    browser.click("[name=machine_compliance]").await;
+    browser.click("#fit-loop").await;
+    browser.until("document.querySelector('#loop-estimates').innerText.includes('friction μ')").await;
+    browser.until("document.querySelectorAll('#plot-fit path.line').length === 2").await;
+    assert_eq!(browser.value("document.querySelector('#loop-warnings').children.length").await, 0);
+    browser.picture("loop-fit").await;
+    browser.click("#create-fitted").await;
+    browser.until(&format!("!location.hash.endsWith('{}')", session.id)).await;
+    let hash = browser.value("location.hash").await;
+    let id = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
+    let made = server.client.definition(id).await.unwrap();
+    assert!((made.friction / 0.42 - 1.0).abs() < 0.02, "{made:?}");
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
 async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     let new = new_key("page", &[Role::Write], "").unwrap();
     let server = Binary::start(&["--keys", &new.entry]);
@@ -638,6 +747,11 @@ async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
     browser.click("#key .primary").await;
     let rows = "[...document.querySelectorAll('.list strong')].map((name) => name.innerText).join()";
     browser.until(&format!("{rows} === 'Rubber foot,Steel ball'")).await;
+    browser.until("[...document.querySelectorAll('.list .shape')].every((shape) => shape.innerText === 'Sphere (Hertz’s parabola), 10 N')").await;
+    browser.write("#search", "EL BA").await;
+    browser.until(&format!("{rows} === 'Steel ball'")).await;
+    browser.write("#search", "nothing").await;
+    browser.until(&format!("{rows} === ''")).await;
     browser.write("#search", "steel").await;
     browser.until(&format!("{rows} === 'Steel ball'")).await;
     browser.click(".list a").await;

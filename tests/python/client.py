@@ -3,7 +3,7 @@
 import sys
 
 from made import Client
-from made.api.contacts import create_contact, get_contact, get_history, get_stress, move_contact
+from made.api.contacts import create_contact, get_contact, get_history, get_stress, move_contact, watch_contact
 from made.models import (
     CreateRequest,
     ElasticBody,
@@ -55,4 +55,8 @@ assert isinstance(refused, ProblemDocument) and refused.code == "force_exceeds_f
 assert refused.errors[0].pointer == "", "the whole move"
 assert get_contact.sync(id=made.id, client=client).sequence == 1
 assert [item.sequence for item in get_history.sync(id=made.id, client=client).items] == [1]
+
+# Events end after as many as are asked for, so that they can be read whole.
+events = watch_contact.sync(id=made.id, client=client, last_event_id=0, limit=1)
+assert events.startswith("id: 1\nevent: state\ndata: {") and events.count("data: ") == 1, events
 print("the generated client works")

@@ -34,9 +34,14 @@ assert len(boards) == 2, boards
 for board in boards:
     found = json.loads(board.read_text())
     used = [target["datasource"] for panel in found["panels"] for target in panel["targets"]]
-    used += [variable["datasource"] for variable in found["templating"]["list"]]
+    used += [variable["datasource"] for variable in found["templating"]["list"] if variable["type"] == "query"]
     assert used and all(kinds[source["uid"]] == source["type"] for source in used), board
     assert len({panel["id"] for panel in found["panels"]}) == len(found["panels"]), board
+    # What a data source may ask includes the service that the dashboard names by default.
+    for variable in found["templating"]["list"]:
+        if variable["name"] == "service":
+            allowed = next(source for source in sources if source["uid"] == "infinity")["jsonData"]["allowedHosts"]
+            assert variable["query"] == variable["current"]["value"] and variable["query"] in allowed, board
 home = services["grafana"]["environment"]["GF_DASHBOARDS_DEFAULT_HOME_DASHBOARD_PATH"]
 assert home.startswith(provider["options"]["path"]), home
 print("deploy fits together")

@@ -1,11 +1,17 @@
-//! Admission: permits for places and memory, work that is ended, and the estimate that decides where work runs.
+//! Admission: turns on threads, permits for places and memory, quotas, work that is ended, and the estimate that decides where work runs.
 
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use stickslip::admission::{Capacity, INLINE, Interrupted, Pool, PoolError, Stop};
+use stickslip::admission::{
+    Capacity, Client, INLINE, Interrupted, Kind, Nanoseconds, Pool, PoolError, Quota, QuotaLimits, Stop,
+};
 use stickslip::simulation::cost::Work;
 use stickslip_mechanics::profile::Cone;
 use stickslip_mechanics::{Profile, Sphere};
+use tokio::time::{sleep, timeout};
 
 /// Bytes are reserved in units of this size.
 const UNIT: usize = 1024;
@@ -61,6 +67,81 @@ fn the_time_limit_runs_from_the_first_check() {
     assert_eq!(stop.check(), Ok(()));
     std::thread::sleep(2 * allowed);
     assert_eq!(stop.check(), Err(Interrupted::TimeLimit(allowed)));
+}
+
+fn client(number: u8) -> Client {
+    Client::of_address(Ipv4Addr::new(192, 0, 2, number).into())
+}
+
+/// Work that checks its flag again and again until it is told to end, and fails if nobody does.
+fn patient(ended: &Arc<AtomicBool>) -> impl Fn() -> bool + Clone + Send + Sync + 'static {
+    let ended = Arc::clone(ended);
+    move || {
+        let (stop, _guard) = Stop::within(Duration::from_secs(20));
+        while !ended.load(Ordering::Relaxed) {
+            if stop.check().is_err() {
+                return false;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        true
+    }
+}
+
+#[tokio::test]
+async fn long_work_of_some_gives_way_to_short_work_of_others_on_a_single_thread() {
+    const LONG: Nanoseconds = 100_000_000_000;
+    let pool = Pool::new(Capacity { threads: 1, ..Capacity::default() });
+    let ended = Arc::default();
+    let job = {
+        let (pool, work) = (pool.clone(), patient(&ended));
+        client(1).serve(async move {
+            pool.share(Kind::Job, move |turns| turns.into_iter().all(|turn| turn.work(&work))).await
+        })
+    };
+    let mut heavy = vec![tokio::spawn(job)];
+    for number in 2..6 {
+        let (pool, work) = (pool.clone(), patient(&ended));
+        heavy.push(tokio::spawn(client(number).serve(async move { pool.run(LONG, work).await })));
+    }
+    // All of them have begun, on one thread.
+    let begun = async {
+        while pool.meters().running.get() < 5 {
+            sleep(Duration::from_millis(5)).await;
+        }
+    };
+    timeout(Duration::from_secs(9), begun).await.expect("none keeps the thread to itself");
+    for _ in 0..10 {
+        assert_eq!(client(9).serve(pool.run(2 * INLINE, || 7)).await, Ok(7));
+        assert!(pool.taken().threads <= 2, "one, and one beside it if its work does not check");
+    }
+    ended.store(true, Ordering::Relaxed);
+    for work in heavy {
+        assert_eq!(work.await.unwrap(), Ok(true));
+    }
+    assert_eq!((pool.taken().threads, pool.meters().waiting.get()), (0, 0));
+}
+
+#[tokio::test]
+async fn jobs_leave_the_last_thread() {
+    let pool = Pool::new(Capacity { threads: 3, ..Capacity::default() });
+    assert_eq!(pool.share(Kind::Job, |turns| turns.len()).await, Ok(2));
+    assert_eq!(pool.share(Kind::Interactive, |turns| turns.len()).await, Ok(3));
+}
+
+#[tokio::test]
+async fn a_quota_of_one_client_takes_nothing_from_others() {
+    let quotas = QuotaLimits { streams: 2, ..QuotaLimits::default() };
+    let pool = Pool::new(Capacity { quotas, ..Capacity::default() });
+    let take = |client: &Client| client.within(|| pool.share_of(Quota::Streams));
+    let mine = (take(&client(1)).unwrap(), take(&client(1)).unwrap());
+    assert!(matches!(take(&client(1)), Err(PoolError::Quota(why)) if why.quota == Quota::Streams && why.limit == 2));
+    assert!(take(&client(2)).is_ok());
+    drop(mine);
+    assert!(take(&client(1)).is_ok());
+    // One client owns all addresses of an IPv6 network.
+    let address = |last| Client::of_address(IpAddr::V6(Ipv6Addr::new(0x2001, 0xdb8, 0, 0, 0, 0, 0, last)));
+    assert_eq!(address(1), address(2));
 }
 
 #[test]

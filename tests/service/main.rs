@@ -4,5 +4,9 @@
 mod common;
 
 mod admission;
+mod drain;
+mod fairness;
 mod hostile_http;
 mod overload;
+mod soak;
+mod soak_round;

@@ -66,7 +66,16 @@ fn sound_simulation() -> String {
 async fn two_thousand_slow_clients_use_little_memory_and_delay_no_others() {
     const SLOW: usize = 2_000;
     room_for(SLOW + 100);
-    let service = Service::start(&["--cache-bytes", "16MiB", "--head-time", "8s", "--log", "warn"]);
+    let service = Service::start(&[
+        "--cache-bytes",
+        "16MiB",
+        "--head-time",
+        "8s",
+        "--max-requests-per-client",
+        "2000",
+        "--log",
+        "warn",
+    ]);
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let (over, closed) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
     let mut slow = Vec::new();
@@ -117,6 +126,8 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
         "16",
         "--max-queue",
         "32",
+        "--max-requests-per-client",
+        "150",
         "--max-wait",
         "200ms",
         "--work-bytes",
@@ -249,8 +260,8 @@ async fn work_ends_at_the_deadline_and_changes_nothing() {
 
 #[tokio::test]
 async fn a_request_without_a_place_is_refused_soon_and_health_is_not() {
-    let service =
-        Service::start(&["--max-requests", "1", "--max-queue", "1", "--max-wait", "300ms", "--deadline", "20s"]);
+    let few = ["--max-requests", "1", "--max-queue", "1", "--max-requests-per-client", "9"];
+    let service = Service::start(&[&few[..], &["--max-wait", "300ms", "--deadline", "20s"]].concat());
     let mut busy = TcpStream::connect(service.address).await.unwrap();
     busy.write_all(post("/simulate", &long_simulation()).as_bytes()).await.unwrap();
     until("the place is taken", async || !served(&service, FLOOD, &get("/contacts")).await).await;
@@ -295,7 +306,7 @@ async fn a_client_that_never_reads_is_let_go() {
     let path = json!({"path": {"falling_amplitude": {"reversals": 99_999}}, "steps": "last"}).to_string();
     assert!(served(&service, FLOOD, &post(&format!("/contacts/{contact}/path"), &path)).await);
     let (files, peak) = (service.open_files(), service.peak());
-    let events = format!("GET /contacts/{contact}/events HTTP/1.1\r\nhost: x\r\nLast-Event-ID: 0\r\n\r\n");
+    let events = format!("GET /contacts/{contact}/events HTTP/1.1\r\nhost: localhost\r\nLast-Event-ID: 0\r\n\r\n");
     let simulation = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 99_999}}}).to_string();
     let mut deaf = Vec::new();
     for _ in 0..10 {
@@ -308,7 +319,10 @@ async fn a_client_that_never_reads_is_let_go() {
     // A client that does read stays, however long nothing happens.
     let mut listener = service.connect_from(HONEST).await.unwrap();
     let quiet = service.client.create(&create(), &Options::default()).await.unwrap().id;
-    listener.write_all(format!("GET /contacts/{quiet}/events HTTP/1.1\r\nhost: x\r\n\r\n").as_bytes()).await.unwrap();
+    listener
+        .write_all(format!("GET /contacts/{quiet}/events HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes())
+        .await
+        .unwrap();
     until("the replies have begun", async || service.open_files() >= files + 20).await;
     until("only the listener is open", async || service.open_files() <= files + 1).await;
     // Each reply has some 30 MB, and as much work before it; two at a time are worked on.

@@ -12,7 +12,9 @@ use common::kill::{PATIENCE, Random};
 use common::postgres::Cluster;
 use common::process::Process;
 use common::{create, run};
+use jiff::Timestamp;
 use rusqlite::Connection;
+use stickslip::store::{ChunkResult, Job, JobLimits, PostgresStore, SqliteStore, Store, Tenant};
 use stickslip_wire::client::{Client, Options};
 use stickslip_wire::{ForkRequest, Move};
 use tempfile::{TempDir, tempdir};
@@ -205,6 +207,82 @@ async fn damage_is_found_in_a_database_beside_its_service() {
     let words: Vec<&str> = ["and the contact is not"].into_iter().chain(ordered.map(|(_, words)| words)).collect();
     is_found(&store, &words).await;
     server.stop().await;
+}
+
+/// Two jobs: one is done, and of the other the first chunk is.
+async fn fill_jobs(store: &dyn Store) -> [Uuid; 2] {
+    let new = |points| Job {
+        id: Uuid::now_v7(),
+        tenant: Tenant::default(),
+        created_at: Timestamp::now(),
+        finished_at: None,
+        error: None,
+        points,
+        chunk: 3,
+        done: 0,
+        failed: 0,
+        bytes: 10,
+        cost: 10,
+    };
+    let (done, begun, limits) = (new(3), new(7), JobLimits { jobs: 2, bytes: 20, cost: 20 });
+    for job in [&done, &begun] {
+        store.create_job(job.clone(), "{}".to_owned(), limits, None).await.unwrap();
+        let claim = store.claim(Uuid::now_v7(), None, Duration::from_secs(600)).await.unwrap().unwrap();
+        assert_eq!(claim.job, job.id);
+        store.save_chunk(claim, ChunkResult { points: 3, failed: 1, content: vec![0; 24] }).await.unwrap();
+    }
+    [done.id, begun.id]
+}
+
+/// Statements that damage a job, and the words of what is found then.
+fn damaged_jobs(done: Uuid, begun: Uuid, chunks_of: impl Fn(Uuid) -> String) -> Vec<(String, Vec<&'static str>)> {
+    let job = |what: &str, id| format!("UPDATE jobs SET {what} WHERE id = '{id}'");
+    let lost = format!("DELETE FROM job_chunks WHERE {}", chunks_of(done));
+    vec![
+        (job("done = 4", begun), vec!["4 points are counted as done, and 3 are stored"]),
+        (job("failed = 4", begun), vec!["of 3 points 4 have no answer"]),
+        (job("finished_at = NULL", done), vec!["all of its points are done, and it has not ended"]),
+        (job("finished_at = created_at", begun), vec!["it has ended at 3 of 7 points without an error"]),
+        (lost, vec!["3 points are counted as done, and 0 are stored"]),
+    ]
+}
+
+#[tokio::test]
+async fn damaged_jobs_are_found() {
+    let folder = tempdir().unwrap();
+    let (path, copy) = (folder.path().join("jobs.db"), folder.path().join("copy.db"));
+    let store = SqliteStore::open(&path).unwrap();
+    let [done, begun] = fill_jobs(&store).await;
+    drop(store);
+    is_sound(&url(&path), "checked 0 contacts").await;
+    let number = |id: Uuid| format!("job = (SELECT number FROM jobs WHERE id = '{id}')");
+    let mut damages = damaged_jobs(done, begun, number);
+    damages.push((format!("UPDATE jobs SET request = 'x' WHERE id = '{done}'"), vec!["its request is not JSON"]));
+    damages.push((format!("UPDATE job_chunks SET chunk = 9 WHERE {}", number(done)), vec!["3 points", "beyond its 3"]));
+    damages.push((format!("DELETE FROM jobs WHERE id = '{done}'"), vec!["belongs to no job"]));
+    for (statement, findings) in damages {
+        fs::copy(&path, &copy).unwrap();
+        let database = Connection::open(&copy).unwrap();
+        database.pragma_update(None, "foreign_keys", false).unwrap();
+        assert!(database.execute(&statement, []).unwrap() > 0, "{statement}");
+        database.close().unwrap();
+        is_found(&url(&copy), &findings).await;
+    }
+
+    let url = Cluster::shared().database().await;
+    let name = url.rsplit('/').next().unwrap();
+    let [done, begun] = fill_jobs(&PostgresStore::open(&url).await.unwrap()).await;
+    is_sound(&url, "checked 0 contacts").await;
+    for (statement, mut findings) in damaged_jobs(done, begun, |id| format!("job = '{id}'")) {
+        if statement.starts_with("DELETE") {
+            findings.push("it has 0 chunks for 3 points");
+        }
+        let kept = "CREATE TABLE kept_jobs AS TABLE jobs; CREATE TABLE kept_chunks AS TABLE job_chunks;";
+        Cluster::shared().execute(name, &format!("{kept} {statement}")).await;
+        is_found(&url, &findings).await;
+        let restored = "DELETE FROM jobs; INSERT INTO jobs TABLE kept_jobs; INSERT INTO job_chunks TABLE kept_chunks;";
+        Cluster::shared().execute(name, &format!("{restored} DROP TABLE kept_jobs, kept_chunks")).await;
+    }
 }
 
 #[tokio::test]

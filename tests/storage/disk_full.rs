@@ -3,80 +3,20 @@
 use crate::common;
 use crate::fixtures::{along, keyed};
 
-use std::fs::File;
-use std::io::{BufRead as _, BufReader, Write as _};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-
-use common::create;
 use common::kill::{Random, exact, history, replays_to_the_last_bit};
 use common::process::Process;
+use common::small_disk::SmallDisk;
+use common::{Server, create, until};
 use futures::future::join_all;
 use stickslip_wire::client::{Client, Error, Options};
 use stickslip_wire::{Move, MoveReply};
-use tempfile::{TempDir, tempdir};
+use tempfile::tempdir;
 use uuid::Uuid;
 
 /// Bytes of the disk.
 const SIZE: usize = 3 << 20;
 /// Bytes that are left when it is almost full.
 const ROOM: u64 = 300 << 10;
-
-/// A disk of its own kind: a tmpfs in a mount namespace, which a process keeps alive. No rights are needed where user
-/// namespaces are allowed.
-struct SmallDisk {
-    keeper: Child,
-    folder: TempDir,
-}
-
-impl SmallDisk {
-    fn new() -> SmallDisk {
-        let folder = tempdir().unwrap();
-        let script = r#"mount -t tmpfs -o size="$1" tmpfs "$0" && echo mounted && exec sleep 600"#;
-        let mut keeper = Command::new("unshare")
-            .args(["--map-root-user", "--mount", "sh", "-c", script])
-            .arg(folder.path())
-            .arg(SIZE.to_string())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("unshare (util-linux) is needed to mount a small disk");
-        let mut line = String::new();
-        BufReader::new(keeper.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        assert_eq!(line.trim(), "mounted", "this test mounts a small disk, and may not");
-        SmallDisk { keeper, folder }
-    }
-
-    /// The prefix of a command that is to see the disk.
-    fn entrance(&self) -> Vec<String> {
-        let keeper = self.keeper.id().to_string();
-        ["nsenter", "--preserve-credentials", "--user", "--mount", "--target", &keeper].map(str::to_owned).to_vec()
-    }
-
-    /// A file on the disk, as it is seen from outside.
-    fn file(&self, name: &str) -> PathBuf {
-        let root = PathBuf::from(format!("/proc/{}/root", self.keeper.id()));
-        root.join(self.folder.path().strip_prefix(Path::new("/")).unwrap()).join(name)
-    }
-
-    /// Leaves this many bytes free.
-    fn fill(&self, room: u64) {
-        let mut filler = File::create(self.file("filler")).unwrap();
-        while filler.write_all(&[1; 4096]).is_ok() {}
-        let length = filler.metadata().unwrap().len();
-        filler.set_len(length - room).unwrap();
-    }
-
-    fn clear(&self) {
-        std::fs::remove_file(self.file("filler")).unwrap();
-    }
-}
-
-impl Drop for SmallDisk {
-    fn drop(&mut self) {
-        let _ = self.keeper.kill();
-        let _ = self.keeper.wait();
-    }
-}
 
 fn refusal(error: &Error) -> (u16, &str) {
     let problem = error.problem().unwrap_or_else(|| panic!("{error}"));
@@ -89,7 +29,7 @@ async fn apply(client: &Client, id: Uuid, step: Move, key: u64) -> Result<MoveRe
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_full_disk_refuses_changes_and_loses_none() {
-    let disk = SmallDisk::new();
+    let disk = SmallDisk::new(SIZE);
     let store = format!("sqlite:{}", disk.folder.path().join("full.db").display());
     let process = Process::start_by(&disk.entrance(), &store).await;
     let client = process.client.clone();
@@ -138,12 +78,16 @@ async fn a_full_disk_refuses_changes_and_loses_none() {
         }
     };
     assert_eq!(refusal(&unborn), (507, "storage_full"));
+    let server = Server::at(&process.base);
+    let ready = async |expected: u16| (server.get("/readyz").await.status() == expected).then_some(());
+    until("it is not ready", async || ready(503).await).await;
     for (id, acknowledged) in sessions.iter().zip(&acknowledged) {
         let past: Vec<_> = history(&client, *id).await.iter().map(|item| exact(&item.state)).collect();
         assert_eq!(past, acknowledged.iter().map(exact).collect::<Vec<_>>());
     }
 
     disk.clear();
+    until("it is ready again", async || ready(200).await).await;
     for (index, step, key) in refused {
         let reply = apply(&client, sessions[index], step, key).await.unwrap();
         acknowledged[index].push(reply.state);
@@ -159,4 +103,59 @@ async fn a_full_disk_refuses_changes_and_loses_none() {
         );
         replays_to_the_last_bit(&past);
     }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_disk_that_is_full_at_start_is_read() {
+    for gracefully in [true, false] {
+        let disk = SmallDisk::new(SIZE);
+        let store = format!("sqlite:{}", disk.folder.path().join("full.db").display());
+        let process = Process::start_by(&disk.entrance(), &store).await;
+        let id = process.client.create(&create(), &Options::default()).await.unwrap().id;
+        let step = apply(&process.client, id, Move::force(0.1), 0).await.unwrap();
+        if gracefully {
+            process.stop().await;
+        } else {
+            process.kill().await;
+        }
+        disk.fill(0);
+        let process = Process::start_by(&disk.entrance(), &store).await;
+        assert_eq!(exact(&process.client.contact(id).await.unwrap().state), exact(&step.state));
+        let server = Server::at(&process.base);
+        if gracefully {
+            assert_eq!(
+                refusal(&apply(&process.client, id, Move::force(0.2), 1).await.unwrap_err()),
+                (507, "storage_full")
+            );
+            assert_eq!(server.get("/readyz").await.status(), 503);
+        }
+        process.stop().await;
+        disk.clear();
+        let process = Process::start_by(&disk.entrance(), &store).await;
+        assert_eq!(apply(&process.client, id, Move::force(0.2), 1).await.unwrap().sequence, 2);
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_limit_of_the_size_of_files_is_like_a_full_disk() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("limited.db");
+    let limited = ["sh", "-c", r#"ulimit -f 1024; exec "$0" "$@""#].map(str::to_owned);
+    let process = Process::start_by(&limited, &format!("sqlite:{}", path.display())).await;
+    let (client, options) = (&process.client, Options::default());
+    let id = client.create(&create(), &options).await.unwrap().id;
+    let moves = || along((0..1_000).map(|index| Move::displacement(f64::from(index % 2) * 1e-8)).collect());
+    let mut acknowledged = 0;
+    let refused = loop {
+        match client.path(id, &moves(), &options).await {
+            Ok(reply) => acknowledged = reply.sequence,
+            Err(error) => break error,
+        }
+    };
+    assert_eq!(refusal(&refused), (507, "storage_full"));
+    assert!(acknowledged > 0);
+    assert_eq!(client.contact(id).await.unwrap().sequence, acknowledged);
+    process.kill().await;
+    let process = Process::start(&format!("sqlite:{}", path.display())).await;
+    assert_eq!(process.client.path(id, &moves(), &options).await.unwrap().sequence, acknowledged + 1_000);
 }

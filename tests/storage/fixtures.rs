@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
-use stickslip::store::{Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant};
+use stickslip::store::{Measured, Receipt, Record, Reply, RequestKey, Session, Snapshot, Store, Tenant};
 use stickslip_wire::client::Options;
 use stickslip_wire::{CreateRequest, Document as _, Move, Path as Moves, PathRequest, Regime, State, Steps};
 use uuid::Uuid;
@@ -51,7 +51,8 @@ pub fn session(label: Option<&str>) -> Session {
     }
 }
 
-/// A move whose numbers differ from those of every other.
+/// A move whose numbers differ from those of every other; of three the last is an observation, every other one with its
+/// time.
 pub fn record(sequence: u64) -> Record {
     let number = sequence as f64 + 0.1;
     Record {
@@ -70,6 +71,11 @@ pub fn record(sequence: u64) -> Record {
             elastic_energy: number.exp_m1(),
             memory_depth: sequence as usize,
         },
+        measured: sequence.is_multiple_of(3).then(|| Measured {
+            force: -number / 7.0,
+            at: (sequence.is_multiple_of(2))
+                .then(|| Timestamp::UNIX_EPOCH + SignedDuration::from_nanos(sequence as i64)),
+        }),
         at: Timestamp::now() + SignedDuration::from_nanos(sequence as i64),
     }
 }

@@ -1,7 +1,7 @@
 //! Migrations: a step is applied once and whole or not at all, what is stored survives it, and a newer schema is
 //! refused.
 //!
-//! There is one version of the tables so far. The next one is made up here.
+//! The next version of the tables is made up here.
 
 use std::fs;
 
@@ -15,7 +15,7 @@ use crate::common::kill::exact;
 use crate::common::postgres::Cluster;
 use crate::fixtures::{receipt, record, records, session, snapshot, stored, url};
 
-/// A version 2: a column with a value for what is there, and a table filled from another. A second time it would fail.
+/// A next version: a column with a value for what is there, and a table filled from another. A second time it would fail.
 const STEP: &str = "
 ALTER TABLE contacts ADD COLUMN colour text NOT NULL DEFAULT 'grey';
 CREATE TABLE labels (label text);
@@ -78,7 +78,7 @@ async fn content(store: &dyn Store, [made, fork, job]: [Uuid; 3]) -> String {
             store.history(fork, 0, 10).await.unwrap(),
             store.snapshot(fork).await.unwrap(),
         ),
-        (store.list(None, None, 10).await.unwrap(), store.receipt("kept").await.unwrap().unwrap()),
+        (store.list(None, None, None, 10).await.unwrap(), store.receipt("kept").await.unwrap().unwrap()),
         (store.job(job).await.unwrap(), store.job_request(job).await.unwrap(), store.chunks(job, 0, 10).await.unwrap()),
         store.check_integrity().await.unwrap(),
     ))
@@ -139,6 +139,48 @@ async fn connect(url: &str) -> Client {
     let (client, connection) = tokio_postgres::connect(url, NoTls).await.unwrap();
     tokio::spawn(connection);
     client
+}
+
+/// A contact at version 1 of the tables, which knew no observations, with one move to a force.
+#[tokio::test]
+async fn what_the_first_version_has_stored_is_read() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("first.db");
+    let made = session(None);
+    let definition = serde_json::to_string(&*made.definition).unwrap();
+    let mut database = Connection::open(&path).unwrap();
+    sqlite::schema::migrate(&mut database, &sqlite::schema::MIGRATIONS[..1]).unwrap();
+    let contact = "INSERT INTO contacts VALUES (1, ?1, NULL, '', 5, 5, 0, ?2)";
+    database.execute(contact, [made.id.to_string(), definition.clone()]).unwrap();
+    let moved =
+        "INSERT INTO moves VALUES (1, 1, 7, NULL, 0.0, NULL, NULL, 0, 1e-10, 1, 0, 3, 4, 5, 6, 'stick', 7, 8, 9, 66)";
+    database.execute(moved, []).unwrap();
+    drop(database);
+    let store = SqliteStore::open(&path).unwrap();
+    reads_first_version(&store, made.id).await;
+
+    let url = Cluster::shared().database().await;
+    let mut client = connect(&url).await;
+    postgres::schema::migrate(&mut client, &postgres::schema::MIGRATIONS[..1]).await.unwrap();
+    let contact = "INSERT INTO contacts VALUES ($1, NULL, '', $2, 1, now(), 0, now(), 0)";
+    client.execute(contact, &[&made.id, &definition]).await.unwrap();
+    let moved = "INSERT INTO moves VALUES
+        ($1, 1, NULL, '-0', NULL, NULL, false, 1e-10, 1, '-0', 3, 4, 5, 6, 'stick', 7, 8, 9, now(), 0, 11)";
+    client.execute(moved, &[&made.id]).await.unwrap();
+    reads_first_version(&PostgresStore::open(&url).await.unwrap(), made.id).await;
+}
+
+async fn reads_first_version(store: &dyn Store, id: Uuid) {
+    let [read] = store.history(id, 0, 10).await.unwrap().try_into().unwrap();
+    assert_eq!(
+        (read.measured, exact(&read.step.force), exact(&read.state.force)),
+        (None, exact(&Some(-0.0)), exact(&-0.0))
+    );
+    assert_eq!((read.state.memory_depth, read.state.elastic_energy), (9, 8.0));
+    let next = record(3);
+    let next = stickslip::store::Record { sequence: 2, ..next };
+    store.append(id, 1, vec![next], None).await.unwrap();
+    assert_eq!(exact(&store.history(id, 1, 10).await.unwrap()), exact(&[next]));
 }
 
 #[tokio::test]

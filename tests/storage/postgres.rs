@@ -46,6 +46,7 @@ fn record(sequence: u64, displacement: f64) -> Record {
             elastic_energy: -5e-324,
             memory_depth: 3,
         },
+        measured: None,
         at: Timestamp::from_nanosecond(1_700_000_001_000_000_001 + i128::from(sequence)).unwrap(),
     }
 }
@@ -193,7 +194,7 @@ async fn several_sweep_at_once_and_each_idle_session_goes_once() {
     assert_eq!(swept.into_iter().map(Result::unwrap).sum::<u64>(), 230);
     assert!(matches!(stores[1].find(idle[7].id).await, Err(StoreError::Expired(_))));
     assert!(matches!(stores[2].append(idle[7].id, 0, vec![record(1, 1.0)], None).await, Err(StoreError::Expired(_))));
-    let left = stores[1].list(None, None, 1000).await.unwrap();
+    let left = stores[1].list(None, None, None, 1000).await.unwrap();
     assert_eq!(left.into_iter().map(|one| one.id).collect::<Vec<_>>(), [fresh.id]);
 }
 

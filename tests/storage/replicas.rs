@@ -206,6 +206,9 @@ async fn what_one_replica_has_acknowledged_the_other_shows() {
     here.client.apply(id, &Move { indentation: Some(4.7e-7), ..Move::default() }.into(), &plain).await.unwrap();
     there.client.apply(id, &Move::force(0.1).into(), &plain).await.unwrap();
 
+    // A name that was given there is read here, where the contact is cached.
+    there.client.rename(id, Some("there"), &plain).await.unwrap();
+    assert_eq!(here.client.contact(id).await.unwrap().label.as_deref(), Some("there"));
     here.client.apply(id, &step.into(), &plain).await.unwrap();
     let fork = there.client.fork(id, &ForkRequest::default(), &plain).await.unwrap();
     assert_eq!(history(&here.client, fork.id).await, history(&there.client, id).await);

@@ -122,11 +122,11 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     let taken = snapshot(&*store, one, 10_000).await;
     let truth = client.contact(other).await.unwrap();
 
-    // Damaged, truncated, empty, or of a move that has not been made: the session is replayed.
+    // Damaged, truncated or empty: the session is replayed.
     let mut damaged = taken.state.clone();
     damaged[taken.state.len() / 2] ^= 0x10;
     let cut = taken.state[..taken.state.len() - 8].to_vec();
-    for (sequence, state) in [(401, damaged), (402, cut), (403, Vec::new()), (501, taken.state.clone())] {
+    for (sequence, state) in [(401, damaged), (402, cut), (403, Vec::new())] {
         store.save_snapshot(other, Snapshot { sequence, state }).await.unwrap();
         assert_eq!(store.snapshot(other).await.unwrap().unwrap().sequence, sequence);
         assert_eq!(client.contact(other).await.unwrap(), truth);

@@ -6,6 +6,9 @@
 //! | module | question |
 //! |---|---|
 //! | [`scan`] | which profile does a scan of heights show? |
+//! | [`loops`] | which friction, stiffness and compliance does a measured loop show? |
 
 mod linear;
+pub mod loops;
+mod robust;
 pub mod scan;

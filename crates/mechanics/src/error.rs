@@ -54,8 +54,13 @@ pub enum Error {
         part: usize,
     },
     /// A stress of a contact that is known by its load curve alone.
-    #[error("this profile is known by its load curve alone: forces and energies follow from it, stresses do not")]
-    NoStressField,
+    #[error(
+        "the profile `{profile}` is known by its load curve alone: forces and energies follow from it, stresses do not"
+    )]
+    NoStressField {
+        /// Its type in JSON.
+        profile: &'static str,
+    },
     /// Reduced moduli where the bodies must be known.
     #[error("the tangential compliance of an ellipse depends on Poisson's ratio of each body: name the two bodies")]
     BodiesNeeded,

@@ -6,6 +6,8 @@
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
 
+use std::cell::Cell;
+
 use super::profile::StressRadius;
 use super::{Contact, DoubleDouble, Peak};
 
@@ -26,6 +28,33 @@ const SPARSE_ABOVE: usize = 100;
 
 /// A derivative below this share of what it is the sum of is zero: the kernels of some families are good to 1e-13.
 const NOISE: f64 = 1e-12;
+
+/// Terms of the derivative between two questions whether to go on: a term takes up to a microsecond.
+const TERMS_PER_QUESTION: usize = 4096;
+
+/// Asks every so often whether the search goes on. Once it does not, derivatives are zero, and it soon ends.
+struct Pace<'a> {
+    keep_going: &'a dyn Fn() -> bool,
+    stopped: Cell<bool>,
+    terms: Cell<usize>,
+}
+
+impl Pace<'_> {
+    /// Asks now.
+    fn goes_on(&self) -> bool {
+        self.terms.set(0);
+        if !self.stopped.get() {
+            self.stopped.set(!(self.keep_going)());
+        }
+        !self.stopped.get()
+    }
+
+    /// Counts a term; asks if there have been many.
+    fn counts_on(&self) -> bool {
+        self.terms.set(self.terms.get() + 1);
+        if self.terms.get() > TERMS_PER_QUESTION { self.goes_on() } else { !self.stopped.get() }
+    }
+}
 
 /// How the derivative behaves at the end of an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,11 +153,14 @@ impl SmoothInterval {
 
 impl Contact {
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.
-    fn scaled_derivative(&self, at: &StressRadius) -> f64 {
+    fn scaled_derivative(&self, at: &StressRadius, pace: &Pace<'_>) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
         for (ring, line) in self.history.rings() {
             if ring.outer.radius < at.radius {
                 break;
+            }
+            if !pace.counts_on() {
+                return 0.0;
             }
             let slope = line.slope.value();
             // What is stuck since it was touched adds nothing, even where the kernel is infinite.
@@ -149,9 +181,10 @@ impl Contact {
         let pieces = self.history.pieces();
         let knots = self.profile.knots_below(edge.radius);
         let singular = self.profile.singular_radii();
-        let mut search = Search { contact: self, sign: 0.0, peaks: Vec::new() };
+        let pace = Pace { keep_going: &keep_going, stopped: Cell::new(false), terms: Cell::new(0) };
+        let mut search = Search { contact: self, pace: &pace, sign: 0.0, peaks: Vec::new() };
         for (index, &bend) in bends.iter().enumerate() {
-            if !keep_going() {
+            if !pace.goes_on() {
                 return None;
             }
             // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
@@ -182,9 +215,9 @@ impl Contact {
                 // At the same distance on either side a logarithm has the same value: one sample serves both.
                 let beside = DoubleDouble::square_of(knot) * (1.0 + KNOT_FLOOR);
                 let infinite = if rim {
-                    self.scaled_derivative(&at)
+                    self.scaled_derivative(&at, &pace)
                 } else if sparse {
-                    self.scaled_derivative(&StressRadius { radius: knot, square: beside })
+                    self.scaled_derivative(&StressRadius { radius: knot, square: beside }, &pace)
                 } else {
                     0.0
                 };
@@ -195,15 +228,18 @@ impl Contact {
                     (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
             });
-            let mut start = self.start(index, &from, &knots);
+            let mut start = self.start(index, &from, &knots, &pace);
             let mut inner = from;
             for (outer, end, next) in within.chain([(to, last, last)]) {
-                if !keep_going() {
+                if !pace.goes_on() {
                     return None;
                 }
                 search.search_interval(&SmoothInterval { inner, outer, start, end, sparse });
                 (inner, start) = (outer, next);
             }
+        }
+        if pace.stopped.get() {
+            return None;
         }
         let spike = |peak: &Peak| singular.contains(&peak.radius) || peak.radius >= edge.radius;
         search.peaks.retain(|peak| !spike(peak) && peak.radius > 0.0);
@@ -211,8 +247,8 @@ impl Contact {
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
-    fn start(&self, index: usize, from: &StressRadius, knots: &[f64]) -> (EndBehaviour, f64) {
-        let sign = self.scaled_derivative(from);
+    fn start(&self, index: usize, from: &StressRadius, knots: &[f64], pace: &Pace<'_>) -> (EndBehaviour, f64) {
+        let sign = self.scaled_derivative(from, pace);
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
             if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse }
@@ -250,6 +286,7 @@ impl Contact {
 /// The search on its way from the centre outward.
 struct Search<'a> {
     contact: &'a Contact,
+    pace: &'a Pace<'a>,
     /// The sign that the derivative had last, zero before the first.
     sign: f64,
     peaks: Vec<Peak>,
@@ -269,7 +306,7 @@ impl Search<'_> {
     }
 
     fn sample(&self, interval: &SmoothInterval, place: f64) -> Sample {
-        Sample { place, value: self.contact.scaled_derivative(&interval.at(place)) * interval.weight(place) }
+        Sample { place, value: self.contact.scaled_derivative(&interval.at(place), self.pace) * interval.weight(place) }
     }
 
     /// Goes through an interval from its inner end to its outer.
@@ -333,7 +370,7 @@ impl Search<'_> {
             if middle <= low || middle >= high {
                 break;
             }
-            if self.contact.scaled_derivative(&interval.at(middle)) * from.value.signum() > 0.0 {
+            if self.contact.scaled_derivative(&interval.at(middle), self.pace) * from.value.signum() > 0.0 {
                 low = middle;
             } else {
                 high = middle;

@@ -1,8 +1,10 @@
 //! A contact computes nothing that its caller does not request: the calls of the profile's costly functions are
 //! counted.
 
-use super::profile::RoundedPunch;
-use super::profile::call_count::{Calls, during};
+use std::cell::Cell;
+
+use super::profile::call_count::{Calls, during, so_far};
+use super::profile::{PowerLaw, RoundedPunch};
 use super::protocol::{equal_peaks, falling_amplitude};
 use super::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
@@ -113,6 +115,31 @@ fn extrema_are_searched_for_when_asked_for() {
         assert_eq!(calls.kernel_slope > 0, !parabola, "{calls:?}");
         assert_eq!((calls.displacement_integral, calls.moments, calls.states), (0, 0, 0), "{calls:?}");
     }
+}
+
+#[test]
+fn the_search_for_extrema_asks_whether_to_go_on_every_few_thousand_terms() {
+    let mut contact = Contact::new(Setup {
+        profile: Profile::PowerLaw(PowerLaw::new(2.37, 50.0).unwrap()),
+        elasticity: Elasticity::effective(1.2e11, 9.6e10).unwrap(),
+        friction: 0.3,
+        preload: Preload::Indentation(1e-6),
+    })
+    .unwrap();
+    let path = falling_amplitude(3_000, contact.gross_slip_displacement());
+    follow(&mut contact, path);
+    let (last, longest, questions) = (Cell::new(0), Cell::new(0), Cell::new(0));
+    let keep_going = || {
+        let terms = so_far().kernel_slope;
+        longest.set(longest.get().max(terms - last.replace(terms)));
+        questions.set(questions.get() + 1);
+        questions.get() < 200
+    };
+    let (calls, found) = during(|| contact.residual_while(keep_going));
+    assert!(found.is_none(), "it has been stopped");
+    assert!(longest.get() > 0 && longest.get() <= 5_000, "{} terms between two questions", longest.get());
+    // It ends at once then.
+    assert!(calls.kernel_slope <= 200 * 5_000, "{calls:?}");
 }
 
 #[test]

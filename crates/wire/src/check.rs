@@ -92,8 +92,8 @@ impl Faults {
 
     /// Refuses what is asked for at this place if it needs a stress and the contact is known by its load curve alone.
     pub fn needs_stress_field(&mut self, setup: Option<&Setup>, at: JsonPath<'_>) {
-        if setup.is_some_and(|setup| !setup.profile.has_stress_field()) {
-            self.unanswerable(at, Error::NoStressField);
+        if let Some(Err(error)) = setup.map(|setup| setup.profile.check_stress_field()) {
+            self.unanswerable(at, error);
         }
     }
 

@@ -11,9 +11,10 @@ use uuid::Uuid;
 
 use crate::{
     AccuracyReply, AccuracyRequest, ContactDefinition, CreateRequest, CycleDrive, CyclePage, CycleReply, CycleRequest,
-    EndEvent, EndReason, ForkRequest, FrettingReply, FrettingRequest, HistoryPage, JobReply, LoopPage, Machine,
-    MoveReply, MoveRequest, NewSession, PathReply, PathRequest, ProblemDocument, ProfileFitReply, ProfileFitRequest,
-    ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, SessionPage, SessionReply, SimulateReply,
+    EndEvent, EndReason, FitReply, FitRequest, ForkRequest, FrettingReply, FrettingRequest, FrictionReply, HistoryPage,
+    JobList, JobReply, JobState, LoopPage, Machine, MoveReply, MoveRequest, NewSession, ObservationsReply,
+    ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply, ProfileFitRequest, ProtocolReply,
+    ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, SessionPage, SessionReply, SimulateReply,
     SimulateRequest, StateEvent, StressReply, StressRequest, SubsurfaceReply, SubsurfaceRequest, SweepReply,
     SweepRequest, WorkDensity,
 };
@@ -128,6 +129,17 @@ impl Client {
         json(self.call(Method::GET, "/contacts").query(&[("after", after)]).query(&[("limit", limit)])).await
     }
 
+    /// `GET /contacts?label=`: a page of those whose label contains the text, whatever the case of its ASCII letters.
+    pub async fn contacts_labelled(
+        &self,
+        label: &str,
+        after: Option<Uuid>,
+        limit: Option<usize>,
+    ) -> Result<SessionPage, Error> {
+        let call = self.call(Method::GET, "/contacts").query(&[("label", label)]);
+        json(call.query(&[("after", after)]).query(&[("limit", limit)])).await
+    }
+
     /// `GET /contacts/{id}`.
     pub async fn contact(&self, id: Uuid) -> Result<SessionReply, Error> {
         json(self.call(Method::GET, &format!("/contacts/{id}"))).await
@@ -146,6 +158,21 @@ impl Client {
     /// `POST /contacts/{id}/path`.
     pub async fn path(&self, id: Uuid, request: &PathRequest, options: &Options) -> Result<PathReply, Error> {
         self.post(&format!("/contacts/{id}/path"), request, options).await
+    }
+
+    /// `POST /contacts/{id}/observations`.
+    pub async fn observe(
+        &self,
+        id: Uuid,
+        request: &ObservationsRequest,
+        options: &Options,
+    ) -> Result<ObservationsReply, Error> {
+        self.post(&format!("/contacts/{id}/observations"), request, options).await
+    }
+
+    /// `GET /contacts/{id}/friction`.
+    pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, Error> {
+        json(self.call(Method::GET, &format!("/contacts/{id}/friction"))).await
     }
 
     /// `POST /protocols`.
@@ -175,6 +202,11 @@ impl Client {
     /// `POST /profiles/fit`.
     pub async fn fit_profile(&self, request: &ProfileFitRequest) -> Result<ProfileFitReply, Error> {
         json(self.call(Method::POST, "/profiles/fit").json(request)).await
+    }
+
+    /// `POST /fit`.
+    pub async fn fit_loops(&self, request: &FitRequest) -> Result<FitReply, Error> {
+        json(self.call(Method::POST, "/fit").json(request)).await
     }
 
     /// `POST /contacts/{id}/subsurface`.
@@ -248,6 +280,13 @@ impl Client {
         self.post(&format!("/contacts/{id}/fork"), request, options).await
     }
 
+    /// `PATCH /contacts/{id}`: another label, or none.
+    pub async fn rename(&self, id: Uuid, label: Option<&str>, options: &Options) -> Result<SessionReply, Error> {
+        let request = RenameRequest { label: label.map(str::to_owned) };
+        let call = self.call(Method::PATCH, &format!("/contacts/{id}")).json(&request);
+        json(with(call, options)).await
+    }
+
     /// `DELETE /contacts/{id}`.
     pub async fn delete(&self, id: Uuid, options: &Options) -> Result<(), Error> {
         sent(with(self.call(Method::DELETE, &format!("/contacts/{id}")), options)).await.map(drop)
@@ -261,6 +300,16 @@ impl Client {
         } else {
             read(status, &body).map(Swept::Table)
         }
+    }
+
+    /// `GET /jobs`, those in one state or all.
+    pub async fn jobs(&self, state: Option<JobState>) -> Result<JobList, Error> {
+        let call = self.call(Method::GET, "/jobs");
+        json(match state {
+            Some(state) => call.query(&[("state", state.name())]),
+            None => call,
+        })
+        .await
     }
 
     /// `GET /jobs/{id}`.

@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::closed_cycle::Cycle;
+use super::observation::ObservedForce;
 use super::path::Move;
 use super::reply::State;
 
@@ -26,6 +27,10 @@ pub struct StateEvent {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub cycle: Option<Cycle>,
+    /// What was measured there, if it is an observation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub observation: Option<ObservedForce>,
     /// When it was applied, or the contact created (ISO 8601, UTC).
     pub at: Timestamp,
 }
@@ -47,4 +52,6 @@ pub enum EndReason {
     Expired,
     /// The server stops. After a restart, or on another server, the stream continues from `Last-Event-ID`.
     Stopping,
+    /// What is stored of the contact is damaged: there are moves that cannot be shown.
+    Damaged,
 }

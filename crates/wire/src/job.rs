@@ -31,6 +31,13 @@ pub struct JobReply {
     pub result: String,
 }
 
+/// Jobs of a tenant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JobList {
+    /// The jobs, oldest first.
+    pub items: Vec<JobReply>,
+}
+
 /// The state of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -41,6 +48,21 @@ pub enum JobState {
     Done,
     /// It ended with an error.
     Failed,
+}
+
+impl JobState {
+    /// All states.
+    pub const ALL: [JobState; 3] = [JobState::Running, JobState::Done, JobState::Failed];
+
+    /// Its name in documents and queries.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            JobState::Running => "running",
+            JobState::Done => "done",
+            JobState::Failed => "failed",
+        }
+    }
 }
 
 /// The progress of a job.

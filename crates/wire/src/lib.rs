@@ -21,11 +21,13 @@ pub mod curve_profiles;
 pub mod cycle;
 pub mod definition;
 pub mod event;
+pub mod fit;
 pub mod fretting;
 pub mod job;
 pub mod json_value;
 pub mod limits;
 mod objects_only;
+pub mod observation;
 pub mod parse;
 pub mod path;
 pub mod pointer_lookup;
@@ -50,11 +52,15 @@ pub use cycle::{
 };
 pub use definition::{Body, ContactDefinition, Effective, ElasticBody, Material, Preload};
 pub use event::{EndEvent, EndReason, StateEvent};
+pub use fit::{FitReply, FitRequest};
 pub use fretting::{
     BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,
     StressPath, SurfaceCriterion, Weighted,
 };
-pub use job::{JobEndEvent, JobProgress, JobReply, JobState};
+pub use job::{JobEndEvent, JobList, JobProgress, JobReply, JobState};
+pub use observation::{
+    FrictionEstimate, FrictionReply, Observation, ObservationsReply, ObservationsRequest, ObservedForce, ObservedMove,
+};
 pub use parse::{Document, Rejection, parse, parse_value, read};
 pub use path::{CyclicPath, EqualPeaks, FallingAmplitude, FirstTurn, Move, NormalOscillation, Path, Plan};
 pub use problem::{Code, ProblemDocument};
@@ -64,7 +70,7 @@ pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
     CreateRequest, ForkRequest, HistoryItem, HistoryPage, LoopPage, MoveReply, MoveRequest, NewSession, PathReply,
-    PathRequest, SessionPage, SessionReply, SessionSummary, StressReply,
+    PathRequest, RenameRequest, SessionPage, SessionReply, SessionSummary, StressReply,
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};

@@ -49,6 +49,10 @@ pub const SCAN_POINTS: RangeInclusive<usize> = 12..=300_000;
 pub const SCAN_ROWS: RangeInclusive<usize> = 4..=25_000;
 /// Intervals of a profile that is fitted without a penalty.
 pub const SCAN_KNOTS: RangeInclusive<usize> = 4..=100;
+/// Measured loops that are fitted together.
+pub const FIT_LOOPS: RangeInclusive<usize> = 1..=16;
+/// Points of each.
+pub const FIT_POINTS: RangeInclusive<usize> = 8..=1_000_000;
 /// Radii at which the search for extrema evaluates the spring foundation.
 pub const SPRING_SEARCH: usize = 2_000;
 /// Springs times moves, and springs times stress points: the work of the spring foundation, which the exact solver
@@ -354,15 +358,16 @@ pub(crate) use limits;
 /// Schema, member and keywords of every limit but those of profiles.
 #[must_use]
 pub fn all() -> Vec<(&'static str, &'static str, Value)> {
+    use super::fit::{FitNoise, KnownValue, MeasuredLoop};
     use super::profile_fit::{CentrePlace, LineScan, MapScan, PointScan, ScanLoad, Smoothing};
     use super::protocol::{ProtocolStart, Robustness};
     use super::{
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive,
         CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie, Findley,
-        ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest,
-        NormalOscillation, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest, SimulateRequest, Span, Springs,
-        StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface,
-        SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
+        FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest,
+        NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
+        RenameRequest, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane,
+        SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
     };
 
     fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
@@ -373,7 +378,7 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, CentrePlace, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, ForkRequest, FrequencyResponse, FrettingRequest, LineScan, LoadSpan, Machine, MapScan, Material, Move, MoveRequest, NormalOscillation, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart, RelaxRequest,
+        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, KnownValue, LineScan, LoadSpan, Machine, MapScan, Material, MeasuredLoop, Move, MoveRequest, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart, RelaxRequest, RenameRequest,
         Robustness, ScanLoad, SimulateRequest, Smoothing, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity
     }
 }

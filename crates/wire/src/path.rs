@@ -15,6 +15,7 @@ use stickslip_mechanics::{
 
 use super::check::{Faults, JsonPath};
 use super::limits::{Items, Keywords as _, Limited, Numbers, PATH_MOVES, limits};
+use super::observation::Observation;
 use super::single_key::{not_null, single_key};
 
 pub(crate) use cycles::PHASE;
@@ -131,6 +132,8 @@ pub enum Plan {
     Cycles(Cycles),
     /// A single move that is the body itself.
     Single(Move),
+    /// Displacements with the forces that were measured there.
+    Observations(Vec<Observation>),
 }
 
 impl Move {
@@ -245,6 +248,7 @@ impl Plan {
             Plan::EqualPeaks(peaks) => peaks.reversals.saturating_add(1),
             Plan::Cycles(cycles) => cycles.length(),
             Plan::Single(_) => 1,
+            Plan::Observations(observations) => observations.len(),
         }
     }
 
@@ -259,7 +263,8 @@ impl Plan {
             | Plan::Force(_)
             | Plan::FallingAmplitude(_)
             | Plan::EqualPeaks(_)
-            | Plan::Cycles(_) => 0,
+            | Plan::Cycles(_)
+            | Plan::Observations(_) => 0,
         }
     }
 
@@ -276,6 +281,7 @@ impl Plan {
             Plan::EqualPeaks(_) => "/path/equal_peaks".to_owned(),
             Plan::Cycles(cycles) => format!("/path/cycles{}", cycles.place_of(quantity)),
             Plan::Single(_) => member,
+            Plan::Observations(_) => format!("/observations/{index}/displacement"),
         }
     }
 }

@@ -58,11 +58,14 @@ codes! {
     NotJson = 400 "not_json": "The body is not JSON", "the body is not JSON: mend it";
     /// A proxy might read the head of the request in another way than this server.
     AmbiguousRequest = 400 "ambiguous_request": "The head of the request is ambiguous",
-        "the head can be read in two ways (two lengths, say): a proxy or a client is at fault";
+        "the head can be read in two ways (two lengths, two keys, no host): a proxy or a client is at fault";
     /// The request has no key, or one that is not known.
     Unauthorized = 401 "unauthorized": "A key is needed", "send a key: `Authorization: Bearer KEY`";
     /// The key does not allow it. What belongs to another tenant does not exist: [`Code::ContactNotFound`].
     Forbidden = 403 "forbidden": "The key does not allow this", "the key has not the role that this needs";
+    /// The service has no keys, and the request names a host that is not its own, or comes from a page of another site.
+    ForeignOrigin = 403 "foreign_origin": "The request comes from another site",
+        "call the service by an address or a name of its own, or have its operator add yours: [browsers](access.md#browsers)";
     /// The path does not exist.
     NotFound = 404 "not_found": "There is nothing at this path", "no such path";
     /// The contact does not exist.
@@ -124,10 +127,19 @@ codes! {
     /// The tenant has as many jobs as it may have.
     TooManyJobs = 429 "too_many_jobs": "There are too many jobs",
         "wait for a job to end, or delete one; `Retry-After` says when to try again";
+    /// The client has as much of something that all share as one client may have.
+    QuotaExceeded = 429 "quota_exceeded": "A quota of the client is used up",
+        "`detail` names the [quota](overload.md#quotas): end, close or delete something, or wait as long as `Retry-After` says";
     /// A fault of this program. Its cause goes to the log; the client gets the identifier of the request.
     Internal = 500 "internal": "The server has failed", "a fault of the server: tell its operator the `request_id`";
+    /// What is stored of the contact is not what has been stored: moves are missing, or cannot be made again.
+    DamagedContact = 500 "damaged_contact": "The stored contact is damaged",
+        "moves of the contact are missing in the store: its operator must restore it; other contacts are not affected";
     /// Nothing is wrong with the request, but there is no capacity at present.
     Overloaded = 503 "overloaded": "The server is busy", "wait as long as `Retry-After` says, and repeat";
+    /// The server stops before the request is done.
+    Stopping = 503 "stopping": "The server is stopping",
+        "repeat elsewhere or later, with the same `Idempotency-Key`: it may have been stored";
     /// The storage cannot be reached. Nothing has been acknowledged, and a retry is welcome.
     StorageUnavailable = 503 "storage_unavailable": "The storage cannot be reached",
         "repeat with the same `Idempotency-Key`: it may have been stored";

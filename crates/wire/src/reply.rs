@@ -155,7 +155,8 @@ pub struct Protocol {
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning {
     /// A name for programs: `dundurs_beta`, `large_contact`, `slip_direction`, `noisy_table`, `tolerance_not_met`, `units`,
-    /// `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`.
+    /// `interaction_neglected`, `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`; of fits also `many_outliers`,
+    /// `short_scan`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `not_coulomb`.
     pub code: String,
     /// An explanation for people.
     pub message: String,

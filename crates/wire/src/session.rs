@@ -1,5 +1,7 @@
 //! The bodies and replies of `/contacts`: contacts that the server keeps.
 
+use std::ops::RangeInclusive;
+
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use serde_with::{apply, skip_serializing_none};
@@ -12,6 +14,7 @@ use super::check::{Faults, JsonPath};
 use super::closed_cycle::Cycle;
 use super::definition::{ContactDefinition, Material, Preload};
 use super::limits::{Characters, Tolerance, limits};
+use super::observation::ObservedForce;
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
 use super::profile::Profile;
@@ -22,7 +25,9 @@ use super::single_key::not_null;
 use super::stress::{Sampling, Stress, StressRequest};
 
 /// The text by which a client identifies a contact.
-const LABEL: Characters = Characters(200);
+pub const LABEL: Characters = Characters(200);
+/// The number of a move.
+const SEQUENCE: RangeInclusive<u64> = 0..=i64::MAX as u64;
 
 /// A contact definition, with an optional label.
 #[skip_serializing_none]
@@ -103,8 +108,23 @@ limits!(PathRequest { tolerance: Tolerance });
 pub struct ForkRequest {
     /// A label for the new contact; left out, that of the original.
     pub label: Option<String>,
+    /// After how many moves of the original the new contact begins; left out, after all of them. It has made these moves
+    /// itself, and none of the later ones.
+    pub sequence: Option<u64>,
 }
-limits!(ForkRequest { label: LABEL });
+limits!(ForkRequest { label: LABEL, sequence: SEQUENCE });
+
+/// What of a contact can be changed without a move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"label": "steel ball, third run"}))]
+pub struct RenameRequest {
+    /// The new label, or `null` for none.
+    #[serde(deserialize_with = "Option::deserialize")]
+    #[schema(required = true)]
+    pub label: Option<String>,
+}
+limits!(RenameRequest { label: LABEL });
 
 /// A contact that has just been made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -240,6 +260,10 @@ pub struct HistoryItem {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub cycle: Option<Cycle>,
+    /// What was measured there, if it is an observation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub observation: Option<ObservedForce>,
     /// When it was applied (ISO 8601, UTC).
     pub at: Timestamp,
 }
@@ -265,6 +289,10 @@ pub struct LoopPage {
     pub displacement: Vec<f64>,
     /// Tangential force F, N.
     pub force: Vec<f64>,
+    /// Force that was measured at a point, N, `null` where none was; left out if there is none on the page.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub observed_force: Vec<Option<f64>>,
     /// What to give as `after` for the next page; `null` on the last.
     pub next: Option<u64>,
 }
@@ -288,9 +316,19 @@ impl LoopPage {
         self.force.push(force);
     }
 
-    /// Adds the end of a move.
-    pub fn push_end(&mut self, sequence: u64, state: &State) {
+    /// Adds the end of a move, with the force that was measured there, N, if one was.
+    pub fn push_end(&mut self, sequence: u64, state: &State, observed_force: Option<f64>) {
+        if observed_force.is_some() || !self.observed_force.is_empty() {
+            self.observed_force.resize(self.force.len(), None);
+            self.observed_force.push(observed_force);
+        }
         self.push(sequence, 1.0, state.displacement, state.force);
+    }
+
+    /// The force that was measured at a point, N, if one was.
+    #[must_use]
+    pub fn observed_force(&self, point: usize) -> Option<f64> {
+        self.observed_force.get(point).copied().flatten()
     }
 }
 
@@ -387,12 +425,22 @@ impl Document for PathRequest {
     }
 }
 
-impl Document for ForkRequest {
-    type Checked = Option<String>;
+impl Document for RenameRequest {
+    type Checked = RenameRequest;
 
-    fn check(self) -> Result<Option<String>, Rejection> {
+    fn check(self) -> Result<RenameRequest, Rejection> {
         let mut faults = Faults::default();
         self.check_members(JsonPath::Root, &mut faults);
-        faults.done(Some(self.label))
+        faults.done(Some(self))
+    }
+}
+
+impl Document for ForkRequest {
+    type Checked = ForkRequest;
+
+    fn check(self) -> Result<ForkRequest, Rejection> {
+        let mut faults = Faults::default();
+        self.check_members(JsonPath::Root, &mut faults);
+        faults.done(Some(self))
     }
 }

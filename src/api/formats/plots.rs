@@ -4,12 +4,13 @@ use uuid::Uuid;
 
 use super::fretting_map;
 use stickslip_mechanics::{Contact, Move, Regime, Tangential};
-use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot, Section};
+use stickslip_report::plot::{Axis, Band, Colour, Curve, Panel, Plot, Section, in_unit};
 use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::fit::FittedLoop;
 use stickslip_wire::profile_fit::ColumnPair;
 use stickslip_wire::subsurface::{Places, SubsurfaceTask};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, FrettingReply, HistoryPage, LoopPage, ProfileFitReply, State, SteadyCycle,
+    Cycle, CyclePage, CycleReply, FitReply, FrettingReply, HistoryPage, LoopPage, ProfileFitReply, State, SteadyCycle,
     StressReply, Subsurface,
 };
 
@@ -284,4 +285,52 @@ pub fn profile_fit(reply: &ProfileFitReply) -> Plot {
 fn clipped(strokes: Vec<(f64, f64)>, used: &ColumnPair) -> Vec<(f64, f64)> {
     let top = used.height.last().copied().unwrap_or(0.0);
     strokes.into_iter().map(|(r, z)| (r, z.clamp(-0.5 * top, 1.5 * top))).collect()
+}
+
+/// Measured loops and what was fitted to them, over the difference of both.
+#[must_use]
+pub fn loop_fit(reply: &FitReply) -> Plot {
+    // Loops are not joined with each other.
+    let over = |of: fn(&FittedLoop, usize) -> f64| -> Vec<(f64, f64)> {
+        let each = |curve: &FittedLoop| -> Vec<(f64, f64)> {
+            let points = curve.displacement.iter().enumerate().map(|(point, u)| (*u, of(curve, point)));
+            points.chain([(f64::NAN, f64::NAN)]).collect()
+        };
+        reply.curve.iter().flat_map(each).collect()
+    };
+    // A point that was left out is drawn alone.
+    let outliers = |of: fn(&FittedLoop, usize) -> f64| -> Vec<(f64, f64)> {
+        let each = |curve: &FittedLoop| -> Vec<(f64, f64)> {
+            let left = curve.used.iter().enumerate().filter(|(_, used)| !**used);
+            left.flat_map(|(point, _)| [(curve.displacement[point], of(curve, point)), (f64::NAN, f64::NAN)]).collect()
+        };
+        reply.curve.iter().flat_map(each).collect()
+    };
+    let curve = |name, points, colour, silent| Curve { name, points, colour, silent };
+    let measured: fn(&FittedLoop, usize) -> f64 = |curve, point| curve.measured[point];
+    let residual: fn(&FittedLoop, usize) -> f64 = |curve, point| curve.measured[point] - curve.force[point];
+    let left = outliers(measured);
+    let silent = left.is_empty();
+    Plot {
+        title: format!("Measured loop: residual {} rms", in_unit(reply.residual.rms, "N")),
+        x: Axis { name: "measured displacement", unit: Some("m") },
+        panels: vec![
+            Panel {
+                y: Axis { name: "tangential force F", unit: Some("N") },
+                curves: vec![
+                    curve("measured", over(measured), Colour::Grey, false),
+                    curve("outliers", left, Colour::Red, silent),
+                    curve("fitted", over(|curve, point| curve.force[point]), Colour::Blue, false),
+                ],
+            },
+            Panel {
+                y: Axis { name: "measured less fitted", unit: Some("N") },
+                curves: vec![
+                    curve("", over(residual), Colour::Grey, true),
+                    curve("", outliers(residual), Colour::Red, true),
+                ],
+            },
+        ],
+        bands: Vec::new(),
+    }
 }

@@ -7,10 +7,11 @@ use serde_json::Number;
 use crate::simulation::SweepResult;
 use stickslip_measured::scan::DRAWN_POINTS;
 use stickslip_wire::cycle::CycleTask;
+use stickslip_wire::fit::FittedLoop;
 use stickslip_wire::sweep::{CheckedSweep, indices};
 use stickslip_wire::{
-    Cycle, CyclePage, CycleReply, Field, FrettingReply, Harmonic, HistoryPage, LoopPage, ProfileFitReply, State,
-    SteadyCycle, StressReply, Subsurface, subsurface,
+    Cycle, CyclePage, CycleReply, Field, FitReply, FrettingReply, Harmonic, HistoryPage, LoopPage, ObservedForce,
+    ProfileFitReply, State, SteadyCycle, StressReply, Subsurface, subsurface,
 };
 
 use super::table::{Cells, Column, Table};
@@ -93,6 +94,33 @@ pub fn profile_fit(reply: &ProfileFitReply) -> Table<'_> {
     flat(parts.iter().map(|(_, columns)| columns.radius.len()).sum(), columns)
 }
 
+/// The points of measured loops, with what was fitted to them.
+#[must_use]
+pub fn loop_fit(reply: &FitReply) -> Table<'_> {
+    let at = |mut row: usize| {
+        let mut loops = reply.curve.iter().enumerate();
+        loops.find_map(|(index, curve)| match row.checked_sub(curve.force.len()) {
+            None => Some((index, curve, row)),
+            Some(rest) => {
+                row = rest;
+                None
+            }
+        })
+    };
+    let value = |name, unit, of: fn(&FittedLoop, usize) -> f64| {
+        Column::floats(name, unit, move |row| at(row).map_or(f64::NAN, |(_, curve, point)| of(curve, point)))
+    };
+    let columns = vec![
+        Column::counts("loop", move |row| at(row).map_or(0, |(index, ..)| index as u64)),
+        value("displacement", "m", |curve, point| curve.displacement[point]),
+        value("measured", "N", |curve, point| curve.measured[point]),
+        value("fitted", "N", |curve, point| curve.force[point]),
+        value("residual", "N", |curve, point| curve.measured[point] - curve.force[point]),
+        Column::counts("used", move |row| at(row).map_or(0, |(_, curve, point)| u64::from(curve.used[point]))),
+    ];
+    flat(reply.curve.iter().map(|curve| curve.force.len()).sum(), columns)
+}
+
 /// A page of a history: the states with their numbers and times.
 #[must_use]
 pub fn history(page: &HistoryPage) -> Table<'_> {
@@ -101,6 +129,9 @@ pub fn history(page: &HistoryPage) -> Table<'_> {
     let cycle = |name, unit, of: fn(&Cycle) -> Option<f64>| {
         let value = move |row: usize| items[row].cycle.as_ref().and_then(of).unwrap_or(f64::NAN);
         Column::floats(name, unit, value)
+    };
+    let observed = |name, of: fn(&ObservedForce) -> f64| {
+        Column::floats(name, "N", move |row| items[row].observation.as_ref().map_or(f64::NAN, of))
     };
     let columns = vec![
         Column::counts("sequence", |row| items[row].sequence),
@@ -125,6 +156,9 @@ pub fn history(page: &HistoryPage) -> Table<'_> {
         cycle("cycle_dissipated_energy", "J", |cycle| Some(cycle.dissipated_energy)),
         cycle("cycle_secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
         cycle("cycle_sliding_ratio", "1", |cycle| cycle.sliding_ratio),
+        observed("observed_force", |observed| observed.force),
+        observed("predicted_force", |observed| observed.predicted),
+        observed("innovation", |observed| observed.innovation),
     ];
     flat(items.len(), columns)
 }
@@ -132,11 +166,18 @@ pub fn history(page: &HistoryPage) -> Table<'_> {
 /// A page of a hysteresis loop.
 #[must_use]
 pub fn hysteresis_loop(page: &LoopPage) -> Table<'_> {
+    let observed = |name, of: fn(&ObservedForce) -> f64| {
+        let at = |row: usize| page.observed_force(row).map(|force| ObservedForce::new(force, page.force[row], None));
+        Column::floats(name, "N", move |row| at(row).as_ref().map_or(f64::NAN, of))
+    };
     let columns = vec![
         Column::counts("sequence", |row| page.sequence[row]),
         Column::floats("part", "1", |row| page.part[row]),
         Column::floats("displacement", "m", |row| page.displacement[row]),
         Column::floats("force", "N", |row| page.force[row]),
+        observed("observed_force", |observed| observed.force),
+        observed("predicted_force", |observed| observed.predicted),
+        observed("innovation", |observed| observed.innovation),
     ];
     flat(page.sequence.len(), columns)
 }

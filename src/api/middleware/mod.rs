@@ -11,17 +11,18 @@ use std::sync::Arc;
 use axum::extract::{Request, State};
 use axum::middleware::Next;
 use axum::response::Response;
+use tokio::sync::watch;
 
 use crate::admission::Pool;
 use crate::api::request_metrics::RequestMetrics;
 
 /// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a box.
 pub async fn observe(
-    State((metrics, pool)): State<(Arc<RequestMetrics>, Pool)>,
+    State((metrics, pool, stops)): State<(Arc<RequestMetrics>, Pool, watch::Receiver<bool>)>,
     mut request: Request,
     next: Next,
 ) -> Response {
     let client = compression::Client::of(&mut request);
-    let response = request_log::log_request(&metrics, request, next).await;
+    let response = request_log::log_request(&metrics, stops, request, next).await;
     compression::compress(response, client, &pool).await
 }

@@ -1,4 +1,5 @@
-//! Around every request: one line in the log, one count, one span, and the document of a problem.
+//! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change says who
+//! made it.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -7,12 +8,15 @@ use axum::body::Body;
 use axum::extract::{MatchedPath, Request};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
-use axum::response::Response;
-use tracing::field::Empty;
+use axum::response::{IntoResponse as _, Response};
+use tokio::sync::watch;
+use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
 use tracing_opentelemetry::OpenTelemetrySpanExt as _;
+use uuid::Uuid;
 
 use crate::api::limits;
+use crate::api::middleware::access_control::Caller;
 use crate::api::middleware::request_id::{self, REQUEST_ID};
 use crate::api::middleware::security_headers;
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
@@ -20,6 +24,7 @@ use crate::api::request_metrics::{ABANDONED, Endpoint, RequestMetrics};
 use crate::api::routes;
 use crate::metrics::Counted;
 use crate::otlp;
+use crate::server::ClientAddress;
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
@@ -29,13 +34,22 @@ struct RequestGuard<'a> {
     traceparent: Option<&'a str>,
     method: &'a Method,
     route: Option<&'a str>,
+    client: Option<ClientAddress>,
+    caller: Caller,
+    /// The contact that it would change.
+    contact: Option<Uuid>,
     endpoint: &'a Endpoint,
     span: Span,
     answered: bool,
 }
 
 /// Serves a request, and adds what is common to every reply.
-pub async fn log_request(metrics: &Arc<RequestMetrics>, mut request: Request, next: Next) -> Response {
+pub async fn log_request(
+    metrics: &Arc<RequestMetrics>,
+    mut stops: watch::Receiver<bool>,
+    mut request: Request,
+    next: Next,
+) -> Response {
     let start = Instant::now();
     let request_id = request_id::of(request.headers());
     let id = request_id.to_str().unwrap_or_default();
@@ -52,9 +66,34 @@ pub async fn log_request(metrics: &Arc<RequestMetrics>, mut request: Request, ne
     let _in_flight = Counted::by(&endpoint.in_flight);
     let traceparent = traceparent.as_ref().and_then(|value| value.to_str().ok());
     let span = span(&request, route.unwrap_or(NO_ROUTE), id);
-    let mut guard =
-        RequestGuard { start, id, traceparent, method: &method, route, endpoint, span: span.clone(), answered: false };
-    let mut response = next.run(request).instrument(span).await;
+    let client = request.extensions().get::<ClientAddress>().copied();
+    let caller = Caller::default();
+    request.extensions_mut().insert(Caller::clone(&caller));
+    let changes = !matches!(method, Method::GET | Method::HEAD | Method::OPTIONS);
+    let contact = contact_in(request.uri().path()).filter(|_| changes);
+    let mut guard = RequestGuard {
+        start,
+        id,
+        traceparent,
+        method: &method,
+        route,
+        client,
+        caller,
+        contact,
+        endpoint,
+        span: span.clone(),
+        answered: false,
+    };
+    let mut response = tokio::select! {
+        biased;
+        response = next.run(request).instrument(span) => response,
+        // Or else, like its service, it is gone.
+        Ok(_) = stops.wait_for(|stops| *stops) => {
+            Problem::new(Code::Stopping, "the server stops before this is done: it may have been stored").into_response()
+        }
+    };
+    let made = response.headers().get(header::LOCATION).and_then(|location| location.to_str().ok());
+    guard.contact = made.and_then(contact_in).or(contact);
 
     let problem = response.extensions_mut().remove::<Problem>().or_else(|| foreign(&response));
     let code = problem.as_ref().map(|problem| problem.code().as_str());
@@ -76,6 +115,11 @@ pub async fn log_request(metrics: &Arc<RequestMetrics>, mut request: Request, ne
 
 /// The route label of a request that matches no route.
 const NO_ROUTE: &str = "none";
+
+/// The contact that a path names.
+fn contact_in(path: &str) -> Option<Uuid> {
+    path.strip_prefix("/contacts/")?.split('/').next()?.parse().ok()
+}
 
 /// The span of a request, below that of its caller; its fields have the names that OpenTelemetry gives them.
 fn span(request: &Request, route: &str, id: &str) -> Span {
@@ -102,13 +146,25 @@ fn span(request: &Request, route: &str, id: &str) -> Span {
     span
 }
 
+/// Writes the line of a request: the fields that all have, and more.
+macro_rules! line {
+    ($level:ident, $guard:ident, $status:ident, $time:ident, $($more:ident,)* $message:literal) => {{
+        let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *$guard;
+        let (route, duration_ms) = ($guard.route.unwrap_or(NO_ROUTE), $time.as_secs_f64() * 1e3);
+        let (client, contact) = (client.map(|ClientAddress(client)| display(client)), contact.map(display));
+        let (key, tenant) = $guard.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
+        let status = $status;
+        tracing::$level!(
+            request_id, %method, route, status, duration_ms, client, key, tenant, contact, $($more,)* traceparent, $message
+        );
+    }};
+}
+
 impl RequestGuard<'_> {
     fn answer(&mut self, status: StatusCode, code: Option<&str>, cause: Option<&str>) {
         self.answered = true;
-        let time = self.start.elapsed();
-        self.endpoint.answered(status.as_u16(), time);
-        let RequestGuard { id: request_id, traceparent, method, .. } = *self;
-        let (route, status, duration_ms) = (self.route.unwrap_or(NO_ROUTE), status.as_u16(), time.as_secs_f64() * 1e3);
+        let (time, status) = (self.start.elapsed(), status.as_u16());
+        self.endpoint.answered(status, time);
         self.span.record("http.response.status_code", status);
         self.span.record("error.type", code);
         if status >= 500 {
@@ -116,14 +172,10 @@ impl RequestGuard<'_> {
             self.span.record("otel.status_description", cause);
         }
         match status {
-            500 => {
-                tracing::error!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
-            }
+            500 => line!(error, self, status, time, code, cause, "request failed"),
             // An external fault, which may last and affect every request.
-            501.. => {
-                tracing::warn!(request_id, %method, route, status, duration_ms, code, cause, traceparent, "request failed")
-            }
-            _ => tracing::info!(request_id, %method, route, status, duration_ms, code, traceparent, "request"),
+            501.. => line!(warn, self, status, time, code, cause, "request failed"),
+            _ => line!(info, self, status, time, code, "request"),
         }
     }
 }
@@ -131,12 +183,10 @@ impl RequestGuard<'_> {
 impl Drop for RequestGuard<'_> {
     fn drop(&mut self) {
         if !self.answered {
-            let RequestGuard { id: request_id, traceparent, method, .. } = *self;
             let time = self.start.elapsed();
             self.endpoint.answered(ABANDONED, time);
             self.span.record("http.response.status_code", ABANDONED);
-            let (route, duration_ms) = (self.route.unwrap_or(NO_ROUTE), time.as_secs_f64() * 1e3);
-            tracing::info!(request_id, %method, route, status = ABANDONED, duration_ms, traceparent, "the client left");
+            line!(info, self, ABANDONED, time, "the client left");
         }
     }
 }

@@ -7,7 +7,7 @@ mod refusals;
 mod responses;
 mod schemas;
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use stickslip_mechanics::range::{self, Range};
 use stickslip_wire::limits::{self, Keywords as _};
@@ -18,6 +18,8 @@ pub use base::base;
 /// The text of the document, from what the attributes generate.
 pub fn complete(described: &utoipa::openapi::OpenApi) -> String {
     let mut document = serde_json::to_value(described).unwrap_or_default();
+    // A document without it is of no server at all to some tools.
+    document["servers"] = json!([{"url": "/", "description": "The server that this document comes from"}]);
     write_limits(&mut document);
     schemas::write(&mut document);
     parameters::write(&mut document);

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use stickslip_mechanics::range;
 use stickslip_wire::limits;
+use stickslip_wire::session::LABEL;
 
 use super::operations;
 use crate::api::params::KEY_LENGTH;
@@ -30,7 +31,9 @@ fn write_parameter(parameter: &mut Value, path: &str) {
     match name.as_str() {
         "limit" => {
             set_range(schema, &PAGE);
-            schema["default"] = json!(DEFAULT_PAGE);
+            if !path.ends_with("/events") {
+                schema["default"] = json!(DEFAULT_PAGE);
+            }
         }
         "last" => {
             set_range(schema, &limits::CYCLES);
@@ -41,12 +44,13 @@ fn write_parameter(parameter: &mut Value, path: &str) {
         "points_per_move" => set_range(schema, &limits::LOOP_POINTS),
         "points" => set_range(schema, &limits::STRESS_POINTS),
         "after" | "Last-Event-ID" if is_integer => schema["maximum"] = json!(u64::MAX),
-        "If-Match" => schema["pattern"] = json!(r#"^("[0-9]{1,19}"|\*)$"#),
+        "If-Match" => schema["pattern"] = json!(r#"^("[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#),
         "Idempotency-Key" => {
             schema["minLength"] = json!(1);
             schema["maxLength"] = json!(KEY_LENGTH);
             schema["pattern"] = json!("^[!-~]+$");
         }
+        "label" => schema["maxLength"] = json!(LABEL.0),
         "radii" => *schema = numbers(range::CONTACT_RADIUS.min, range::CONTACT_RADIUS.max),
         "displacement" => *schema = numbers(0.0, range::DISPLACEMENT.max),
         "force" => *schema = numbers(0.0, range::FORCE.max),

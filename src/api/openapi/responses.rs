@@ -1,4 +1,4 @@
-//! Headers, formats and links of responses.
+//! Headers, formats, examples and links of responses.
 
 use serde_json::{Map, Value, json};
 
@@ -6,8 +6,12 @@ use super::operations;
 use super::refusals::refusal;
 use crate::api::formats::Format;
 
+/// Replies of the program by operation: `UPDATE=1 cargo test --test api shows_a_reply` prints them anew.
+const EXAMPLES: &str = include_str!("../../../openapi/examples.json");
+
 /// Completes the responses.
 pub fn write(document: &mut Value) {
+    let examples: Map<String, Value> = serde_json::from_str(EXAMPLES).unwrap_or_default();
     let (of_contacts, of_jobs) = (links(document, "/contacts/{id}"), links(document, "/jobs/{id}"));
     for (method, path, operation) in operations(document) {
         write_headers(&mut operation["responses"]);
@@ -28,14 +32,16 @@ pub fn write(document: &mut Value) {
                 write_formats(operation, &Format::ALL);
                 write_conditional(operation, true);
             }
-            ("post", "/cycle" | "/fretting" | "/profiles/fit" | "/contacts/{id}/subsurface") => {
+            ("post", "/cycle" | "/fretting" | "/profiles/fit" | "/fit" | "/contacts/{id}/subsurface") => {
                 write_formats(operation, &Format::ALL);
             }
             ("get", "/contacts/{id}") => write_conditional(operation, false),
             ("post", "/sweep") | ("get", "/jobs/{id}/result") => write_formats(operation, &Format::TABLES),
-            ("get", "/contacts/{id}/events") => write_events(operation),
+            ("get", "/contacts/{id}/events") => write_events(operation, &["StateEvent", "EndEvent"]),
+            ("get", "/jobs/{id}/events") => write_events(operation, &["JobReply", "JobEndEvent"]),
             _ => {}
         }
+        write_example(operation, &examples);
     }
 }
 
@@ -118,22 +124,44 @@ fn write_formats(operation: &mut Value, formats: &[Format]) {
     operation["responses"]["406"] = refusal("Accept admits none of the formats");
 }
 
-/// A server-sent event, by its lines.
-fn write_events(operation: &mut Value) {
-    let data = |name: &str| json!({"$ref": format!("#/components/schemas/{name}")});
-    operation["responses"]["200"]["content"]["text/event-stream"]["schema"] = json!({
-        "description": "One event: the lines `event`, `id` and `data`",
+/// Server-sent events: a text to clients that read a reply whole, and to those that follow it, one event after the other.
+fn write_events(operation: &mut Value, data: &[&str]) {
+    let schemas: Vec<Value> = data.iter().map(|name| json!({"$ref": format!("#/components/schemas/{name}")})).collect();
+    let event = json!({
+        "title": operation["operationId"].as_str().unwrap_or_default().to_owned() + "_event",
+        "description": "One event, by its lines",
         "type": "object",
         "required": ["event", "data"],
         "properties": {
-            "event": {"type": "string", "enum": ["state", "end"], "description": "The kind of event"},
+            "event": {"type": "string", "description": "The kind of event"},
             "id": {"type": "string", "description": "The sequence, with an event `state`"},
             "data": {
                 "type": "string",
-                "description": "A `StateEvent`, or an `EndEvent` in the last event",
+                "description": format!("A `{}`", data.join("` or, in the last event, a `")),
                 "contentMediaType": "application/json",
-                "contentSchema": {"oneOf": [data("StateEvent"), data("EndEvent")]},
+                "contentSchema": {"oneOf": schemas},
             },
         },
     });
+    let text = json!({"type": "string", "description": "The lines of the events"});
+    operation["responses"]["200"]["content"]["text/event-stream"]["schema"] = json!({"anyOf": [text, event]});
+}
+
+/// Adds what the program replied to the first example of each request, and to readers of the contact that it makes.
+fn write_example(operation: &mut Value, examples: &Map<String, Value>) {
+    let name = operation["operationId"].as_str().unwrap_or_default().to_owned();
+    for (status, response) in operation["responses"].as_object_mut().into_iter().flatten() {
+        let example = match status.as_str() {
+            "200" | "201" => examples.get(&name),
+            "202" => examples.get("get_job"),
+            _ => None,
+        };
+        let content = response.get_mut("content").and_then(Value::as_object_mut);
+        for (media, content) in content.into_iter().flatten() {
+            let is_shown = ["application/json", "text/event-stream", "text/plain"].contains(&media.as_str());
+            if let Some(example) = example.filter(|_| is_shown) {
+                content["example"] = example.clone();
+            }
+        }
+    }
 }

@@ -13,6 +13,19 @@ pub fn write(document: &mut Value) {
         write_titles(schemas);
         write_exclusions(schemas);
         write_gaps(schemas);
+        schemas.values_mut().for_each(describe_defaults);
+    }
+}
+
+/// Puts the defaults of members into their descriptions: a member with the keyword `default` counts as always there for
+/// generators of clients, which then ask for it in requests.
+fn describe_defaults(schema: &mut Value) {
+    let members = schema.get_mut("properties").and_then(Value::as_object_mut);
+    for member in members.into_iter().flatten().filter_map(|(_, member)| member.as_object_mut()) {
+        let Some(default) = member.remove("default") else { continue };
+        let text = member.get("description").and_then(Value::as_str).unwrap_or_default().trim_end();
+        let text = format!("{text} Default: {}.", default.as_str().map_or_else(|| default.to_string(), str::to_owned));
+        member.insert("description".to_owned(), Value::String(text.trim_start().to_owned()));
     }
 }
 

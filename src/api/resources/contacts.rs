@@ -12,7 +12,10 @@ use crate::api::problem::Problem;
 use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
 use crate::api::reply;
 use crate::api::state::TenantApp;
-use stickslip_wire::{ContactDefinition, CreateRequest, ForkRequest, NewSession, SessionPage, SessionReply};
+use stickslip_wire::session::LABEL;
+use stickslip_wire::{
+    ContactDefinition, CreateRequest, ForkRequest, NewSession, RenameRequest, SessionPage, SessionReply,
+};
 
 /// Bytes of an item in a list of contacts.
 const SUMMARY_BYTES: usize = 2_048;
@@ -37,6 +40,10 @@ pub async fn create_contact(
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct ListQuery {
+    /// Those alone whose label contains this text. Upper and lower case are the same for the letters A to Z; the empty text
+    /// finds all that have a label.
+    #[param(nullable = false)]
+    label: Option<String>,
     /// How many contacts at most.
     #[param(value_type = Option<usize>, nullable = false)]
     limit: usize,
@@ -47,8 +54,9 @@ pub struct ListQuery {
 
 impl QueryParams for ListQuery {
     fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<ListQuery> {
+        let label = query.text("label", &LABEL);
         let (after, limit) = query.contacts();
-        Some(ListQuery { limit, after })
+        Some(ListQuery { label, limit, after })
     }
 }
 
@@ -61,17 +69,19 @@ impl QueryParams for ListQuery {
 )]
 pub async fn list_contacts(
     TenantApp(app): TenantApp,
-    CheckedQuery(ListQuery { limit, after }): CheckedQuery<ListQuery>,
+    CheckedQuery(ListQuery { label, limit, after }): CheckedQuery<ListQuery>,
 ) -> Result<Response, Problem> {
     let memory = app.pool.reserve(limit * SUMMARY_BYTES).await?;
-    Ok(reply::holding(reply::json(reply::written(&app.sessions.list(after, limit).await?)?), memory))
+    Ok(reply::holding(reply::json(reply::written(&app.sessions.list(label, after, limit).await?)?), memory))
 }
 
 /// Get a contact
+///
+/// What it is and in which state: none of its moves.
 #[utoipa::path(
     get, path = "/contacts/{id}", tag = "contacts", params(ContactPath),
     responses((status = 200, description = "The contact and its state", body = SessionReply,
-        headers(("ETag" = String, description = "Its sequence in quotes"))))
+        headers(("ETag" = String, description = "Its sequence, and a checksum of its label behind a dot if it has one, in quotes"))))
 )]
 pub async fn get_contact(
     TenantApp(app): TenantApp,
@@ -80,11 +90,34 @@ pub async fn get_contact(
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
     let session = app.sessions.get(id).await?;
-    let tag = Format::Columns.tag(&session.sequence.to_string());
+    let tag = tag(&session);
     if reply::is_current(&headers, &tag) {
         return Ok(reply::not_modified(&tag));
     }
-    Ok(reply::at_sequence(session.sequence, reply::written(&session)?))
+    Ok(reply::tagged(reply::json(reply::written(&session)?), &tag))
+}
+
+/// The version of a contact: its sequence, and a checksum of its label if it has one, which changes without a move.
+fn tag(session: &SessionReply) -> String {
+    let label = session.label.as_ref().map(|label| format!(".{:08x}", crc32fast::hash(label.as_bytes())));
+    Format::Columns.tag(&format!("{}{}", session.sequence, label.unwrap_or_default()))
+}
+
+/// Rename a contact
+///
+/// Gives the contact another label, or none. This is no move: its sequence, its history and the time of its last move stay.
+#[utoipa::path(
+    patch, path = "/contacts/{id}", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey), request_body = RenameRequest,
+    responses((status = 200, description = "The contact and its state", body = SessionReply,
+        headers(("ETag" = String, description = "Its sequence in quotes"))))
+)]
+pub async fn rename_contact(
+    TenantApp(app): TenantApp,
+    ContactPath { id }: ContactPath,
+    IfMatch { sequence }: IfMatch,
+    request: CheckedBody<RenameRequest>,
+) -> Result<Response, Problem> {
+    Ok(reply::of_change(app.sessions.rename(id, request.body.label, sequence, request.key).await?))
 }
 
 /// Delete a contact
@@ -122,7 +155,8 @@ pub async fn get_definition(
 
 /// Fork a contact
 ///
-/// Creates a new contact with the same history, which then evolves independently. The body may be left out.
+/// Creates a new contact with the same history, or with its first `sequence` moves, which then evolves independently: so a
+/// move is undone, and the original keeps it. The body may be left out.
 #[utoipa::path(
     post, path = "/contacts/{id}/fork", tag = "contacts", params(ContactPath, IdempotencyKey),
     request_body(content = ForkRequest, example = json!({"label": "what if"})),

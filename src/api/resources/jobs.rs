@@ -16,7 +16,7 @@ use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
 use crate::store::StreamEvent;
-use stickslip_wire::{JobEndEvent, JobReply, JobState, SweepReply};
+use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
 
 /// How a table is written.
 #[derive(IntoParams)]
@@ -34,7 +34,38 @@ impl QueryParams for TableQuery {
     }
 }
 
+/// Which jobs to list.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct JobsQuery {
+    /// Only those in this state.
+    #[param(nullable = false, inline)]
+    state: Option<JobState>,
+}
+
+impl QueryParams for JobsQuery {
+    fn take(query: &mut QueryReader, _: &HeaderMap) -> Option<JobsQuery> {
+        Some(JobsQuery { state: query.state() })
+    }
+}
+
+/// List jobs
+///
+/// The jobs of the tenant, oldest first.
+#[utoipa::path(
+    get, path = "/jobs", tag = "jobs", params(JobsQuery),
+    responses((status = 200, description = "The jobs", body = JobList))
+)]
+pub async fn list_jobs(
+    TenantApp(app): TenantApp,
+    CheckedQuery(JobsQuery { state }): CheckedQuery<JobsQuery>,
+) -> Result<Response, Problem> {
+    Ok(reply::json(reply::written(&app.jobs.list(state).await?)?))
+}
+
 /// Get a job
+///
+/// Its state, its progress, and the path of its result once it is done.
 #[utoipa::path(
     get, path = "/jobs/{id}", tag = "jobs", params(JobPath),
     responses((status = 200, description = "Its state and progress", body = JobReply))
@@ -86,7 +117,7 @@ pub async fn cancel_job(TenantApp(app): TenantApp, JobPath { id }: JobPath) -> R
 /// data a `JobEndEvent`). Comments keep an idle connection open.
 #[utoipa::path(
     get, path = "/jobs/{id}/events", tag = "jobs", params(JobPath),
-    responses((status = 200, description = "The events; the schema is that of the data of all but `end`",
+    responses((status = 200, description = "The events",
         content_type = "text/event-stream", body = JobReply))
 )]
 pub async fn watch_job(

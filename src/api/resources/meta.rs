@@ -17,6 +17,8 @@ use crate::api::state::App;
 use crate::server::connections::Refusal;
 
 /// Check that the process is alive
+///
+/// It says nothing of the store: restart a process that does not answer.
 #[utoipa::path(
     get, path = "/healthz", tag = "service",
     responses((status = 200, description = "It is alive", body = serde_json::Value, example = json!({"status": "ok"})))
@@ -26,6 +28,8 @@ pub async fn check_health() -> Result<Response, Problem> {
 }
 
 /// Check that the service is ready
+///
+/// The store can be read and accepts changes. If not, the answer is 503: send requests elsewhere.
 #[utoipa::path(
     get, path = "/readyz", tag = "service",
     responses((status = 200, description = "It is ready", body = serde_json::Value, example = json!({"status": "ready"})))
@@ -42,6 +46,8 @@ pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Response, Pr
 pub struct OpenApiText(pub &'static str);
 
 /// Get this document
+///
+/// What `/docs` shows, and what clients are generated from.
 #[utoipa::path(
     get, path = "/openapi.json", tag = "service",
     responses((status = 200, description = "The specification (OpenAPI 3.1)", body = serde_json::Value))
@@ -76,6 +82,8 @@ pub async fn not_found(uri: Uri) -> Problem {
 pub async fn refused(refusal: Option<Extension<Refusal>>) -> Problem {
     match refusal {
         Some(Extension(Refusal::Ambiguous(why))) => Problem::new(Code::AmbiguousRequest, why),
+        Some(Extension(Refusal::Stopping)) => Problem::new(Code::Stopping, "the server stops: nothing has changed"),
+        Some(Extension(Refusal::Foreign(why))) => Problem::new(Code::ForeignOrigin, why),
         Some(Extension(Refusal::Full(error))) => error.into(),
         None => PoolError::Busy.into(),
     }

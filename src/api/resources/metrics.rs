@@ -49,6 +49,7 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     let readings = app.sessions.readings();
     sessions(&page, &readings)?;
     solver(&page, app.pool.meters())?;
+    show(&page, app.pool.quotas().refused())?;
     jobs(&page, app.jobs.meters())?;
     if let Some(store) = readings.commits {
         commits(&page, store)?;

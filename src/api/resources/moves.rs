@@ -91,7 +91,8 @@ pub async fn relax_contact(
     Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, sequence, key).await?)))
 }
 
-async fn advance<T: Document<Checked = Advance>>(
+/// Moves a contact by a checked body.
+pub(super) async fn advance<T: Document<Checked = Advance>>(
     app: &App,
     id: Uuid,
     sequence: Option<u64>,

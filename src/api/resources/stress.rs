@@ -87,6 +87,8 @@ impl QueryParams for Wanted {
 }
 
 /// Get the stresses of a contact
+///
+/// Pressure, shear stress, slip and displacement over the radius, as they are now, and the residual stress on request.
 #[utoipa::path(
     get, path = "/contacts/{id}/stress", tag = "contacts", params(ContactPath, StressQuery),
     responses((status = 200, description = "The stresses in its present state", body = StressReply,

@@ -26,16 +26,35 @@ pub enum Origin<'a> {
     File(&'a ConfigValues),
 }
 
-/// The error for an unknown setting.
-pub fn unknown_setting<'a>(what: &str, known: impl Iterator<Item = &'a str>) -> SettingsError {
+/// The error for an unknown setting: its name, how it was written, and the names that there are.
+pub fn unknown_setting<'a>(name: &str, written: &str, known: impl Iterator<Item = &'a str>) -> SettingsError {
     let mut known: Vec<&str> = known.collect();
     known.sort_unstable();
     known.dedup();
-    SettingsError::Invalid(format!("{what}: there is no such setting, expected one of {}", known.join(", ")))
+    let near = known.iter().map(|known| (distance(name, known), known)).min();
+    let advice = match near.filter(|(distance, _)| *distance <= name.len() / 3) {
+        Some((_, near)) => format!("is it {near}?"),
+        None => format!("expected one of {}", known.join(", ")),
+    };
+    SettingsError::Invalid(format!("{written}: there is no such setting, {advice}"))
 }
 
-/// The error of the parser of arguments.
-pub fn from_clap(error: clap::Error, command: &Command, origin: &Origin<'_>) -> SettingsError {
+/// How many letters must be added, left out or replaced to make one word of the other (Levenshtein).
+fn distance(one: &str, other: &str) -> usize {
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (index, letter) in one.bytes().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], index + 1);
+        for (place, own) in other.bytes().enumerate() {
+            let replaced = diagonal + usize::from(letter != own);
+            diagonal = row[place + 1];
+            row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
+        }
+    }
+    row[other.len()]
+}
+
+/// The error of the parser of arguments. `invoked` is the command that they name.
+pub fn from_clap(error: clap::Error, command: &Command, invoked: &Command, origin: &Origin<'_>) -> SettingsError {
     if !error.use_stderr() {
         return SettingsError::Help(error);
     }
@@ -47,9 +66,9 @@ pub fn from_clap(error: clap::Error, command: &Command, origin: &Origin<'_>) -> 
     let arg = || all(command).into_iter().find(|arg| arg.get_long().is_some() && arg.get_long() == long(name));
     let why = match (error.kind(), arg()) {
         (ErrorKind::UnknownArgument, _) => {
-            let known = all(command).into_iter().filter_map(|arg| arg.get_long().map(|long| format!("--{long}")));
+            let known = invoked.get_arguments().filter_map(|arg| arg.get_long().map(|long| format!("--{long}")));
             let known: Vec<String> = known.collect();
-            return unknown_setting(&masked(name), known.iter().map(String::as_str));
+            return unknown_setting(name, &masked(name), known.iter().map(String::as_str));
         }
         (ErrorKind::InvalidValue | ErrorKind::ValueValidation, Some(arg)) => {
             let value = text(ContextKind::InvalidValue).unwrap_or_default();

@@ -33,7 +33,7 @@ impl ConfigValues {
         for (key, value) in &table {
             let written = || format!("{place}: {} = {}", masked(key), masked(&value.to_string()));
             let Some(arg) = known().find(|arg| arg.get_long() == Some(key)) else {
-                return Err(unknown_setting(&written(), known().filter_map(Arg::get_long)));
+                return Err(unknown_setting(key, &written(), known().filter_map(Arg::get_long)));
             };
             let value = plain(value, arg).map_err(|why| SettingsError::Invalid(format!("{}: {why}", written())))?;
             values.insert(key.clone(), value);

@@ -47,7 +47,10 @@ pub struct Settings {
 pub fn read<T: CommandFactory + FromArgMatches>(arguments: Vec<OsString>) -> Result<(T, Settings), SettingsError> {
     let mut command = T::command();
     let parse = |command: &Command, origin: Origin<'_>| {
-        command.clone().try_get_matches_from(&arguments).map_err(|error| error::from_clap(error, command, &origin))
+        command
+            .clone()
+            .try_get_matches_from(&arguments)
+            .map_err(|error| error::from_clap(error, command, invoked(command, &arguments), &origin))
     };
     parse(&without_environment(command.clone()), Origin::Flag)?;
     let mut matches = parse(&command, Origin::Environment)?;
@@ -65,7 +68,8 @@ pub fn read<T: CommandFactory + FromArgMatches>(arguments: Vec<OsString>) -> Res
             file = Some(values);
         }
     }
-    let read = T::from_arg_matches(&matches).map_err(|error| error::from_clap(error, &command, &Origin::Flag))?;
+    let read = T::from_arg_matches(&matches)
+        .map_err(|error| error::from_clap(error, &command, invoked(&command, &arguments), &Origin::Flag))?;
     let settings =
         Settings { command: requested(&command, &matches).clone(), matches: requested_matches(&matches).clone(), file };
     Ok((read, settings))
@@ -74,6 +78,11 @@ pub fn read<T: CommandFactory + FromArgMatches>(arguments: Vec<OsString>) -> Res
 /// The arguments of a command that are settings.
 fn settings_of(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|arg| arg.get_long().is_some() && arg.get_env().is_some())
+}
+
+/// The command that the arguments name, right or wrong otherwise.
+fn invoked<'a>(command: &'a Command, arguments: &[OsString]) -> &'a Command {
+    arguments.iter().skip(1).fold(command, |command, name| command.find_subcommand(name).unwrap_or(command))
 }
 
 /// The requested command: a subcommand, or the top level.
@@ -109,7 +118,7 @@ fn check_variables(command: &Command) -> Result<(), SettingsError> {
         let (name, value) = (name.to_string_lossy(), value.to_string_lossy());
         let known: Vec<_> = all_settings(command).filter_map(|arg| arg.get_env()?.to_str()).collect();
         if ours(&name) && !known.contains(&&*name) {
-            return Err(error::unknown_setting(&format!("{name}={}", masked(&value)), known.into_iter()));
+            return Err(error::unknown_setting(&name, &format!("{name}={}", masked(&value)), known.into_iter()));
         }
     }
     Ok(())

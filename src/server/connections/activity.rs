@@ -36,17 +36,6 @@ pub struct ConnectionActivity {
     fault: OnceLock<&'static str>,
 }
 
-/// What received bytes belong to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Received {
-    /// The beginning of a head.
-    HeadStart,
-    /// The rest of a head.
-    HeadRest,
-    /// A request that is already being served.
-    Body,
-}
-
 impl ConnectionActivity {
     /// The activity of a connection that has just been opened.
     pub fn new() -> ConnectionActivity {
@@ -63,19 +52,19 @@ impl ConnectionActivity {
         unpacked(self.state.load(Ordering::Relaxed))
     }
 
-    /// Records that bytes were received, and returns what they belong to.
-    pub fn received(&self) -> Received {
+    /// Records that bytes of a head were received.
+    pub fn received_head(&self) {
         let state = self.state.load(Ordering::Relaxed);
-        match unpacked(state).0 {
-            Phase::Idle => {
-                let head = packed(Phase::Head, self.elapsed_ms());
-                // Unless it is being closed.
-                let _ = self.state.compare_exchange(state, head, Ordering::Relaxed, Ordering::Relaxed);
-                Received::HeadStart
-            }
-            Phase::Head => Received::HeadRest,
-            Phase::Busy | Phase::Closing => Received::Body,
+        if unpacked(state).0 == Phase::Idle {
+            let head = packed(Phase::Head, self.elapsed_ms());
+            // Unless it is being closed.
+            let _ = self.state.compare_exchange(state, head, Ordering::Relaxed, Ordering::Relaxed);
         }
+    }
+
+    /// Whether the last reply has been handed to the socket, and nothing of another request to the HTTP library.
+    pub fn is_idle(&self) -> bool {
+        self.state().0 == Phase::Idle
     }
 
     /// Marks the head that is being received as one that must not be served.

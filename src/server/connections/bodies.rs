@@ -7,11 +7,10 @@ use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use http_body::{Frame, SizeHint};
-use hyper::body::Incoming;
-use tokio::time::{Sleep, sleep};
+use tokio::time::{Instant, Sleep, sleep};
 
 use super::ConnectionActivity;
-use crate::admission::{Place, Reservation};
+use crate::admission::{Client, Place, Reservation};
 use crate::server::limits::PIECE;
 
 /// The body of a request did not arrive in time.
@@ -19,22 +18,27 @@ use crate::server::limits::PIECE;
 #[error("the body did not arrive in time")]
 pub struct SlowBody;
 
-/// The body of a request, which must arrive completely within a time limit.
-pub struct DeadlineBody {
-    body: Incoming,
-    time: Duration,
-    // Created on the first wait: most bodies arrive together with the head.
-    deadline: Option<Pin<Box<Sleep>>>,
+/// The body of a request, which must arrive completely within a time limit. Only waits for the client count, and not what the
+/// server itself does between them.
+pub struct DeadlineBody<B> {
+    body: B,
+    /// What is left of the time.
+    left: Duration,
+    /// The present wait, with its beginning.
+    wait: Option<(Instant, Pin<Box<Sleep>>)>,
 }
 
-impl DeadlineBody {
-    /// The time limit runs from the first wait for data.
-    pub fn new(body: Incoming, time: Duration) -> DeadlineBody {
-        DeadlineBody { body, time, deadline: None }
+impl<B> DeadlineBody<B> {
+    /// A body that the client has so much time for.
+    pub fn new(body: B, time: Duration) -> DeadlineBody<B> {
+        DeadlineBody { body, left: time, wait: None }
     }
 }
 
-impl http_body::Body for DeadlineBody {
+impl<B> http_body::Body for DeadlineBody<B>
+where
+    B: http_body::Body<Data = Bytes, Error: Into<axum::BoxError>> + Unpin,
+{
     type Data = Bytes;
     type Error = axum::BoxError;
 
@@ -43,10 +47,13 @@ impl http_body::Body for DeadlineBody {
         cx: &mut Context<'_>,
     ) -> Poll<Option<Result<Frame<Bytes>, axum::BoxError>>> {
         if let Poll::Ready(frame) = Pin::new(&mut self.body).poll_frame(cx) {
+            if let Some((since, _)) = self.wait.take() {
+                self.left = self.left.saturating_sub(since.elapsed());
+            }
             return Poll::Ready(frame.map(|frame| frame.map_err(Into::into)));
         }
-        let time = self.time;
-        let deadline = self.deadline.get_or_insert_with(|| Box::pin(sleep(time)));
+        let left = self.left;
+        let (_, deadline) = self.wait.get_or_insert_with(|| (Instant::now(), Box::pin(sleep(left))));
         deadline.as_mut().poll(cx).map(|()| Some(Err(SlowBody.into())))
     }
 
@@ -72,6 +79,8 @@ impl Drop for RequestInProgress {
 /// of the request are free, and no more than that piece is still in flight.
 pub struct TrackedBody {
     body: Body,
+    // On whose behalf what it streams is computed.
+    client: Client,
     rest: Bytes,
     _request: RequestInProgress,
     _place: Option<Place>,
@@ -82,11 +91,12 @@ impl TrackedBody {
     /// A body that releases `request`, `place` and `memory` when it is dropped.
     pub fn new(
         body: Body,
+        client: Client,
         request: RequestInProgress,
         place: Option<Place>,
         memory: Option<Arc<Reservation>>,
     ) -> TrackedBody {
-        TrackedBody { body, rest: Bytes::new(), _request: request, _place: place, _memory: memory }
+        TrackedBody { body, client, rest: Bytes::new(), _request: request, _place: place, _memory: memory }
     }
 
     fn next_piece(&mut self) -> Bytes {
@@ -103,7 +113,8 @@ impl http_body::Body for TrackedBody {
         if !self.rest.is_empty() {
             return Poll::Ready(Some(Ok(Frame::data(self.next_piece()))));
         }
-        let Poll::Ready(frame) = Pin::new(&mut self.body).poll_frame(cx) else { return Poll::Pending };
+        let TrackedBody { body, client, .. } = &mut *self;
+        let Poll::Ready(frame) = client.within(|| Pin::new(body).poll_frame(cx)) else { return Poll::Pending };
         let Some(Ok(frame)) = frame else { return Poll::Ready(frame) };
         match frame.into_data() {
             Ok(data) if data.len() > PIECE => {
@@ -129,5 +140,51 @@ impl http_body::Body for TrackedBody {
             }
         }
         hint
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+    use std::pin::Pin;
+    use std::task::{Context, Poll};
+    use std::time::Duration;
+
+    use axum::body::Bytes;
+    use http_body::{Body, Frame};
+    use http_body_util::BodyExt as _;
+    use tokio::time::sleep;
+
+    use super::DeadlineBody;
+
+    /// A client whose every byte has arrived as soon as it has been waited for once.
+    struct Prompt {
+        asked: bool,
+    }
+
+    impl Body for Prompt {
+        type Data = Bytes;
+        type Error = Infallible;
+
+        fn poll_frame(
+            mut self: Pin<&mut Self>,
+            cx: &mut Context<'_>,
+        ) -> Poll<Option<Result<Frame<Bytes>, Infallible>>> {
+            self.asked = !self.asked;
+            if self.asked {
+                cx.waker().wake_by_ref();
+                return Poll::Pending;
+            }
+            Poll::Ready(Some(Ok(Frame::data(Bytes::from_static(b"a")))))
+        }
+    }
+
+    #[tokio::test]
+    async fn what_the_server_holds_up_itself_is_no_fault_of_the_client() {
+        let time = Duration::from_millis(500);
+        let mut body = DeadlineBody::new(Prompt { asked: false }, time);
+        assert!(body.frame().await.unwrap().is_ok());
+        sleep(2 * time).await;
+        assert!(body.frame().await.unwrap().is_ok());
     }
 }

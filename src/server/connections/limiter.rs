@@ -2,14 +2,15 @@
 
 use std::cmp::Reverse;
 use std::collections::HashMap;
-use std::net::{IpAddr, Ipv6Addr};
+use std::net::IpAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use tokio::task::AbortHandle;
 use tokio::time::Instant;
 
-use super::{ConnectionActivity, ConnectionLimits};
+use super::{ConnectionActivity, ConnectionLimits, Network, is_trusted};
+use crate::admission::Client;
 use crate::server::limits::{LEAST_WAIT, SPARE_CONNECTIONS};
 
 /// The divisor of all connections that gives the number freed at a time, so that the search costs little for each.
@@ -21,6 +22,8 @@ const SEARCH_PAUSE: Duration = Duration::from_millis(100);
 #[derive(Clone, Debug)]
 pub struct ConnectionLimiter {
     limits: ConnectionLimits,
+    /// Their clients are many: the bound of one does not hold for them.
+    proxies: Arc<[Network]>,
     // A std mutex: held for a moment when a connection opens or closes, and never across an await.
     table: Arc<Mutex<Table>>,
 }
@@ -30,7 +33,7 @@ struct Table {
     next: u64,
     connections: HashMap<u64, Connection>,
     /// Connections by client.
-    clients: HashMap<IpAddr, usize>,
+    clients: HashMap<Client, usize>,
     spare: usize,
     refused: u64,
     closed: u64,
@@ -39,7 +42,7 @@ struct Table {
 
 #[derive(Debug)]
 struct Connection {
-    client: IpAddr,
+    client: Client,
     activity: Arc<ConnectionActivity>,
     // None until its task has started.
     task: Option<AbortHandle>,
@@ -69,10 +72,16 @@ pub struct ConnectionPermit {
 }
 
 impl ConnectionLimiter {
-    /// A limiter without connections.
+    /// A limiter without connections. The bound of a client does not hold for `proxies`.
     #[must_use]
-    pub fn new(limits: ConnectionLimits) -> ConnectionLimiter {
-        ConnectionLimiter { limits, table: Arc::default() }
+    pub fn new(limits: ConnectionLimits, proxies: Arc<[Network]>) -> ConnectionLimiter {
+        ConnectionLimiter { limits, proxies, table: Arc::default() }
+    }
+
+    /// The proxies that are trusted.
+    #[must_use]
+    pub fn proxies(&self) -> &Arc<[Network]> {
+        &self.proxies
     }
 
     /// The limits.
@@ -99,18 +108,20 @@ impl ConnectionLimiter {
 
     /// Decides on a connection from `address`; without a permit it is closed at once.
     pub(crate) fn admit(&self, address: IpAddr) -> Option<ConnectionPermit> {
-        let (client, activity) = (client(address), Arc::new(ConnectionActivity::new()));
+        let (client, activity) = (Client::of_address(address), Arc::new(ConnectionActivity::new()));
+        let bounded = !is_trusted(&self.proxies, address.to_canonical());
         let mut table = self.table();
         if table.connections.len() >= self.limits.most {
             table.make_room(self.limits.most.div_ceil(FREED_SHARE));
         }
         let mine = table.clients.get(&client).copied().unwrap_or(0);
         let permit = |number| ConnectionPermit { limiter: self.clone(), number, activity: Arc::clone(&activity) };
-        if table.connections.len() < self.limits.most && mine < self.limits.per_client {
+        if table.connections.len() < self.limits.most && (mine < self.limits.per_client || !bounded) {
             let number = table.next;
             table.next += 1;
-            table.clients.insert(client, mine + 1);
-            table.connections.insert(number, Connection { client, activity: Arc::clone(&activity), task: None });
+            table.clients.insert(client.clone(), mine + 1);
+            let activity = Arc::clone(&activity);
+            table.connections.insert(number, Connection { client, activity, task: None });
             Some(permit(Some(number)))
         } else if table.spare < SPARE_CONNECTIONS {
             table.spare += 1;
@@ -149,12 +160,15 @@ impl Table {
         let mut waiting: Vec<_> = self
             .connections
             .iter()
-            .filter_map(|(number, connection)| Some((*number, connection.client, connection.activity.waiting_since()?)))
+            .filter_map(|(number, connection)| {
+                Some((*number, &connection.client, connection.activity.waiting_since()?))
+            })
             .filter(|(.., since)| now.duration_since(*since) >= LEAST_WAIT)
             .collect();
-        waiting.sort_by_key(|(_, client, since)| (Reverse(self.clients.get(client).copied()), *since));
+        waiting.sort_by_key(|(_, client, since)| (Reverse(self.clients.get(*client).copied()), *since));
         let mut found = false;
-        for (number, ..) in waiting.into_iter().take(most) {
+        let numbers: Vec<u64> = waiting.into_iter().take(most).map(|(number, ..)| number).collect();
+        for number in numbers {
             // Its place is free from now on; the task only has to end.
             if self.connections.get(&number).is_some_and(|connection| connection.activity.try_close())
                 && let Some(connection) = self.remove(number)
@@ -195,16 +209,5 @@ impl Drop for ConnectionPermit {
             Some(number) => drop(table.remove(number)),
             None => table.spare -= 1,
         }
-    }
-}
-
-/// The client of an address: an IPv6 client owns a whole /64 network.
-fn client(address: IpAddr) -> IpAddr {
-    match address.to_canonical() {
-        IpAddr::V6(address) => {
-            let [a, b, c, d, ..] = address.segments();
-            Ipv6Addr::new(a, b, c, d, 0, 0, 0, 0).into()
-        }
-        address => address,
     }
 }

@@ -9,6 +9,8 @@
 mod activity;
 mod bodies;
 mod limiter;
+mod own_hosts;
+mod proxies;
 mod service;
 mod smuggling;
 mod socket;
@@ -19,6 +21,9 @@ pub(crate) use activity::ConnectionActivity;
 pub use bodies::SlowBody;
 pub(crate) use limiter::ConnectionPermit;
 pub use limiter::{ConnectionCounts, ConnectionLimiter};
+pub use own_hosts::OwnHosts;
+pub(crate) use proxies::is_trusted;
+pub use proxies::{ClientAddress, Network};
 pub use service::{Refusal, Service};
 pub(crate) use socket::Socket;
 
@@ -40,6 +45,8 @@ pub struct ConnectionLimits {
     pub idle: Duration,
     /// How long a client may take nothing of its reply.
     pub stall: Duration,
+    /// How long requests may take to be done once the server stops.
+    pub drain: Duration,
 }
 
 impl ConnectionLimits {
@@ -58,6 +65,7 @@ impl Default for ConnectionLimits {
             body: Duration::from_secs(30),
             idle: Duration::from_secs(60),
             stall: Duration::from_secs(30),
+            drain: Duration::from_secs(8),
         }
     }
 }

@@ -1,17 +1,20 @@
 //! Serves one request of a connection: acquires a place, calls the router, and returns a reply that releases the place.
 
+use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
 use axum::body::{Body, HttpBody as _};
-use axum::http::{HeaderValue, Method, Request, Response, header};
+use axum::http::{HeaderValue, Method, Request, Response, Version, header};
 use hyper::body::Incoming;
+use tokio::sync::watch;
 use tower_service::Service as _;
 
-use super::ConnectionActivity;
 use super::bodies::{DeadlineBody, RequestInProgress, TrackedBody};
-use crate::admission::{Pool, PoolError, Reservation};
+use super::proxies::{self, ClientAddress, Network};
+use super::{ConnectionActivity, OwnHosts};
+use crate::admission::{Client, Pool, PoolError, Quota, Reservation};
 
 /// Paths that are answered even if the server is busy.
 const ALWAYS_ANSWERED: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
@@ -28,6 +31,10 @@ pub enum Refusal {
     Full(PoolError),
     /// Its head can be read in more than one way.
     Ambiguous(&'static str),
+    /// The server stops before there is capacity for it.
+    Stopping,
+    /// It comes by a foreign name, or from a page of another site.
+    Foreign(&'static str),
 }
 
 /// What serves the requests of all connections.
@@ -38,8 +45,16 @@ pub struct Service {
     pub refusals: Router,
     /// Where requests get their places.
     pub pool: Pool,
+    /// Whether clients are told apart by their addresses: where there are no keys.
+    pub by_address: bool,
     /// How long a body may take to arrive.
     pub body_time: Duration,
+    /// By which names it may be called; any if none.
+    pub hosts: Option<OwnHosts>,
+    /// The proxies that are believed who their client is.
+    pub proxies: Arc<[Network]>,
+    /// True once requests that are not done are refused: the server has no more time.
+    pub stopping: watch::Sender<bool>,
 }
 
 impl Service {
@@ -48,6 +63,7 @@ impl Service {
         self: Arc<Self>,
         activity: Arc<ConnectionActivity>,
         spare: bool,
+        peer: IpAddr,
         request: Request<Incoming>,
     ) -> Result<Response<TrackedBody>, Closed> {
         if !activity.begin_request() {
@@ -55,34 +71,67 @@ impl Service {
         }
         let in_progress = RequestInProgress(activity);
         let mut request = request.map(|body| Body::new(DeadlineBody::new(body, self.body_time)));
-        let fault = in_progress.0.head_fault();
+        let address = proxies::client(peer, request.headers(), &self.proxies);
+        request.extensions_mut().insert(ClientAddress(address));
+        let client = Client::of_address(address);
+        let fault = in_progress.0.head_fault().or_else(|| ambiguity(&request));
+        // Only the HTTP library knows where chunks end, and what follows them has not been inspected.
+        let last = fault.is_some() || request.headers().contains_key(header::TRANSFER_ENCODING);
+        let always = ALWAYS_ANSWERED.contains(&request.uri().path());
+        let share = || client.within(|| self.pool.share_of(Quota::Requests));
+        let share = (self.by_address && !always).then(share).transpose();
         let place = if let Some(fault) = fault {
             Err(Refusal::Ambiguous(fault))
-        } else if ALWAYS_ANSWERED.contains(&request.uri().path()) {
+        } else if let Some(why) = self.hosts.as_ref().and_then(|hosts| hosts.refuse(&request)) {
+            Err(Refusal::Foreign(why))
+        } else if always {
             Ok(None)
+        } else if let Err(exceeded) = share {
+            Err(Refusal::Full(exceeded))
         } else if spare {
             Err(Refusal::Full(PoolError::Busy))
         } else if request.method() == Method::POST {
             // It acquires its place once its body has arrived.
             Ok(None)
         } else {
-            self.pool.enter().await.map(Some).map_err(Refusal::Full)
+            let mut stopping = self.stopping.subscribe();
+            tokio::select! {
+                biased;
+                place = self.pool.enter() => place.map(Some).map_err(Refusal::Full),
+                _ = stopping.wait_for(|stopping| *stopping) => Err(Refusal::Stopping),
+            }
         };
         let (reply, place) = match place {
-            Ok(place) => (self.router.clone().call(request).await, place),
+            Ok(place) => (client.clone().serve(self.router.clone().call(request)).await, place),
             Err(refusal) => {
                 request.extensions_mut().insert(refusal);
                 (self.refusals.clone().call(request).await, None)
             }
         };
         let Ok(mut reply) = reply;
-        if fault.is_some() {
+        if last {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
+        // That of the key, if there is one.
+        let client = reply.extensions_mut().remove::<Client>().unwrap_or(client);
         let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
         // An endless stream has a limit of its own and occupies no solver. A compressed reply ends, but has no length.
         let ends = reply.body().size_hint().exact().is_some() || reply.headers().contains_key(header::CONTENT_ENCODING);
         let place = place.filter(|_| ends);
-        Ok(reply.map(|body| TrackedBody::new(body, in_progress, place, memory)))
+        Ok(reply.map(|body| TrackedBody::new(body, client, in_progress, place, memory)))
+    }
+}
+
+/// What can be understood in more than one way in a head that can be read in one, if anything.
+fn ambiguity<B>(request: &Request<B>) -> Option<&'static str> {
+    let twice = |name: &str| request.headers().get_all(name).iter().nth(1).is_some();
+    if request.version() == Version::HTTP_11 && !request.headers().contains_key(header::HOST) {
+        Some("the head names no host")
+    } else if twice("content-type") {
+        Some("the head has more than one Content-Type")
+    } else if twice("idempotency-key") {
+        Some("the head has more than one Idempotency-Key")
+    } else {
+        None
     }
 }

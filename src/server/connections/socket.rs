@@ -1,29 +1,45 @@
-//! A TCP stream that records what the client sends and reads, and inspects the heads of its requests.
+//! The stream of a connection: records what the client sends and reads, inspects the head of each request from its first byte,
+//! and hands on nothing beyond a request until its reply is done.
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;
 use std::sync::Arc;
-use std::task::{Context, Poll};
+use std::task::{Context, Poll, Waker, ready};
 
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::TcpStream;
 
 use super::ConnectionActivity;
-use super::activity::Received;
-use super::smuggling::RequestSmugglingGuard;
+use super::smuggling::{BodyLength, RequestSmugglingGuard};
 
 /// The stream of a connection.
 #[derive(Debug)]
-pub struct Socket {
-    stream: TcpStream,
+pub struct Socket<S> {
+    stream: S,
     activity: Arc<ConnectionActivity>,
-    head: RequestSmugglingGuard,
+    expected: Expected,
+    /// Received beyond the present request, at most one read.
+    held: Vec<u8>,
+    /// Waits for the end of the reply.
+    waiting: Option<Waker>,
 }
 
-impl Socket {
+/// What the next bytes belong to.
+#[derive(Debug)]
+enum Expected {
+    Head(RequestSmugglingGuard),
+    /// A body with this many bytes to come.
+    Body(u64),
+    /// A later request, which must wait for the reply.
+    Next,
+    /// The last request of the connection.
+    Last,
+}
+
+impl<S> Socket<S> {
     /// The stream of a connection with this activity.
-    pub fn new(stream: TcpStream, activity: Arc<ConnectionActivity>) -> Socket {
-        Socket { stream, activity, head: RequestSmugglingGuard::default() }
+    pub fn new(stream: S, activity: Arc<ConnectionActivity>) -> Socket<S> {
+        let expected = Expected::Head(RequestSmugglingGuard::default());
+        Socket { stream, activity, expected, held: Vec::new(), waiting: None }
     }
 
     fn record(&self, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
@@ -34,27 +50,76 @@ impl Socket {
         }
         written
     }
-}
 
-impl AsyncRead for Socket {
-    fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
-        let before = buffer.filled().len();
-        let read = Pin::new(&mut self.stream).poll_read(cx, buffer);
-        if read.is_ready() {
-            match self.activity.received() {
-                Received::HeadStart => self.head = RequestSmugglingGuard::default(),
-                Received::HeadRest => {}
-                Received::Body => return read,
-            }
-            if let Some(fault) = self.head.inspect(&buffer.filled()[before..]) {
-                self.activity.reject_head(fault);
+    /// How many of these bytes belong to the present request.
+    fn of_request(&mut self, bytes: &[u8]) -> usize {
+        let mut taken = 0;
+        if let Expected::Head(guard) = &mut self.expected {
+            self.activity.received_head();
+            match guard.inspect(bytes) {
+                Ok(None) => return bytes.len(),
+                Ok(Some((end, body))) => {
+                    taken = end;
+                    self.expected = match body {
+                        BodyLength::Bytes(0) => Expected::Next,
+                        BodyLength::Bytes(length) => Expected::Body(length),
+                        // The reply closes the connection, so that the end of the chunks need not be found twice.
+                        BodyLength::Chunked => Expected::Last,
+                    };
+                }
+                Err(fault) => {
+                    self.activity.reject_head(fault);
+                    self.expected = Expected::Last;
+                }
             }
         }
-        read
+        let rest = bytes.len() - taken;
+        match &mut self.expected {
+            Expected::Head(_) | Expected::Last => bytes.len(),
+            Expected::Next => taken,
+            Expected::Body(left) => {
+                let part = usize::try_from(*left).unwrap_or(usize::MAX).min(rest);
+                *left -= part as u64;
+                if *left == 0 {
+                    self.expected = Expected::Next;
+                }
+                taken + part
+            }
+        }
     }
 }
 
-impl AsyncWrite for Socket {
+impl<S: AsyncRead + Unpin> AsyncRead for Socket<S> {
+    fn poll_read(self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        let this = self.get_mut();
+        if matches!(this.expected, Expected::Next) && this.activity.is_idle() {
+            this.expected = Expected::Head(RequestSmugglingGuard::default());
+        }
+        let before = buffer.filled().len();
+        let mut held = std::mem::take(&mut this.held);
+        if held.is_empty() {
+            ready!(Pin::new(&mut this.stream).poll_read(cx, buffer))?;
+        } else {
+            buffer.put_slice(&held[..held.len().min(buffer.remaining())]);
+        }
+        let received = buffer.filled().len() - before;
+        let taken = this.of_request(&buffer.filled()[before..]);
+        if held.is_empty() {
+            held.extend_from_slice(&buffer.filled()[before + taken..]);
+        } else {
+            held.drain(..taken);
+        }
+        this.held = held;
+        buffer.set_filled(before + taken);
+        if taken == 0 && received > 0 {
+            this.waiting = Some(cx.waker().clone());
+            return Poll::Pending;
+        }
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl<S: AsyncWrite + Unpin> AsyncWrite for Socket<S> {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.stream).poll_write(cx, bytes);
         self.record(written)
@@ -76,6 +141,11 @@ impl AsyncWrite for Socket {
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         // The HTTP library flushes once nothing is left to write.
         self.activity.flushed();
+        if self.activity.is_idle()
+            && let Some(waiting) = self.waiting.take()
+        {
+            waiting.wake();
+        }
         Pin::new(&mut self.stream).poll_flush(cx)
     }
 

@@ -1,16 +1,17 @@
 //! Computing a sweep in slices, over all threads that are free.
 
 use std::ops::Range;
+use std::panic::resume_unwind;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, Builder};
 use std::time::{Duration, Instant};
 
-use rayon::ThreadPool;
 use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::{Sweep, SweepError, SweepResult};
-use crate::admission::{Nanoseconds, Pool, Stop};
+use crate::admission::{Kind, Nanoseconds, Pool, Stop, Turn};
 use crate::simulation::{Failure, simulate};
 use stickslip_wire::check::Fault;
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
@@ -25,28 +26,6 @@ const BATCH_POINTS: u64 = 64;
 /// How much lower the priority of the threads is.
 const NICE: i32 = 10;
 
-/// Threads for sweeps. Clones are handles on the same.
-#[derive(Clone, Debug)]
-pub struct Workers(Arc<ThreadPool>);
-
-impl Workers {
-    /// This many threads.
-    ///
-    /// # Errors
-    /// The error of the system.
-    pub fn new(threads: usize) -> Result<Workers, String> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.max(1))
-            .thread_name(|index| format!("sweep-{index}"))
-            // Not every system has priorities.
-            .start_handler(|_| {
-                let _ = rustix::process::nice(NICE);
-            })
-            .build();
-        pool.map(|pool| Workers(Arc::new(pool))).map_err(|error| error.to_string())
-    }
-}
-
 impl Sweep {
     /// Computes points slice by slice. A point may take as long as `allowed`, or as `stop` permits.
     ///
@@ -55,59 +34,65 @@ impl Sweep {
     pub async fn compute(
         self: &Arc<Self>,
         points: Range<usize>,
-        pool: &Pool,
-        workers: &Workers,
+        (pool, kind): (&Pool, Kind),
         stop: &Stop,
         allowed: Option<Duration>,
     ) -> Result<SweepResult, SweepError> {
         let (mut result, mut next) = (SweepResult::default(), points.start);
         while next < points.end {
-            let (sweep, workers, stop) = (Arc::clone(self), workers.clone(), stop.clone());
+            let (sweep, stop) = (Arc::clone(self), stop.clone());
             let rest = next..points.end;
-            let slice = pool.share(move |width| sweep.slice(rest, &workers, width, &stop, allowed)).await??;
+            let slice = pool.share(kind, move |turns| sweep.slice(rest, turns, &stop, allowed)).await??;
             next += slice.values.len() / self.checked.outputs.len().max(1);
             result.append(slice);
         }
         Ok(result)
     }
 
-    /// Computes the first of these points on `threads` threads, as many as fit in a slice.
+    /// Computes the first of these points, as many as fit in a slice, on a thread of its own for each turn.
     ///
     /// # Errors
-    /// [`Failure`] if it was stopped.
+    /// [`Failure`] if it was stopped, or the system has no thread for it.
+    ///
+    /// # Panics
+    /// If a thread does.
     pub fn slice(
         &self,
         points: Range<usize>,
-        workers: &Workers,
-        width: usize,
+        turns: Vec<Turn>,
         stop: &Stop,
         allowed: Option<Duration>,
     ) -> Result<SweepResult, Failure> {
         let batch = usize::try_from((BATCH_COST / self.cost_per_point.max(1)).clamp(1, BATCH_POINTS)).unwrap_or(1);
-        let (next, begin, done) = (AtomicUsize::new(points.start), Instant::now(), Mutex::new(Vec::new()));
-        workers.0.scope(|scope| {
-            for _ in 0..width {
-                scope.spawn(|_| {
-                    let mut document = self.base.clone();
-                    let mut mine = Vec::new();
-                    loop {
-                        let first = next.fetch_add(batch, Ordering::Relaxed);
-                        if first >= points.end {
-                            break;
-                        }
-                        let result =
-                            self.compute_batch(&mut document, first..points.end.min(first + batch), stop, allowed);
-                        let stopped = result.is_err();
-                        mine.push((first, result));
-                        if stopped || begin.elapsed() >= SLICE_TIME {
-                            break;
-                        }
-                    }
-                    done.lock().unwrap_or_else(PoisonError::into_inner).extend(mine);
-                });
+        let (next, begin) = (AtomicUsize::new(points.start), Instant::now());
+        let work = || {
+            // Not every system has priorities.
+            let _ = rustix::process::nice(NICE);
+            let (mut document, mut mine) = (self.base.clone(), Vec::new());
+            loop {
+                let first = next.fetch_add(batch, Ordering::Relaxed);
+                if first >= points.end {
+                    break;
+                }
+                let result = self.compute_batch(&mut document, first..points.end.min(first + batch), stop, allowed);
+                let stopped = result.is_err();
+                mine.push((first, result));
+                if stopped || begin.elapsed() >= SLICE_TIME {
+                    break;
+                }
             }
+            mine
+        };
+        let mut done = thread::scope(|scope| {
+            // A thread that the system refuses leaves its part to the others.
+            let start = |turn: Turn| Builder::new().spawn_scoped(scope, || turn.work(work)).ok();
+            let threads: Vec<_> = turns.into_iter().filter_map(start).collect();
+            let done = threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
+            done.flatten().collect::<Vec<_>>()
         });
-        let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if done.is_empty() {
+            return Err(Failure::Stopped);
+        }
         done.sort_by_key(|(first, _)| *first);
         done.into_iter().try_fold(SweepResult::default(), |mut result, (_, next)| {
             result.append(next?);
@@ -172,11 +157,13 @@ fn of_failure(refusal: Failure) -> PointFailure {
     let (code, detail) = (refusal.code(), refusal.to_string());
     match refusal {
         Failure::Refused { pointer, error } => failure(code, pointer, error.to_string()),
-        Failure::MemoryFull { pointer, .. } | Failure::TooLong { pointer, .. } | Failure::CycleTooLarge { pointer } => {
-            failure(code, pointer, detail)
-        }
+        Failure::MemoryFull { pointer, .. }
+        | Failure::TooLong { pointer, .. }
+        | Failure::Search { pointer, .. }
+        | Failure::CycleTooLarge { pointer }
+        | Failure::Loops { pointer, .. } => failure(code, pointer, detail),
         Failure::Scan { pointer, .. } => failure(code, pointer.to_owned(), detail),
-        Failure::Stopped => failure(code, String::new(), detail),
+        Failure::Stopped | Failure::Lifted => failure(code, String::new(), detail),
     }
 }
 

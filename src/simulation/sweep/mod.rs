@@ -15,7 +15,6 @@ use stickslip_mechanics::Setup;
 use stickslip_wire::ContactDefinition;
 use stickslip_wire::sweep::CheckedSweep;
 
-pub use compute::Workers;
 pub use result::SweepResult;
 
 /// Work of one chunk: what is stored at a time, and what a killed process loses.
@@ -57,6 +56,12 @@ impl Sweep {
     #[must_use]
     pub fn points(&self) -> usize {
         self.checked.points
+    }
+
+    /// The largest cost of a point.
+    #[must_use]
+    pub fn cost_per_point(&self) -> Nanoseconds {
+        self.cost_per_point
     }
 
     /// The largest cost of all points together.

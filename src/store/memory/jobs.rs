@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use super::MemoryStore;
 use crate::store::jobs::{ChunkResult, Claim, Job, JobLimits, JobStore};
-use crate::store::{Receipt, Result, StoreError};
+use crate::store::{Receipt, Result, StoreError, Tenant};
 
 pub(super) struct StoredJob {
     job: Job,
@@ -56,6 +56,14 @@ impl JobStore for MemoryStore {
 
     async fn job(&self, id: Uuid) -> Result<Job> {
         self.with_job(id, |stored| stored.job.clone())
+    }
+
+    async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>> {
+        let inner = self.lock();
+        let own = inner.jobs.values().map(|stored| &stored.job).filter(|job| job.tenant == tenant);
+        let mut own: Vec<Job> = own.cloned().collect();
+        own.sort_by_key(|job| job.id);
+        Ok(own)
     }
 
     async fn job_request(&self, id: Uuid) -> Result<String> {

@@ -16,7 +16,9 @@ use stickslip_wire::SessionSummary;
 use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
-use super::{Changes, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
+use super::{
+    Changes, Extent, Heading, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+};
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
@@ -141,20 +143,57 @@ impl Store for MemoryStore {
         Ok(())
     }
 
+    async fn extent(&self, id: Uuid) -> Result<Extent> {
+        // What is in memory already is not read again: the definition is shared.
+        self.lock().get(id).map(|Stored { session, snapshot, .. }| Extent {
+            tenant: session.tenant.clone(),
+            sequence: session.sequence,
+            definition: 0,
+            snapshot: snapshot.as_ref().map_or(0, |snapshot| snapshot.state.len() as u64),
+        })
+    }
+
+    async fn count(&self, tenant: &Tenant) -> Result<u64> {
+        Ok(self.lock().sessions.values().filter(|stored| stored.session.tenant == *tenant).count() as u64)
+    }
+
     async fn find(&self, id: Uuid) -> Result<Session> {
         self.lock().get(id).map(|stored| stored.session.clone())
     }
 
-    async fn sequence(&self, id: Uuid) -> Result<u64> {
-        self.lock().get(id).map(|stored| stored.session.sequence)
+    async fn heading(&self, id: Uuid) -> Result<Heading> {
+        let heading = |session: &Session| Heading { sequence: session.sequence, label: session.label.clone() };
+        self.lock().get(id).map(|stored| heading(&stored.session))
     }
 
-    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        label: Option<String>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Vec<SessionSummary>> {
+        let wanted = label.map(|label| label.to_ascii_lowercase());
+        let is_labelled = |wanted: &str, session: &Session| {
+            session.label.as_ref().is_some_and(|label| label.to_ascii_lowercase().contains(wanted))
+        };
         let inner = self.lock();
         let sessions = inner.sessions.range((after.map_or(Unbounded, Excluded), Unbounded));
         let sessions = sessions.map(|(_, stored)| &stored.session);
         let own = sessions.filter(|session| tenant.as_ref().is_none_or(|tenant| session.tenant == *tenant));
-        Ok(own.take(limit).map(summary).collect())
+        let found = own.filter(|session| wanted.as_ref().is_none_or(|wanted| is_labelled(wanted, session)));
+        Ok(found.take(limit).map(summary).collect())
+    }
+
+    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
+        let mut inner = self.lock();
+        inner.receipts.check_free(receipt.as_ref())?;
+        inner.get(id)?;
+        if let Some(stored) = inner.sessions.get_mut(&id) {
+            stored.session.label = label;
+        }
+        inner.receipts.insert(receipt);
+        Ok(())
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
@@ -185,8 +224,15 @@ impl Store for MemoryStore {
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
-        let Stored { moves, snapshot, .. } = inner.at(id, copy.sequence)?;
-        let (moves, snapshot) = (Arc::clone(moves), snapshot.clone());
+        let Stored { session, moves, snapshot } = inner.get(id)?;
+        let found = session.sequence;
+        if found < copy.sequence {
+            return Err(StoreError::Stale { found });
+        }
+        let count = usize::try_from(copy.sequence).unwrap_or(usize::MAX);
+        // All of the past is shared until one of the two moves on; a part of it is a copy.
+        let moves = if count == moves.len() { Arc::clone(moves) } else { Arc::new(moves[..count].to_vec()) };
+        let snapshot = snapshot.clone().filter(|snapshot| snapshot.sequence <= copy.sequence);
         inner.sessions.insert(copy.id, Stored { session: copy, moves, snapshot });
         inner.receipts.insert(receipt);
         Ok(())

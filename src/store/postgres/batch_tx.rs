@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use futures::future::try_join_all;
-use tokio::time::timeout;
 use tokio_postgres::{Client, Error, Statement};
 use uuid::Uuid;
 
@@ -49,7 +48,7 @@ impl WriterConnection {
                 .map_err(|_| Fault::Lost("a statement was not prepared".to_owned()))?;
             Ok(WriterConnection { client, lock, append, create, notify })
         };
-        timeout(ANSWER, open).await.unwrap_or_else(|_| Err(Fault::no_answer()))
+        pool.answer(ANSWER, open).await
     }
 
     /// Whether it can still be used, as far as is known.
@@ -59,7 +58,11 @@ impl WriterConnection {
 
     /// Makes all changes whose sessions are at the expected sequence, in one transaction. Returns the sequence at which
     /// each session to append to was found; sessions that do not exist are missing.
-    pub(super) async fn commit_batch(&self, requests: &[WriteRequest]) -> Result<HashMap<Uuid, u64>, Fault> {
+    pub(super) async fn commit_batch(
+        &self,
+        pool: &ClientPool,
+        requests: &[WriteRequest],
+    ) -> Result<HashMap<Uuid, u64>, Fault> {
         let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
         let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
@@ -70,16 +73,16 @@ impl WriterConnection {
 
         // Polled in this order, and sent as they are polled.
         let transaction = async {
-            futures::join!(
+            Ok(futures::join!(
                 self.client.batch_execute(sql::BEGIN),
                 self.client.query(&self.lock, &locked),
                 self.execute(Some(&self.append).filter(|_| !columns.requests.id.is_empty()), &appended),
                 self.execute(Some(&self.create).filter(|_| !columns.sessions.id.is_empty()), &created),
                 self.execute(self.notify.as_ref(), &announced),
                 self.client.batch_execute(sql::COMMIT),
-            )
+            ))
         };
-        let answers = timeout(ANSWER, transaction).await.map_err(|_| Fault::no_answer())?;
+        let answers = pool.answer(ANSWER, transaction).await?;
         // The first failure is the cause of the others, and of a commit that did nothing.
         let (begun, found, appended, created, notified, committed) = answers;
         begun?;

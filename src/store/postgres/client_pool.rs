@@ -54,8 +54,7 @@ macro_rules! try_once {
             Err(fault) => Err(fault),
             Ok(mut object) => {
                 let $connection = &mut object;
-                let done = tokio::time::timeout($limit, $work).await;
-                let done = done.unwrap_or_else(|_| Err(Fault::no_answer()));
+                let done = $pool.answer($limit, $work).await;
                 if matches!(done, Err(Fault::Lost(_))) {
                     drop(deadpool_postgres::Object::take(object));
                 }
@@ -101,7 +100,21 @@ impl ClientPool {
 
     /// A connection of the pool.
     pub(super) async fn connection(&self) -> Result<Object, Fault> {
-        Ok(self.pool.get().await?)
+        self.answer(PATIENCE_FOR_CONNECTION, async { Ok(self.pool.get().await?) }).await
+    }
+
+    /// The outcome of work on a connection, unless it takes longer than `limit` or the database falls silent.
+    pub(super) async fn answer<T>(
+        &self,
+        limit: Duration,
+        work: impl Future<Output = Result<T, Fault>>,
+    ) -> Result<T, Fault> {
+        tokio::select! {
+            biased;
+            done = work => done,
+            () = tokio::time::sleep(limit) => Err(Fault::no_answer()),
+            () = self.outage.silence() => Err(Fault::no_answer()),
+        }
     }
 
     /// The rows of a statement that only reads, or that may be repeated.

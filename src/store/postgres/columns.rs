@@ -20,7 +20,12 @@ pub(super) struct Reader<'a> {
 
 /// Reads a row from its first column on.
 pub(super) fn reader(row: &Row) -> Reader<'_> {
-    Reader { row, next: 0 }
+    reader_from(row, 0)
+}
+
+/// Reads a row from another column on.
+pub(super) fn reader_from(row: &Row, next: usize) -> Reader<'_> {
+    Reader { row, next }
 }
 
 impl<'a> Reader<'a> {
@@ -66,6 +71,11 @@ pub(super) fn split_time(at: Timestamp) -> (SystemTime, i16) {
     let beyond = at.as_nanosecond().rem_euclid(1000);
     let whole = Timestamp::from_nanosecond(at.as_nanosecond() - beyond).unwrap_or(at);
     (whole.into(), i16::try_from(beyond).unwrap_or_default())
+}
+
+/// A time from 1678 to 2261 as nanoseconds since 1970.
+fn to_nanoseconds(at: Timestamp) -> i64 {
+    i64::try_from(at.as_nanosecond()).unwrap_or(i64::MAX)
 }
 
 /// A count as `bigint`; a larger one is an error.
@@ -127,6 +137,8 @@ columns!(Moves, "Moves, with the states after them.", (Uuid, i64, &Record), |req
     memory_depth: i64 = to_bigint(request.2.state.memory_depth as u64),
     at: SystemTime = split_time(request.2.at).0,
     at_ns: i16 = split_time(request.2.at).1,
+    observed_force: Option<f64> = request.2.measured.map(|measured| measured.force),
+    observed_at: Option<i64> = request.2.measured.and_then(|measured| measured.at).map(to_nanoseconds),
     stamp: i64 = request.1,
 });
 

@@ -12,7 +12,7 @@ use uuid::Uuid;
 
 use crate::store::jobs::{ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows;
-use crate::store::{Receipt, Result, StoreError};
+use crate::store::{Receipt, Result, StoreError, Tenant};
 
 use super::PostgresStore;
 use super::client_pool::{self, ANSWER, ClientPool, LONG_ANSWER, Parameter, execute, try_once, with_retries};
@@ -129,6 +129,11 @@ impl JobStore for PostgresStore {
     async fn job(&self, id: Uuid) -> Result<Job> {
         let row = self.pool.row(sql::JOB, &[&id]).await?.ok_or(StoreError::NotFound)?;
         rows::job(&mut reader(&row))
+    }
+
+    async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>> {
+        let found = self.pool.rows(sql::JOBS, &[&tenant.name()]).await?;
+        found.iter().map(|row| rows::job(&mut reader(row))).collect()
     }
 
     async fn job_request(&self, id: Uuid) -> Result<String> {

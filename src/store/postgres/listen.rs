@@ -1,30 +1,26 @@
-//! Listening to changes that other processes make.
+//! One connection that listens to changes that other processes make, and asks now and then whether the database is there:
+//! a connection to a database that is frozen stays open and says nothing.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use futures::StreamExt as _;
 use futures::stream;
+use tokio::time::timeout;
 use tokio_postgres::AsyncMessage;
 use uuid::Uuid;
 
 use crate::store::Changes;
 
-use super::client_pool::ClientPool;
+use super::client_pool::{ANSWER, ClientPool};
 use super::fault::{Backoff, Fault};
 use super::sql;
 
-/// How often listeners are woken if the database has no notifications.
-const LOOK: Duration = Duration::from_secs(1);
+/// How often the database is asked for an answer, and listeners are woken if it has no notifications.
+const BEAT: Duration = Duration::from_millis(500);
 
-/// Wakes listeners when the database notifies of changes; never ends.
+/// Wakes listeners when the database notifies of changes, and notes its signs of life; never ends.
 pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
-    if !pool.announces {
-        loop {
-            tokio::time::sleep(LOOK).await;
-            changes.wake_all();
-        }
-    }
     let mut backoff = Backoff::default();
     loop {
         let mut listening = false;
@@ -40,17 +36,29 @@ pub(super) async fn listen(pool: Arc<ClientPool>, changes: Arc<Changes>) {
 
 /// Listens on one connection until it is lost; sets `listening` when it has begun.
 async fn receive(pool: &ClientPool, changes: &Changes, listening: &mut bool) -> Result<(), Fault> {
-    let (client, mut driver) = pool.target.connect().await?;
+    let connected = timeout(ANSWER, pool.target.connect()).await.map_err(|_| Fault::no_answer())?;
+    let (client, mut driver) = connected?;
     let mut messages = stream::poll_fn(move |context| driver.poll_message(context));
-    let mut listen = std::pin::pin!(client.batch_execute(sql::LISTEN));
-    loop {
-        tokio::select! {
-            done = &mut listen, if !*listening => {
-                done?;
-                *listening = true;
-                // Earlier changes are not notified to this connection.
+    let beats = async {
+        if pool.announces {
+            client.batch_execute(sql::LISTEN).await?;
+        }
+        *listening = true;
+        // Earlier changes are not notified to this connection.
+        changes.wake_all();
+        loop {
+            pool.outage.heard();
+            tokio::time::sleep(BEAT).await;
+            client.batch_execute(sql::BEAT).await?;
+            if !pool.announces {
                 changes.wake_all();
             }
+        }
+    };
+    let mut beats = std::pin::pin!(beats);
+    loop {
+        tokio::select! {
+            ended = &mut beats => return ended,
             message = messages.next() => match message {
                 Some(Ok(AsyncMessage::Notification(announcement))) => wake(changes, announcement.payload()),
                 Some(Ok(_)) => {}

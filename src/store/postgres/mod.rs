@@ -32,14 +32,16 @@ use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
 
+use super::probe::Probe;
 use super::rows;
 use super::schema::SchemaError;
 use super::{
-    Changes, Commits, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+    Changes, Commits, Extent, Heading, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError,
+    Tenant,
 };
 
-use client_pool::ClientPool;
-use columns::{from_bigint, reader, to_bigint};
+use client_pool::{ANSWER, ClientPool};
+use columns::{from_bigint, reader, reader_from, to_bigint};
 use connect::ConnectTarget;
 use fault::{Backoff, Fault};
 use request::Change;
@@ -47,7 +49,7 @@ use writer::Writer;
 
 /// How long a start waits for the database.
 const START: Duration = Duration::from_secs(15);
-/// How long the check whether the database is reachable may take.
+/// How long the check whether the database takes changes may take.
 const READY: Duration = Duration::from_secs(2);
 
 /// Sessions in a PostgreSQL database.
@@ -55,7 +57,8 @@ pub struct PostgresStore {
     pool: Arc<ClientPool>,
     writer: Writer,
     changes: Arc<Changes>,
-    listener: Option<AbortHandle>,
+    listener: AbortHandle,
+    probe: Probe,
 }
 
 impl PostgresStore {
@@ -75,10 +78,7 @@ impl PostgresStore {
         if !announces {
             tracing::warn!("the database has no pg_notify: listeners read changes by other processes once a second");
         }
-        let mut store = PostgresStore::start(target, announces)?;
-        let listening = listen::listen(Arc::clone(&store.pool), Arc::clone(&store.changes));
-        store.listener = Some(tokio::spawn(listening).abort_handle());
-        Ok(store)
+        PostgresStore::start(target, announces)
     }
 
     /// Connects to a database for reading, while other processes may use it. Its tables must exist.
@@ -95,11 +95,13 @@ impl PostgresStore {
         PostgresStore::start(target, false)
     }
 
-    /// A store that does not listen yet.
+    /// A store of which the tables have been looked at.
     fn start(target: ConnectTarget, announces: bool) -> Result<PostgresStore> {
         let (pool, changes) = (Arc::new(ClientPool::new(target, announces)?), Arc::default());
         let writer = Writer::start(Arc::clone(&pool), Arc::clone(&changes));
-        Ok(PostgresStore { pool, writer, changes, listener: None })
+        let listening = listen::listen(Arc::clone(&pool), Arc::clone(&changes));
+        let listener = tokio::spawn(listening).abort_handle();
+        Ok(PostgresStore { pool, writer, changes, listener, probe: Probe::default() })
     }
 
     /// Which database it is, without the password.
@@ -111,7 +113,7 @@ impl PostgresStore {
 
 impl Drop for PostgresStore {
     fn drop(&mut self) {
-        self.listener.iter().for_each(AbortHandle::abort);
+        self.listener.abort();
     }
 }
 
@@ -119,12 +121,13 @@ impl Drop for PostgresStore {
 async fn prepare(target: &ConnectTarget) -> Result<bool> {
     let (begin, mut backoff) = (Instant::now(), Backoff::default());
     loop {
-        let fault = match target.open().await.map_err(SchemaError::from) {
+        let connected = timeout(ANSWER, target.open()).await;
+        let fault = match connected.map_or_else(|_| Err(Fault::no_answer()), |opened| opened.map_err(Fault::from)) {
             Ok(mut client) => match schema::migrate(&mut client, schema::MIGRATIONS).await {
                 Ok(()) => return Ok(client.batch_execute(sql::PROBE_NOTIFY).await.is_ok()),
                 Err(error) => error.into(),
             },
-            Err(error) => Fault::from(error),
+            Err(fault) => fault,
         };
         match fault {
             Fault::Lost(_) | Fault::Conflict(_) if begin.elapsed() < START => backoff.pause().await,
@@ -151,19 +154,35 @@ fn definition(session: &Session) -> Result<String> {
 #[async_trait]
 impl Store for PostgresStore {
     async fn ready(&self) -> Result<()> {
-        let asked = async {
-            client_pool::try_once!(self.pool, READY, connection => client_pool::rows(connection, sql::READY, &[]))
+        let execute = async |statement| {
+            let done = client_pool::try_once!(self.pool, READY, connection =>
+                client_pool::execute(connection, statement, &[]));
+            done.map(drop).map_err(Fault::into_store_error)
         };
-        match timeout(READY, asked).await.unwrap_or_else(|_| Err(Fault::no_answer())) {
-            Ok(rows) if rows.iter().all(|row| row.get::<_, &str>(0) == "off") => Ok(()),
-            Ok(_) => Err(StoreError::Unavailable("the database accepts no changes".to_owned())),
-            Err(fault) => Err(fault.into_store_error()),
-        }
+        execute(sql::BEAT).await?;
+        self.probe.outcome(execute(sql::PROBE)).await
     }
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         let definition = definition(&session)?;
         self.writer.write(Change::Create(session, definition), receipt).await
+    }
+
+    async fn extent(&self, id: Uuid) -> Result<Extent> {
+        let Some(row) = self.pool.row(sql::EXTENT, &[&id]).await? else {
+            return Err(self.pool.missing(id).await);
+        };
+        let (sequence, definition, snapshot) = (row.get(1), row.get::<_, i32>(2), row.get::<_, Option<i32>>(3));
+        Ok(Extent {
+            tenant: Tenant::new(row.get(0)),
+            sequence: from_bigint(sequence),
+            definition: u64::try_from(definition).unwrap_or(0),
+            snapshot: snapshot.and_then(|bytes| u64::try_from(bytes).ok()).unwrap_or(0),
+        })
+    }
+
+    async fn count(&self, tenant: &Tenant) -> Result<u64> {
+        Ok(self.pool.row(sql::COUNT, &[&tenant.name()]).await?.map_or(0, |row| from_bigint(row.get(0))))
     }
 
     async fn find(&self, id: Uuid) -> Result<Session> {
@@ -173,21 +192,31 @@ impl Store for PostgresStore {
         }
     }
 
-    async fn sequence(&self, id: Uuid) -> Result<u64> {
-        match self.pool.row(sql::SEQUENCE, &[&id]).await? {
-            Some(row) => Ok(from_bigint(row.get(0))),
+    async fn heading(&self, id: Uuid) -> Result<Heading> {
+        match self.pool.row(sql::HEADING, &[&id]).await? {
+            Some(row) => rows::heading(&mut reader(&row)),
             None => Err(self.pool.missing(id).await),
         }
     }
 
-    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        label: Option<String>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Vec<SessionSummary>> {
         // No session has the nil identifier, which is the lowest.
         let (after, limit) = (after.unwrap_or_default(), to_bigint(limit as u64));
         let found = match tenant {
-            None => self.pool.rows(sql::LIST, &[&after, &limit]).await?,
-            Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &tenant.name()]).await?,
+            None => self.pool.rows(sql::LIST, &[&after, &limit, &label]).await?,
+            Some(tenant) => self.pool.rows(sql::LIST_OF_TENANT, &[&after, &limit, &label, &tenant.name()]).await?,
         };
         found.iter().map(|row| rows::summary(&mut reader(row))).collect()
+    }
+
+    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
+        self.pool.rename(id, label, receipt).await
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
@@ -196,10 +225,13 @@ impl Store for PostgresStore {
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
         let found = self.pool.rows(sql::HISTORY, &[&id, &to_bigint(after), &to_bigint(limit as u64)]).await?;
-        if found.is_empty() {
-            self.sequence(id).await?;
-        }
-        found.iter().map(|row| rows::record(&mut reader(row))).collect()
+        let Some(first) = found.first() else { return Err(self.pool.missing(id).await) };
+        let last = from_bigint(first.get(0));
+        // A contact without such moves has one row, without a move.
+        let moves = found.iter().filter(|row| row.get::<_, Option<i64>>(1).is_some());
+        let page = moves.map(|row| rows::record(&mut reader_from(row, 1))).collect::<Result<Vec<Record>>>()?;
+        rows::check_page(id, after, &page, limit, last)?;
+        Ok(page)
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
@@ -219,7 +251,7 @@ impl Store for PostgresStore {
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
         let found = self.pool.row(sql::SNAPSHOT, &[&id]).await?;
         if found.is_none() {
-            self.sequence(id).await?;
+            self.heading(id).await?;
         }
         found.map(|row| rows::snapshot(&mut reader(&row))).transpose()
     }
@@ -246,7 +278,8 @@ impl Store for PostgresStore {
     async fn check_integrity(&self) -> Result<Vec<String>> {
         let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
         let line = |id: Uuid| format!("the moves of contact {id} are there, and the contact is not");
-        Ok(orphans.iter().map(|row| line(row.get(0))).collect())
+        let jobs = self.pool.rows(sql::JOB_FAULTS, &[]).await?;
+        Ok(orphans.iter().map(|row| line(row.get(0))).chain(jobs.iter().map(|row| row.get(0))).collect())
     }
 }
 

@@ -31,18 +31,18 @@ WITH won AS (
 ), moved AS (
     INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
         relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, stamp)
+        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, stamp)
     SELECT move.*
     FROM unnest($6::uuid[], $7::bigint[], $8::double precision[], $9::double precision[], $10::double precision[],
         $11::double precision[], $12::boolean[], $13::double precision[], $14::double precision[],
         $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
         $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
-        $24::timestamptz[], $25::smallint[], $26::bigint[]) AS move (contact)
+        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::bigint[]) AS move (contact)
     JOIN won ON won.id = move.contact
 )
 INSERT INTO receipts (key, fingerprint, created, sequence, body)
 SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
-FROM unnest($27::uuid[], $28::text[], $29::bytea[], $30::uuid[], $31::bigint[], $32::bytea[])
+FROM unnest($29::uuid[], $30::text[], $31::bytea[], $32::uuid[], $33::bigint[], $34::bytea[])
     AS receipt (contact, key, fingerprint, created, sequence, body)
 JOIN won ON won.id = receipt.contact
 ORDER BY receipt.key";
@@ -80,29 +80,54 @@ pub(super) const DELETE_OLD_KEYS: &str = "
 DELETE FROM receipts
 WHERE key = ANY($1) AND created_at <= now() - $2::double precision * INTERVAL '1 second'";
 
-pub(super) const READY: &str = "SELECT current_setting('transaction_read_only')";
+/// Keeps a receipt under a key that no client can have: a change that needs what every change needs.
+pub(super) const PROBE: &str = "
+INSERT INTO receipts (key, fingerprint, sequence, body) VALUES ('', '', 0, '')
+ON CONFLICT (key) DO UPDATE SET created_at = now()";
+
+/// Asks for nothing but an answer.
+pub(super) const BEAT: &str = "";
 
 pub(super) const FIND: &str = "
 SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns, definition, tenant
 FROM contacts WHERE id = $1";
 
+pub(super) const EXTENT: &str = "
+SELECT tenant, sequence, octet_length(definition),
+    (SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id)
+FROM contacts WHERE id = $1";
+
+pub(super) const COUNT: &str = "SELECT count(*) FROM contacts WHERE tenant = $1";
+
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 
 pub(super) const EXPIRED: &str = "SELECT tenant FROM expired WHERE id = $1";
 
-pub(super) const LIST: &str = "
-SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
-FROM contacts WHERE id > $1 ORDER BY id LIMIT $2";
+pub(super) const HEADING: &str = "SELECT sequence, label FROM contacts WHERE id = $1";
 
-pub(super) const LIST_OF_TENANT: &str = "
+/// In the collation C, `lower` changes ASCII letters alone.
+pub(super) const LIST: &str = r#"
 SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
-FROM contacts WHERE tenant = $3 AND id > $1 ORDER BY id LIMIT $2";
+FROM contacts WHERE id > $1 AND ($3::text IS NULL OR strpos(lower(label COLLATE "C"), lower($3 COLLATE "C")) > 0)
+ORDER BY id LIMIT $2"#;
 
+pub(super) const LIST_OF_TENANT: &str = r#"
+SELECT id, label, sequence, created_at, created_ns, updated_at, updated_ns
+FROM contacts WHERE tenant = $4 AND id > $1
+    AND ($3::text IS NULL OR strpos(lower(label COLLATE "C"), lower($3 COLLATE "C")) > 0)
+ORDER BY id LIMIT $2"#;
+
+pub(super) const RENAME: &str = "UPDATE contacts SET label = $2 WHERE id = $1";
+
+/// The sequence of a contact, and some of its moves beside it: in one statement, so that both are of one state of the database.
 pub(super) const HISTORY: &str = "
+SELECT contacts.sequence, past.*
+FROM contacts LEFT JOIN LATERAL (
 SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
     displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
-    elastic_energy, memory_depth
-FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3";
+    elastic_energy, memory_depth, observed_force, observed_at
+FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3) AS past ON true
+WHERE contacts.id = $1 ORDER BY past.sequence";
 
 pub(super) const RECEIPT: &str = "
 SELECT fingerprint, created, sequence, body FROM receipts
@@ -119,10 +144,10 @@ WHERE snapshots.sequence < excluded.sequence";
 pub(super) const COPY_PAST: &str = "
 INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-    dissipated_energy, elastic_energy, memory_depth, at, at_ns, stamp)
+    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, stamp)
 SELECT $1::uuid, sequence, target_displacement, target_force, target_indentation, target_normal_force,
     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-    dissipated_energy, elastic_energy, memory_depth, at, at_ns, stamp
+    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, stamp
 FROM moves WHERE contact = $2 AND sequence <= $3";
 
 pub(super) const COPY_SNAPSHOT: &str = "
@@ -167,6 +192,29 @@ WITH RECURSIVE owners (contact) AS (
 SELECT contact FROM owners
 WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.id = owners.contact)";
 
+/// Jobs whose columns contradict each other or their chunks. A job that has not failed has a row for every chunk.
+pub(super) const JOB_FAULTS: &str = "
+WITH stored AS (
+    SELECT j.id, count(c.chunk) AS chunks,
+        coalesce(sum(CASE WHEN c.content IS NOT NULL THEN greatest(least(j.chunk, j.points - c.chunk * j.chunk), 0) END), 0)
+            AS computed
+    FROM jobs AS j LEFT JOIN job_chunks AS c ON c.job = j.id GROUP BY j.id
+)
+SELECT 'job ' || id || ': ' || done || ' points are counted as done, and ' || s.computed || ' are stored'
+FROM jobs JOIN stored AS s USING (id) WHERE done <> s.computed
+UNION ALL
+SELECT 'job ' || id || ': it has ' || s.chunks || ' chunks for ' || points || ' points'
+FROM jobs JOIN stored AS s USING (id) WHERE error IS NULL AND s.chunks <> (points + chunk - 1) / chunk
+UNION ALL
+SELECT 'job ' || id || ': it has ended at ' || done || ' of ' || points || ' points without an error'
+FROM jobs WHERE finished_at IS NOT NULL AND error IS NULL AND done <> points
+UNION ALL
+SELECT 'job ' || id || ': all of its points are done, and it has not ended'
+FROM jobs WHERE finished_at IS NULL AND done >= points
+UNION ALL
+SELECT 'job ' || id || ': of ' || done || ' points ' || failed || ' have no answer' FROM jobs
+WHERE failed NOT BETWEEN 0 AND done";
+
 /// Held while the jobs of a tenant are counted and another is made.
 pub(super) const LOCK_TENANT: &str = "SELECT pg_advisory_xact_lock($1)";
 
@@ -185,6 +233,10 @@ INSERT INTO job_chunks (job, chunk) SELECT $1::uuid, chunk FROM generate_series(
 pub(super) const JOB: &str = "
 SELECT id, tenant, created_at, created_ns, finished_at, error, points, chunk, done, failed, bytes, cost
 FROM jobs WHERE id = $1";
+
+pub(super) const JOBS: &str = "
+SELECT id, tenant, created_at, created_ns, finished_at, error, points, chunk, done, failed, bytes, cost
+FROM jobs WHERE tenant = $1 ORDER BY id";
 
 pub(super) const JOB_REQUEST: &str = "SELECT request FROM jobs WHERE id = $1";
 

@@ -45,6 +45,21 @@ impl ClientPool {
         }
     }
 
+    /// [`crate::store::Store::rename`]: made twice, if its connection is lost, it is the same.
+    pub(super) async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
+        let mut receipts = Receipts::default();
+        if let Some(receipt) = &receipt {
+            receipts.push((id, receipt));
+        }
+        let renamed = with_retries!(self, ANSWER, connection => rename_on(connection, id, label.as_deref(), &receipts));
+        match (renamed, receipt) {
+            (Ok(true), _) => Ok(()),
+            (Ok(false), _) => Err(self.missing(id).await),
+            (Err(_), Some(receipt)) if self.receipt(&receipt.request.key).await?.is_some() => Err(StoreError::KeyTaken),
+            (Err(error), _) => Err(error),
+        }
+    }
+
     /// [`crate::store::Store::delete`]
     pub(super) async fn delete(&self, id: Uuid, expected: u64) -> Result<()> {
         let commit_sent = AtomicBool::new(false);
@@ -88,7 +103,13 @@ impl ClientPool {
         let forked = with_retries!(self, LONG_ANSWER, connection => fork.make(connection, &commit_sent));
         match forked {
             Ok(true) => Ok(()),
-            Ok(false) => Err(self.not_at(id).await),
+            Ok(false) => Err(match self.not_at(id).await {
+                // It is where it should be, and yet there were fewer moves to copy.
+                StoreError::Stale { found } if found == copy.sequence => {
+                    StoreError::Damaged { contact: id, what: format!("some of its {found} moves are missing") }
+                }
+                error => error,
+            }),
             Err(error) => match self.row(sql::SEQUENCE, &[&copy.id]).await? {
                 Some(_) if commit_sent.into_inner() => Ok(()),
                 _ => match receipt {
@@ -165,12 +186,12 @@ struct Fork {
 }
 
 impl Fork {
-    /// Makes it, unless the session is at another sequence or deleted.
+    /// Makes it, unless the session has made fewer moves or is deleted.
     async fn make(&self, connection: &mut Object, commit_sent: &AtomicBool) -> Result<bool, Fault> {
         let transaction = begin(connection).await?;
         create(&transaction, &self.sessions, &self.receipts).await?;
         let found = rows(&transaction, sql::SEQUENCE, &[&self.id]).await?;
-        if found.first().is_none_or(|row| row.get::<_, i64>(0) != self.sequence) {
+        if found.first().is_none_or(|row| row.get::<_, i64>(0) < self.sequence) {
             return Ok(false);
         }
         let copied = execute(&transaction, sql::COPY_PAST, &[&self.copy, &self.id, &self.sequence]).await?;
@@ -183,6 +204,16 @@ impl Fork {
         transaction.commit().await?;
         Ok(true)
     }
+}
+
+async fn rename_on(connection: &mut Object, id: Uuid, label: Option<&str>, receipts: &Receipts) -> Result<bool, Fault> {
+    let transaction = begin(connection).await?;
+    if execute(&transaction, sql::RENAME, &[&id, &label]).await? == 0 {
+        return Ok(false);
+    }
+    create(&transaction, &Sessions::default(), receipts).await?;
+    transaction.commit().await?;
+    Ok(true)
 }
 
 /// Begins a transaction that may take long.

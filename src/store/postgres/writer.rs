@@ -89,8 +89,9 @@ impl WriterTask {
         let (mut backoff, mut collisions, mut losses) = (Backoff::default(), 0, 0);
         while !batch.is_empty() {
             let begin = Instant::now();
+            let pool = Arc::clone(&self.pool);
             let fault = match self.connection().await {
-                Ok(connection) => match connection.commit_batch(&batch).await {
+                Ok(connection) => match connection.commit_batch(&pool, &batch).await {
                     Ok(found) => {
                         self.pool.outage.end();
                         self.commits.committed(batch.len(), begin.elapsed());

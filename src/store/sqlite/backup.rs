@@ -1,27 +1,37 @@
 //! A copy of the file, made while others write to it; and looking at it without writing.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind};
+use std::os::unix::fs::FileExt as _;
 use std::path::Path;
 
 use rusqlite::Connection;
 
-use super::file::{beside, lock, sync_folder};
+use super::file::{MARK, beside, check_mark, lock, open_private, sync_folder};
 use super::readers::open_reader;
-use super::schema::{self, APPLICATION};
+use super::schema::{self, APPLICATION, IN_USE};
 
 /// A read-only connection to a store of a version that this program supports.
 pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     // SQLite would say no more than that it cannot open it.
     fs::metadata(path).map_err(|error| error.to_string())?;
+    if fs::symlink_metadata(beside(path, "-wal")).is_err() && mark(path).is_ok_and(|mark| mark == IN_USE) {
+        check_mark(IN_USE, path, false)?;
+    }
     let describe = |error: rusqlite::Error| error.to_string();
     let database = open_reader(path).map_err(describe)?;
     let application: i32 = database.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(describe)?;
-    if application != APPLICATION {
-        return Err("it is an SQLite database of another application".to_owned());
-    }
+    check_mark(application, path, true)?;
     schema::check(&database).map_err(|error| error.to_string())?;
     Ok(database)
+}
+
+/// The mark in the header of a file, read without SQLite, which would make a log. No process of ours has the file open where
+/// there is no log: closing it here ends no lock.
+fn mark(path: &Path) -> io::Result<i32> {
+    let mut mark = [0; 4];
+    File::open(path)?.read_exact_at(&mut mark, MARK)?;
+    Ok(i32::from_be_bytes(mark))
 }
 
 /// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy
@@ -34,8 +44,7 @@ pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
     let database = open_read_only(path)?;
     let partial = beside(copy, ".new");
     // The remains of an interrupted copy are overwritten; the lock distinguishes them from a copy under way.
-    let file =
-        OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&partial).map_err(describe)?;
+    let file = open_private(&partial).map_err(describe)?;
     lock(&file).map_err(|why| format!("{}: {why}", partial.display()))?;
     let copied = copied(&database, &file, &partial).and_then(|bytes| {
         publish(&partial, copy).map_err(describe)?;
@@ -53,6 +62,8 @@ fn copied(database: &Connection, file: &File, partial: &Path) -> Result<u64, Str
     file.set_len(0).map_err(describe)?;
     let name = partial.to_str().ok_or("the name of the copy must be UTF-8")?;
     database.execute("VACUUM INTO ?1", [name]).map_err(|error| error.to_string())?;
+    // The copy of a file in use is whole, and in nobody's use.
+    file.write_all_at(&APPLICATION.to_be_bytes(), MARK).map_err(describe)?;
     file.sync_all().map_err(describe)?;
     Ok(file.metadata().map_err(describe)?.len())
 }

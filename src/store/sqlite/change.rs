@@ -13,6 +13,7 @@ use crate::store::{RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreEr
 use super::columns::{CONTACTS, MOVE_COLUMNS, clamped_nanoseconds, insert_move, reader, to_integer, to_nanoseconds};
 use super::fault::Fault;
 use super::fork::{Copying, Fork};
+use super::schema;
 
 /// Receipts that one change looks at.
 const RECEIPTS_AT_ONCE: i64 = 256;
@@ -55,6 +56,12 @@ pub(super) enum Done {
 }
 
 impl Transaction<'_> {
+    /// Writes what is there already: a change like any other for the disk.
+    pub(super) fn probe(&self) -> Result<Done, Fault> {
+        schema::mark(self.database, schema::IN_USE)?;
+        Ok(Done::Made(0))
+    }
+
     /// [`crate::store::Store::create`]
     pub(super) fn create(&self, session: &Session, receipt: Option<&Receipt>) -> Result<Done, Fault> {
         check_key(self.database, receipt)?;
@@ -78,13 +85,25 @@ impl Transaction<'_> {
         };
         let mut insert = self.database.prepare_cached(&format!(
             "INSERT INTO moves (contact, {MOVE_COLUMNS})
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20)"
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20,
+                ?21, ?22)"
         ))?;
         records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
         insert_receipt(self.database, receipt)?;
         if let Some(last) = records.last() {
             self.cache.insert(id, (number, last.sequence));
         }
+        Ok(Done::Made(0))
+    }
+
+    /// [`crate::store::Store::rename`]
+    pub(super) fn rename(&self, id: Uuid, label: Option<&str>, receipt: Option<&Receipt>) -> Result<Done, Fault> {
+        check_key(self.database, receipt)?;
+        let mut rename = self.database.prepare_cached("UPDATE contacts SET label = ?2 WHERE id = ?1")?;
+        if rename.execute(params![id.to_string(), label])? == 0 {
+            return Err(missing(self.database, id));
+        }
+        insert_receipt(self.database, receipt)?;
         Ok(Done::Made(0))
     }
 

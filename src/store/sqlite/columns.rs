@@ -13,7 +13,7 @@ use crate::store::rows::{self, RowReader, Scalar};
 /// The columns of a move beside its contact, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, relative, \
      tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy, \
-     elastic_energy, memory_depth, negative_zeros";
+     elastic_energy, memory_depth, observed_force, observed_at, negative_zeros";
 
 /// The columns of [`rows::summary`], of [`CONTACTS`].
 pub(super) const SUMMARY_COLUMNS: &str = "c.id, c.label, coalesce(m.sequence, 0), c.created_at, \
@@ -73,7 +73,7 @@ impl RowReader for Reader<'_, '_> {
 
 /// Writes a move of the contact with a number.
 pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, record: &Record) -> rusqlite::Result<()> {
-    let Record { sequence, step, tolerance, state, at } = record;
+    let Record { sequence, step, tolerance, state, measured, at } = record;
     statement.execute(params![
         number,
         to_integer(*sequence)?,
@@ -94,6 +94,8 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         state.dissipated_energy,
         state.elastic_energy,
         to_integer(state.memory_depth as u64)?,
+        measured.map(|measured| measured.force),
+        measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?,
         negative_zeros(record),
     ])?;
     Ok(())
@@ -115,8 +117,8 @@ pub(super) fn record(row: &Row<'_>) -> rusqlite::Result<Record> {
 }
 
 /// The numbers of a move, in the order of the bits of `negative_zeros`.
-fn numbers(record: &mut Record) -> [Option<&mut f64>; 13] {
-    let Record { step, tolerance, state, .. } = record;
+fn numbers(record: &mut Record) -> [Option<&mut f64>; 14] {
+    let Record { step, tolerance, state, measured, .. } = record;
     [
         step.displacement.as_mut(),
         step.force.as_mut(),
@@ -131,6 +133,7 @@ fn numbers(record: &mut Record) -> [Option<&mut f64>; 13] {
         Some(&mut state.stick_radius),
         Some(&mut state.dissipated_energy),
         Some(&mut state.elastic_energy),
+        measured.as_mut().map(|measured| &mut measured.force),
     ]
 }
 

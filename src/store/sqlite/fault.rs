@@ -29,9 +29,23 @@ pub(super) fn worth_splitting(error: &Error) -> bool {
     !matches!(
         error.sqlite_error_code(),
         Some(
-            ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked | ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase
+            ErrorCode::DatabaseBusy
+                | ErrorCode::DatabaseLocked
+                | ErrorCode::DatabaseCorrupt
+                | ErrorCode::NotADatabase
+                | ErrorCode::ReadOnly
         )
     ) && !is_sync(error)
+}
+
+/// Whether another program has locked the file.
+pub(super) fn is_locked(error: &Error) -> bool {
+    matches!(error.sqlite_error_code(), Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked))
+}
+
+/// Whether there is no room to write.
+pub(super) fn is_full(error: &Error) -> bool {
+    matches!(store_error(error, Stage::Before), StoreError::Full(_))
 }
 
 /// What a failure of SQLite means for a change or a read.

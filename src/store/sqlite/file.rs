@@ -2,20 +2,29 @@
 //! damaged.
 
 use std::ffi::OsString;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions, Permissions, TryLockError};
 use std::io::{self, ErrorKind};
-use std::os::unix::fs::FileExt as _;
+use std::os::unix::fs::{FileExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
-use super::schema::{self, APPLICATION, MIGRATIONS};
+use crate::store::schema::SchemaError;
+
+use super::fault::is_full;
+use super::open_files::OpenFiles;
+use super::readers::{Readers, open_immutable, open_reader};
+use super::schema::{self, APPLICATION, IN_USE, MIGRATIONS};
 use super::{BUSY, wal_check};
 
 /// What every SQLite file begins with.
 const MAGIC: &[u8] = b"SQLite format 3\0";
+/// Where the header has the mark of this program.
+pub(super) const MARK: u64 = 68;
+/// Who may read and write the files: their owner alone. SQLite gives the files beside a database the same mode.
+const PRIVATE: u32 = 0o600;
 /// Up to this size a file is read whole before it is trusted, which takes a fraction of a second.
 const SMALL: u64 = 32 * 1024 * 1024;
 /// Pages of the write-ahead log (16 MiB) at which its content moves to the file.
@@ -32,10 +41,27 @@ const STATEMENTS: usize = 64;
 pub(super) struct Opened {
     pub(super) database: Connection,
     pub(super) lock: Arc<File>,
+    pub(super) files: Arc<OpenFiles>,
+}
+
+/// How a file can be used.
+pub(super) enum Access {
+    Writable(Opened),
+    /// There is no room to write.
+    Full {
+        why: String,
+        readers: Readers,
+    },
+}
+
+/// Why a file cannot be written to.
+enum Refusal {
+    Unusable(String),
+    Full(String),
 }
 
 /// Opens the database at a path, or makes one.
-pub(super) fn open(path: &Path) -> Result<Opened, String> {
+pub(super) fn open(path: &Path) -> Result<Access, String> {
     let lock = match OpenOptions::new().read(true).write(true).open(path) {
         Ok(file) => {
             lock(&file)?;
@@ -50,9 +76,14 @@ pub(super) fn open(path: &Path) -> Result<Opened, String> {
     let shared_memory = beside(path, "-shm");
     let (log, had_log, had_shared_memory) =
         (beside(path, "-wal"), beside(path, "-wal").exists(), shared_memory.exists());
-    match connect(path) {
-        Ok(database) => Ok(Opened { database, lock }),
-        Err(why) => {
+    let connected = connect(path).and_then(|database| {
+        let files =
+            OpenFiles::at([path, &log, &shared_memory]).map_err(|error| Refusal::Unusable(error.to_string()))?;
+        Ok((database, Arc::new(files)))
+    });
+    match connected {
+        Ok((database, files)) => Ok(Access::Writable(Opened { database, lock, files })),
+        Err(refusal) => {
             // Removes the files that SQLite has created beside a refused file.
             for (file, had) in [(log, had_log), (shared_memory, had_shared_memory)] {
                 if !had
@@ -62,9 +93,24 @@ pub(super) fn open(path: &Path) -> Result<Opened, String> {
                     tracing::debug!(%error, file = %file.display(), "could not be removed");
                 }
             }
-            Err(why)
+            match refusal {
+                Refusal::Unusable(why) => Err(why),
+                Refusal::Full(why) => open_full(path, lock).map(|readers| Access::Full { why, readers }),
+            }
         }
     }
+}
+
+/// Readers of a file beside which there is no room.
+fn open_full(path: &Path, lock: Arc<File>) -> Result<Readers, String> {
+    // Without changes in a log the file is all there is; else its shared memory is there too.
+    let immutable = length_at(&beside(path, "-wal")) == 0;
+    let describe = |error: &dyn std::fmt::Display| error.to_string();
+    let database =
+        if immutable { open_immutable(path) } else { open_reader(path) }.map_err(|error| describe(&error))?;
+    schema::check(&database).map_err(|error| describe(&error))?;
+    let files = Arc::new(OpenFiles::at([path]).map_err(|error| describe(&error))?);
+    Ok(Readers::new(path.to_owned(), files, Some(lock), immutable))
 }
 
 /// Makes a database under another name and renames it when it is whole, so that no crash leaves half of one.
@@ -84,8 +130,7 @@ fn create(path: &Path) -> Result<File, String> {
 
 fn make(path: &Path, partial: &Path) -> Result<File, String> {
     let describe = |error: &dyn std::fmt::Display| format!("it cannot be created: {error}");
-    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(partial);
-    let file = file.map_err(|error| describe(&error))?;
+    let file = open_private(partial).map_err(|error| describe(&error))?;
     lock(&file)?;
     if length_at(path) > 0 {
         return Err("another process has just created it".to_owned());
@@ -106,35 +151,49 @@ fn inspect(path: &Path, file: &File) -> Result<(), String> {
     if read.is_err() || !header.starts_with(MAGIC) {
         return Err("it is not an SQLite database, or is cut off".to_owned());
     }
-    if field(&header, 68) != APPLICATION.cast_unsigned() {
-        return Err("it is an SQLite database of another application".to_owned());
-    }
+    let log = beside(path, "-wal");
+    check_mark(field(&header, MARK as usize).cast_signed(), path, std::fs::symlink_metadata(&log).is_ok())?;
     schema::known(field(&header, 60).cast_signed())?;
-    wal_check::check(&header, length, &beside(path, "-wal"))
+    wal_check::check(&header, length, &log)
+}
+
+/// Refuses the mark of another application, and that of a file in use that has lost its log.
+pub(super) fn check_mark(mark: i32, path: &Path, has_log: bool) -> Result<(), String> {
+    match mark {
+        APPLICATION => Ok(()),
+        IN_USE if has_log => Ok(()),
+        IN_USE => Err(format!(
+            "it was not closed, and its log {0} is missing, which may have had its last changes: put the log back; to \
+             accept the file as it is, make an empty {0}",
+            beside(path, "-wal").display()
+        )),
+        _ => Err("it is an SQLite database of another application".to_owned()),
+    }
 }
 
 /// Connects the writer, and brings the tables up to date.
-fn connect(path: &Path) -> Result<Connection, String> {
+fn connect(path: &Path) -> Result<Connection, Refusal> {
     let describe = |error: rusqlite::Error| match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DatabaseCorrupt | rusqlite::ErrorCode::NotADatabase) => {
-            format!("it is damaged: {error}")
+            Refusal::Unusable(format!("it is damaged: {error}"))
         }
-        _ => error.to_string(),
+        _ if is_full(&error) => Refusal::Full(error.to_string()),
+        _ => Refusal::Unusable(error.to_string()),
     };
     let mut database = Connection::open_with_flags(path, write_flags()).map_err(describe)?;
     // Until it is accepted, nothing moves from the log to the file, not even when the connection is closed.
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).map_err(describe)?;
     database.busy_timeout(BUSY).map_err(describe)?;
-    schema::known(schema::version(&database).map_err(describe)?)?;
+    schema::known(schema::version(&database).map_err(describe)?).map_err(Refusal::Unusable)?;
     if length_at(path) + length_at(&beside(path, "-wal")) <= SMALL {
         let verdict: String = database.query_row("PRAGMA quick_check(1)", [], |row| row.get(0)).map_err(describe)?;
         if verdict != "ok" {
-            return Err(format!("it is damaged: {}", verdict.replace('\n', " ")));
+            return Err(Refusal::Unusable(format!("it is damaged: {}", verdict.replace('\n', " "))));
         }
     }
     let mode: String = database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0)).map_err(describe)?;
     if mode != "wal" {
-        return Err(format!("write-ahead logging is not available there, only {mode}"));
+        return Err(Refusal::Unusable(format!("write-ahead logging is not available there, only {mode}")));
     }
     database.pragma_update(None, "synchronous", "FULL").map_err(describe)?;
     database.pragma_update(None, "foreign_keys", true).map_err(describe)?;
@@ -142,8 +201,12 @@ fn connect(path: &Path) -> Result<Connection, String> {
     database.query_row(&format!("PRAGMA wal_autocheckpoint = {CHECKPOINT_PAGES}"), [], |_| Ok(())).map_err(describe)?;
     database.query_row(&format!("PRAGMA journal_size_limit = {LOG_BYTES}"), [], |_| Ok(())).map_err(describe)?;
     database.set_prepared_statement_cache_capacity(STATEMENTS);
-    schema::migrate(&mut database, MIGRATIONS).map_err(|error| error.to_string())?;
-    // The version must be in the file itself, where the next start looks for it first.
+    schema::migrate(&mut database, MIGRATIONS).map_err(|error| match error {
+        SchemaError::Database(error) => describe(error),
+        SchemaError::Version(error) => Refusal::Unusable(error.to_string()),
+    })?;
+    schema::mark(&database, IN_USE).map_err(describe)?;
+    // The version and the mark must be in the file itself, where the next start looks for them first.
     database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())).map_err(describe)?;
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map_err(describe)?;
     Ok(database)
@@ -155,6 +218,15 @@ pub(super) fn lock(file: &File) -> Result<(), String> {
         Err(TryLockError::WouldBlock) => Err("another process is using it".to_owned()),
         Err(TryLockError::Error(error)) => Err(format!("it cannot be locked: {error}")),
     }
+}
+
+/// A file for its owner alone, made if it is not there.
+pub(super) fn open_private(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    let file = options.read(true).write(true).create(true).truncate(false).mode(PRIVATE).open(path)?;
+    // An earlier program may have left it with another mode.
+    file.set_permissions(Permissions::from_mode(PRIVATE))?;
+    Ok(file)
 }
 
 fn write_flags() -> OpenFlags {

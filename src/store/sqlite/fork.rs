@@ -11,7 +11,7 @@ use uuid::Uuid;
 
 use crate::store::{Receipt, Session, StoreError};
 
-use super::change::{Done, Transaction, check_key, insert_receipt, insert_session, number_at};
+use super::change::{Done, Transaction, check_key, insert_receipt, insert_session, number_and_sequence};
 use super::columns::{MOVE_COLUMNS, to_integer};
 use super::fault::Fault;
 
@@ -44,10 +44,13 @@ impl Transaction<'_> {
     /// [`crate::store::Store::fork`]: checks, and makes a short fork at once; a long one begins.
     pub(super) fn fork(&self, fork: &Arc<Fork>) -> Result<Done, Fault> {
         check_key(self.database, fork.receipt.as_ref())?;
-        let from = number_at(self.database, fork.id, fork.copy.sequence)?;
+        let (from, found) = number_and_sequence(self.database, fork.id)?;
+        if found < fork.copy.sequence {
+            return Err(StoreError::Stale { found }.into());
+        }
         let mut copying = Copying { from, to: self.number, copied: 0, last: to_integer(fork.copy.sequence)? };
         if copying.last <= MOVES_AT_ONCE {
-            copying.step(self.database)?;
+            copying.step(self.database, fork.id)?;
             fork.complete(self.database, copying)?;
             return Ok(Done::Made(0));
         }
@@ -60,7 +63,7 @@ impl Fork {
     /// Goes on with a fork; returns whether it is complete. The original may have moved on meanwhile, which the copy
     /// does not see.
     pub(super) fn proceed(&self, database: &Connection, copying: &mut Copying) -> Result<bool, Fault> {
-        copying.step(database)?;
+        copying.step(database, self.id)?;
         if copying.copied < copying.last {
             return Ok(false);
         }
@@ -89,8 +92,15 @@ impl Copying {
         database.prepare_cached("UPDATE unowned SET forming = 0 WHERE contact = ?1")?.execute([self.to]).map(drop)
     }
 
-    fn step(&mut self, database: &Connection) -> rusqlite::Result<()> {
+    /// Copies the next moves of the contact `original`, unless one of them is missing.
+    fn step(&mut self, database: &Connection, original: Uuid) -> Result<(), Fault> {
         let upto = self.last.min(self.copied + MOVES_AT_ONCE);
+        let sql = "SELECT count(*) FROM moves WHERE contact = ?1 AND sequence > ?2 AND sequence <= ?3";
+        let found: i64 = database.prepare_cached(sql)?.query_row([self.from, self.copied, upto], |row| row.get(0))?;
+        if found != upto - self.copied {
+            let what = format!("{} of the moves {} to {upto} are missing", upto - self.copied - found, self.copied + 1);
+            return Err(StoreError::Damaged { contact: original, what }.into());
+        }
         let sql = format!(
             "INSERT INTO moves (contact, {MOVE_COLUMNS})
              SELECT ?2, {MOVE_COLUMNS} FROM moves WHERE contact = ?1 AND sequence > ?3 AND sequence <= ?4"

@@ -10,7 +10,7 @@ use uuid::Uuid;
 
 use crate::store::jobs::{ChunkQueue, ChunkResult, Claim, JOB_LIFETIME, JOB_TIME_LIMIT, Job, JobLimits, JobStore};
 use crate::store::rows::{self, RowReader as _};
-use crate::store::{Receipt, Result, StoreError};
+use crate::store::{Receipt, Result, StoreError, Tenant};
 
 use super::SqliteStore;
 use super::change::{Done, Transaction, check_key, insert_receipt};
@@ -110,11 +110,20 @@ pub(super) fn restore_queue(database: &Connection, queue: &ChunkQueue) -> rusqli
     Ok(())
 }
 
+/// The columns of a job, in the order in which it is read.
+const COLUMNS: &str = "id, tenant, created_at, finished_at, error, points, chunk, done, failed, bytes, cost";
+
+fn list(database: &Connection, tenant: &Tenant) -> Result<Vec<Job>, Fault> {
+    let sql = format!("SELECT {COLUMNS} FROM jobs WHERE tenant = ?1 ORDER BY id");
+    let mut statement = database.prepare_cached(&sql)?;
+    let found = statement.query_map([tenant.name()], |row| rows::job(&mut reader(row)))?;
+    Ok(found.collect::<Result<_, _>>()?)
+}
+
 fn find(database: &Connection, id: Uuid) -> Result<Job, Fault> {
-    let sql = "SELECT id, tenant, created_at, finished_at, error, points, chunk, done, failed, bytes, cost FROM jobs
-               WHERE id = ?1";
+    let sql = format!("SELECT {COLUMNS} FROM jobs WHERE id = ?1");
     let found =
-        database.prepare_cached(sql)?.query_row([id.to_string()], |row| rows::job(&mut reader(row))).optional()?;
+        database.prepare_cached(&sql)?.query_row([id.to_string()], |row| rows::job(&mut reader(row))).optional()?;
     Ok(found.ok_or(StoreError::NotFound)?)
 }
 
@@ -152,6 +161,10 @@ impl JobStore for SqliteStore {
 
     async fn job(&self, id: Uuid) -> Result<Job> {
         self.readers.read(move |database| find(database, id)).await
+    }
+
+    async fn jobs(&self, tenant: Tenant) -> Result<Vec<Job>> {
+        self.readers.read(move |database| list(database, &tenant)).await
     }
 
     async fn job_request(&self, id: Uuid) -> Result<String> {

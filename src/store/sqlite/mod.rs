@@ -12,6 +12,7 @@ mod fault;
 mod file;
 mod fork;
 mod jobs;
+mod open_files;
 mod read;
 mod readers;
 pub mod schema;
@@ -29,11 +30,13 @@ use tokio::sync::{mpsc, oneshot};
 use uuid::Uuid;
 
 use super::jobs::ChunkQueue;
-use super::{Changes, Commits, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
+use super::probe::Probe;
+use super::{Changes, Commits, Extent, Heading, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
 use fault::Fault;
 use fork::Fork;
+use open_files::OpenFiles;
 use readers::Readers;
 use stickslip_wire::SessionSummary;
 use writer::{Request, Writer};
@@ -41,7 +44,9 @@ use writer::{Request, Writer};
 /// Requests that may wait for the writer; further ones wait for a place.
 const QUEUE: usize = 1_024;
 /// How long to wait for another program that has locked the file.
-const BUSY: Duration = Duration::from_secs(5);
+const BUSY: Duration = Duration::from_secs(2);
+/// The same once that was in vain: until the lock is gone no request waits for it.
+const STILL_BUSY: Duration = Duration::from_millis(50);
 /// Sessions that expire in one transaction.
 const EXPIRE_AT_ONCE: usize = 200;
 
@@ -54,21 +59,44 @@ pub struct SqliteStore {
     changes: Arc<Changes>,
     commits: Arc<Commits>,
     queue: ChunkQueue,
+    probe: Probe,
+    /// Why nothing can be changed, if the disk was full at start.
+    full: Option<String>,
 }
 
 impl SqliteStore {
-    /// Opens a file, migrates its tables, and locks it against other writers; or makes one.
+    /// Opens a file, migrates its tables, and locks it against other writers; or makes one. Where there is no room to
+    /// write, it is opened to read.
     ///
     /// # Errors
     /// Why it cannot be used, in one line. The file is as it was then.
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
-        let file::Opened { database, lock } = file::open(path)?;
-        let queue = ChunkQueue::default();
+        let (queue, probe) = (ChunkQueue::default(), Probe::default());
+        let file::Opened { database, lock, files } = match file::open(path)? {
+            file::Access::Writable(opened) => opened,
+            file::Access::Full { why, readers } => {
+                tracing::error!(
+                    why,
+                    "there is no room to write: contacts can be read, and changed after the next start"
+                );
+                let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
+                return Ok(SqliteStore {
+                    requests: None,
+                    writer: None,
+                    readers,
+                    changes,
+                    commits,
+                    queue,
+                    probe,
+                    full: Some(why),
+                });
+            }
+        };
         jobs::restore_queue(&database, &queue).map_err(|error| error.to_string())?;
         let changes = Arc::new(Changes::default());
         let commits = Arc::new(Commits::new("sqlite"));
-        let writer =
-            Writer::new(database, Arc::clone(&changes), Arc::clone(&commits)).map_err(|error| error.to_string())?;
+        let writer = Writer::new(database, Arc::clone(&files), Arc::clone(&changes), Arc::clone(&commits));
+        let writer = writer.map_err(|error| error.to_string())?;
         let (sender, requests) = mpsc::channel(QUEUE);
         let held = Arc::clone(&lock);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
@@ -76,8 +104,9 @@ impl SqliteStore {
             drop(held);
         });
         let thread = thread.map_err(|error| error.to_string())?;
-        let readers = Readers::new(path.to_owned(), Some(lock));
-        Ok(SqliteStore { requests: Some(sender), writer: Some(thread), readers, changes, commits, queue })
+        let readers = Readers::new(path.to_owned(), files, Some(lock), false);
+        let (requests, writer) = (Some(sender), Some(thread));
+        Ok(SqliteStore { requests, writer, readers, changes, commits, queue, probe, full: None })
     }
 
     /// Opens a file for reading, while a process may serve it. Changes fail.
@@ -86,9 +115,11 @@ impl SqliteStore {
     /// Why it cannot be read, in one line.
     pub fn open_to_read(path: &Path) -> Result<SqliteStore, String> {
         backup::open_read_only(path)?;
+        let files = Arc::new(OpenFiles::at([path]).map_err(|error| error.to_string())?);
         let (changes, commits) = (Arc::default(), Arc::new(Commits::new("sqlite")));
-        let (readers, queue) = (Readers::new(path.to_owned(), None), ChunkQueue::default());
-        Ok(SqliteStore { requests: None, writer: None, readers, changes, commits, queue })
+        let (readers, queue) = (Readers::new(path.to_owned(), files, None, false), ChunkQueue::default());
+        let (requests, writer, probe, full) = (None, None, Probe::default(), None);
+        Ok(SqliteStore { requests, writer, readers, changes, commits, queue, probe, full })
     }
 
     /// Copies the store in a file to another that is not there yet, while it is in use or not; returns its bytes.
@@ -107,7 +138,10 @@ impl SqliteStore {
         touched: impl Into<Vec<Uuid>>,
         apply: impl Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send + 'static,
     ) -> Result<u64> {
-        let ended = || StoreError::Failed("the writer of the database has ended".to_owned());
+        let ended = || match &self.full {
+            Some(why) => StoreError::Full(why.clone()),
+            None => StoreError::Failed("the writer of the database has ended".to_owned()),
+        };
         let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
         let requests = self.requests.as_ref().ok_or_else(ended)?;
@@ -131,26 +165,45 @@ impl Drop for SqliteStore {
 #[async_trait]
 impl Store for SqliteStore {
     async fn ready(&self) -> Result<()> {
-        if self.requests.as_ref().is_none_or(mpsc::Sender::is_closed) {
-            return Err(StoreError::Failed("the writer of the database has ended".to_owned()));
-        }
-        self.readers.read(read::alive).await
+        self.readers.read(read::alive).await?;
+        self.probe.outcome(async { self.change(1, [], |transaction| transaction.probe()).await.map(drop) }).await
     }
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
         self.change(1, [], move |transaction| transaction.create(&session, receipt.as_ref())).await.map(drop)
     }
 
+    async fn extent(&self, id: Uuid) -> Result<Extent> {
+        self.readers.read(move |database| read::extent(database, id)).await
+    }
+
+    async fn count(&self, tenant: &Tenant) -> Result<u64> {
+        let tenant = tenant.clone();
+        self.readers.read(move |database| read::count(database, &tenant)).await
+    }
+
     async fn find(&self, id: Uuid) -> Result<Session> {
         self.readers.read(move |database| read::find(database, id)).await
     }
 
-    async fn sequence(&self, id: Uuid) -> Result<u64> {
-        self.readers.read(move |database| read::sequence(database, id)).await
+    async fn heading(&self, id: Uuid) -> Result<Heading> {
+        self.readers.read(move |database| read::heading(database, id)).await
     }
 
-    async fn list(&self, tenant: Option<Tenant>, after: Option<Uuid>, limit: usize) -> Result<Vec<SessionSummary>> {
-        self.readers.read(move |database| read::list(database, tenant.as_ref(), after, limit)).await
+    async fn list(
+        &self,
+        tenant: Option<Tenant>,
+        label: Option<String>,
+        after: Option<Uuid>,
+        limit: usize,
+    ) -> Result<Vec<SessionSummary>> {
+        self.readers.read(move |database| read::list(database, tenant.as_ref(), label.as_deref(), after, limit)).await
+    }
+
+    async fn rename(&self, id: Uuid, label: Option<String>, receipt: Option<Receipt>) -> Result<()> {
+        let rename =
+            move |transaction: &mut Transaction<'_>| transaction.rename(id, label.as_deref(), receipt.as_ref());
+        self.change(1, [], rename).await.map(drop)
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {

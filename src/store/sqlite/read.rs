@@ -5,7 +5,7 @@ use rusqlite::{Connection, OptionalExtension as _, Row, params};
 use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
-use crate::store::{Receipt, Record, Session, Snapshot, Tenant};
+use crate::store::{Extent, Heading, Receipt, Record, Session, Snapshot, Tenant};
 use stickslip_wire::SessionSummary;
 
 use super::change::{missing, number_and_sequence};
@@ -27,39 +27,73 @@ pub(super) fn find(database: &Connection, id: Uuid) -> Result<Session, Fault> {
     found.ok_or_else(|| missing(database, id))
 }
 
-pub(super) fn sequence(database: &Connection, id: Uuid) -> Result<u64, Fault> {
-    Ok(number_and_sequence(database, id)?.1)
+pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
+    let (number, sequence) = number_and_sequence(database, id)?;
+    let mut statement = database.prepare_cached(
+        "SELECT tenant, octet_length(definition), (SELECT octet_length(state) FROM snapshots WHERE contact = number)
+         FROM contacts WHERE number = ?1",
+    )?;
+    let found = statement.query_row([number], |row| {
+        let (name, definition, snapshot) =
+            (row.get::<_, String>(0)?, row.get::<_, i64>(1)?, row.get::<_, Option<i64>>(2)?);
+        let bytes = |count: i64| u64::try_from(count).unwrap_or(0);
+        let (tenant, definition) = (Tenant::new(&name), bytes(definition));
+        Ok(Extent { tenant, sequence, definition, snapshot: snapshot.map_or(0, bytes) })
+    });
+    found.optional()?.ok_or_else(|| missing(database, id))
+}
+
+pub(super) fn count(database: &Connection, tenant: &Tenant) -> Result<u64, Fault> {
+    let mut statement = database.prepare_cached("SELECT count(*) FROM contacts WHERE tenant = ?1")?;
+    let count: i64 = statement.query_row([tenant.name()], |row| row.get(0))?;
+    Ok(u64::try_from(count).unwrap_or(0))
+}
+
+pub(super) fn heading(database: &Connection, id: Uuid) -> Result<Heading, Fault> {
+    let sql = "SELECT (SELECT coalesce(max(sequence), 0) FROM moves WHERE contact = number), label FROM contacts
+               WHERE id = ?1";
+    let found = database.prepare_cached(sql)?.query_row([id.to_string()], |row| rows::heading(&mut reader(row)));
+    found.optional()?.ok_or_else(|| missing(database, id))
 }
 
 pub(super) fn list(
     database: &Connection,
     tenant: Option<&Tenant>,
+    label: Option<&str>,
     after: Option<Uuid>,
     limit: usize,
 ) -> Result<Vec<SessionSummary>, Fault> {
     // Every identifier comes after the empty text.
     let after = after.map_or_else(String::new, |id| id.to_string());
     let limit = to_integer(limit as u64)?;
-    let page = |which: &str| format!("SELECT {SUMMARY_COLUMNS} FROM {CONTACTS} WHERE {which} ORDER BY c.id LIMIT ?2");
+    // SQLite lowers ASCII letters alone.
+    let labelled = "(?3 IS NULL OR instr(lower(c.label), lower(?3)) > 0)";
+    let page = |which: &str| {
+        format!("SELECT {SUMMARY_COLUMNS} FROM {CONTACTS} WHERE {which} AND {labelled} ORDER BY c.id LIMIT ?2")
+    };
     let summary = |row: &Row<'_>| rows::summary(&mut reader(row));
     let found: rusqlite::Result<_> = match tenant {
-        None => database.prepare_cached(&page("c.id > ?1"))?.query_map(params![after, limit], summary)?.collect(),
+        None => {
+            database.prepare_cached(&page("c.id > ?1"))?.query_map(params![after, limit, label], summary)?.collect()
+        }
         Some(tenant) => {
-            let mut statement = database.prepare_cached(&page("c.id > ?1 AND c.tenant = ?3"))?;
-            statement.query_map(params![after, limit, tenant.name()], summary)?.collect()
+            let mut statement = database.prepare_cached(&page("c.id > ?1 AND c.tenant = ?4"))?;
+            statement.query_map(params![after, limit, label, tenant.name()], summary)?.collect()
         }
     };
     Ok(found?)
 }
 
 pub(super) fn history(database: &Connection, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>, Fault> {
-    let number = number(database, id)?;
-    let Ok(after) = to_integer(after) else { return Ok(Vec::new()) };
+    let (number, last) = number_and_sequence(database, id)?;
+    let Ok(from) = to_integer(after) else { return Ok(Vec::new()) };
     let sql =
         format!("SELECT {MOVE_COLUMNS} FROM moves WHERE contact = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3");
     let mut statement = database.prepare_cached(&sql)?;
-    let found = statement.query_map(params![number, after, to_integer(limit as u64)?], record)?;
-    Ok(found.collect::<Result<_, _>>()?)
+    let found = statement.query_map(params![number, from, to_integer(limit as u64)?], record)?;
+    let page = found.collect::<Result<Vec<Record>, _>>()?;
+    rows::check_page(id, after, &page, limit, last)?;
+    Ok(page)
 }
 
 pub(super) fn receipt(database: &Connection, key: &str, not_before: Timestamp) -> Result<Option<Receipt>, Fault> {
@@ -131,8 +165,35 @@ pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, Faul
          FROM replies AS r INNER JOIN contacts AS c ON c.id = r.id
          WHERE r.sequence > coalesce((SELECT max(sequence) FROM moves WHERE contact = c.number), 0)",
     )?);
+    found.extend(texts(JOB_FAULTS)?);
     Ok(found)
 }
+
+/// Jobs whose columns contradict each other or their chunks, and chunks of no job.
+const JOB_FAULTS: &str = "
+WITH stored AS (
+    SELECT j.number, coalesce(sum(max(min(j.chunk, j.points - c.chunk * j.chunk), 0)), 0) AS computed,
+        count(c.chunk) AS chunks, coalesce(min(c.chunk), 0) AS first, coalesce(max(c.chunk), 0) AS last
+    FROM jobs AS j LEFT JOIN job_chunks AS c ON c.job = j.number GROUP BY j.number)
+SELECT 'job ' || id || ': ' || done || ' points are counted as done, and ' || s.computed || ' are stored'
+FROM jobs INNER JOIN stored AS s USING (number) WHERE done <> s.computed
+UNION ALL
+SELECT 'job ' || id || ': it has a chunk beyond its ' || points || ' points'
+FROM jobs INNER JOIN stored AS s USING (number) WHERE s.chunks > 0 AND (s.first < 0 OR s.last * chunk >= points)
+UNION ALL
+SELECT 'job ' || id || ': it has ended at ' || done || ' of ' || points || ' points without an error'
+FROM jobs WHERE finished_at IS NOT NULL AND error IS NULL AND done <> points
+UNION ALL
+SELECT 'job ' || id || ': all of its points are done, and it has not ended'
+FROM jobs WHERE finished_at IS NULL AND done >= points
+UNION ALL
+SELECT 'job ' || id || ': of ' || done || ' points ' || failed || ' have no answer' FROM jobs
+WHERE failed NOT BETWEEN 0 AND done
+UNION ALL
+SELECT 'job ' || id || ': its request is not JSON' FROM jobs WHERE NOT json_valid(request)
+UNION ALL
+SELECT 'the chunk ' || chunk || ' of job number ' || job || ' belongs to no job' FROM job_chunks
+WHERE job NOT IN (SELECT number FROM jobs)";
 
 fn number(database: &Connection, id: Uuid) -> Result<i64, Fault> {
     let mut statement = database.prepare_cached("SELECT number FROM contacts WHERE id = ?1")?;

@@ -1,16 +1,21 @@
 //! Reading the database beside the writer. In write-ahead mode readers and the writer do not wait for each other.
 
 use std::fs::File;
+use std::os::unix::ffi::OsStrExt as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use percent_encoding::{NON_ALPHANUMERIC, percent_encode};
 use rusqlite::{Connection, OpenFlags};
 use tokio::sync::Semaphore;
 use tokio::task::spawn_blocking;
 
 use crate::store::{Result, StoreError};
 
-use super::fault::{Fault, Stage, store_error};
+use super::fault::{Fault, Stage, is_locked, store_error};
+use super::open_files::OpenFiles;
+use super::{BUSY, STILL_BUSY};
 
 /// Reads at a time; more would only slow each other down.
 const READERS: usize = 4;
@@ -28,13 +33,19 @@ struct Idle {
     // A std mutex: held for a push or a pop.
     connections: Mutex<Vec<Connection>>,
     path: PathBuf,
+    files: Arc<OpenFiles>,
+    /// Whether nobody writes to the file, so that it is read without a log and without shared memory.
+    immutable: bool,
+    /// Whether another program had locked the file at the last read.
+    locked: AtomicBool,
     // Dropped after the connections: to close any handle of the file would end the locks that SQLite holds on it.
     _lock: Option<Arc<File>>,
 }
 
 impl Readers {
-    pub(super) fn new(path: PathBuf, lock: Option<Arc<File>>) -> Readers {
-        let idle = Idle { connections: Mutex::default(), path, _lock: lock };
+    pub(super) fn new(path: PathBuf, files: Arc<OpenFiles>, lock: Option<Arc<File>>, immutable: bool) -> Readers {
+        let (connections, locked) = (Mutex::default(), AtomicBool::new(false));
+        let idle = Idle { connections, path, files, immutable, locked, _lock: lock };
         Readers { permits: Arc::new(Semaphore::new(READERS)), idle: Arc::new(idle) }
     }
 
@@ -46,9 +57,12 @@ impl Readers {
         let permit = Arc::clone(&self.permits).acquire_owned().await;
         let idle = Arc::clone(&self.idle);
         let task = spawn_blocking(move || {
+            idle.files.check()?;
             let connection = idle.take()?;
             let found =
                 connection.unchecked_transaction().map_err(Fault::from).and_then(|transaction| question(&transaction));
+            let locked = matches!(&found, Err(Fault::Sqlite(error)) if is_locked(error));
+            idle.locked.store(locked, Ordering::Relaxed);
             idle.put(connection);
             drop(permit);
             found
@@ -69,11 +83,16 @@ impl Readers {
 
 impl Idle {
     fn take(&self) -> rusqlite::Result<Connection> {
-        if let Some(connection) = self.lock().pop() {
-            return Ok(connection);
-        }
-        let connection = open_reader(&self.path)?;
-        connection.set_prepared_statement_cache_capacity(STATEMENTS);
+        let pooled = self.lock().pop();
+        let connection = match pooled {
+            Some(connection) => connection,
+            None => {
+                let connection = if self.immutable { open_immutable(&self.path)? } else { open_reader(&self.path)? };
+                connection.set_prepared_statement_cache_capacity(STATEMENTS);
+                connection
+            }
+        };
+        connection.busy_timeout(if self.locked.load(Ordering::Relaxed) { STILL_BUSY } else { BUSY })?;
         Ok(connection)
     }
 
@@ -90,6 +109,13 @@ impl Idle {
 pub(super) fn open_reader(path: &Path) -> rusqlite::Result<Connection> {
     let connection =
         Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
-    connection.busy_timeout(super::BUSY)?;
+    connection.busy_timeout(BUSY)?;
     Ok(connection)
+}
+
+/// The same for a file that nobody writes to: SQLite makes no files beside it.
+pub(super) fn open_immutable(path: &Path) -> rusqlite::Result<Connection> {
+    let name = percent_encode(path.as_os_str().as_bytes(), NON_ALPHANUMERIC);
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
+    Connection::open_with_flags(format!("file:{name}?immutable=1"), flags)
 }

@@ -7,8 +7,18 @@ use crate::store::schema::{self, SchemaError};
 /// Marks a file as one of this program: "stck" in the header.
 pub(super) const APPLICATION: i32 = 0x7374_636b;
 
+/// The same while a process writes to it: "stco". A file with this mark has not been closed, and is not whole without its
+/// write-ahead log. The mark is in the file itself before anything is written to the log, and is taken back when the log
+/// has been merged.
+pub(super) const IN_USE: i32 = 0x7374_636f;
+
 /// The migrations, oldest first: each leads from one version of the tables to the next.
-pub const MIGRATIONS: &[&str] = &[include_str!("schema_1.sql")];
+pub const MIGRATIONS: &[&str] = &[include_str!("schema_1.sql"), include_str!("schema_2.sql")];
+
+/// Marks a file as in use or as closed.
+pub(super) fn mark(connection: &Connection, application: i32) -> rusqlite::Result<()> {
+    connection.pragma_update(None, "application_id", application)
+}
 
 /// The version of the tables; 0 where there are none.
 pub(super) fn version(connection: &Connection) -> rusqlite::Result<i32> {
@@ -37,7 +47,7 @@ pub fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<(), S
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
     for (version, script) in schema::pending(version(&transaction)?, migrations).map_err(SchemaError::Version)? {
         transaction.execute_batch(script)?;
-        transaction.pragma_update(None, "application_id", APPLICATION)?;
+        mark(&transaction, APPLICATION)?;
         transaction.pragma_update(None, "user_version", version)?;
     }
     Ok(transaction.commit()?)

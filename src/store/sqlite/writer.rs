@@ -9,14 +9,18 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use rusqlite::Connection;
+use rusqlite::config::DbConfig;
 use tokio::sync::mpsc::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot};
 
 use crate::store::{Changes, Commits, Result, StoreError};
 
 use super::change::{Change, Done, SequenceCache, Transaction};
-use super::fault::{Fault, Stage, store_error, worth_splitting};
+use super::fault::{Fault, Stage, is_locked, store_error, worth_splitting};
 use super::fork::{self, Copying, Fork};
+use super::open_files::OpenFiles;
+use super::schema::{self, APPLICATION};
+use super::{BUSY, STILL_BUSY};
 
 /// Requests that share a transaction.
 const BATCH: usize = 512;
@@ -37,6 +41,8 @@ type Reply = oneshot::Sender<Result<u64>>;
 /// The state of the writing thread.
 pub(super) struct Writer {
     database: Connection,
+    /// The files that it writes to.
+    files: Arc<OpenFiles>,
     changes: Arc<Changes>,
     cache: SequenceCache,
     commits: Arc<Commits>,
@@ -48,6 +54,8 @@ pub(super) struct Writer {
     unowned: bool,
     /// Whether the last transaction succeeded: if not, background work rests.
     healthy: bool,
+    /// Whether another program had locked the file then.
+    locked: bool,
 }
 
 /// A transaction that failed and was rolled back.
@@ -57,7 +65,12 @@ struct Failure {
 }
 
 impl Writer {
-    pub(super) fn new(database: Connection, changes: Arc<Changes>, commits: Arc<Commits>) -> rusqlite::Result<Writer> {
+    pub(super) fn new(
+        database: Connection,
+        files: Arc<OpenFiles>,
+        changes: Arc<Changes>,
+        commits: Arc<Commits>,
+    ) -> rusqlite::Result<Writer> {
         fork::abandon_all(&database)?;
         let sql = "SELECT max(coalesce((SELECT max(number) FROM contacts), 0),
                               coalesce((SELECT max(contact) FROM moves), 0),
@@ -65,6 +78,7 @@ impl Writer {
         let highest: i64 = database.query_row(sql, [], |row| row.get(0))?;
         Ok(Writer {
             database,
+            files,
             changes,
             cache: SequenceCache::new(CACHED),
             commits,
@@ -72,6 +86,7 @@ impl Writer {
             forks: VecDeque::new(),
             unowned: true,
             healthy: true,
+            locked: false,
         })
     }
 
@@ -99,9 +114,20 @@ impl Writer {
         for (_, _, reply) in self.forks.drain(..) {
             answer(reply, Err(StoreError::Unavailable("the store is closing".to_owned())));
         }
-        if let Err(error) = self.database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(())) {
+        if let Err(error) = self.close() {
             tracing::warn!(%error, "the write-ahead log could not be merged; the next start does it");
         }
+    }
+
+    /// Marks the file as closed, and merges the log into it: with the log, the mark reaches the file.
+    fn close(&self) -> rusqlite::Result<()> {
+        if self.files.check().is_err() {
+            // What SQLite would remove with its last connection may belong to another database by now.
+            self.database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
+        }
+        let marked = schema::mark(&self.database, APPLICATION);
+        self.database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))?;
+        marked
     }
 
     /// Makes changes durable together, then answers; or, where that fails, each alone.
@@ -195,7 +221,8 @@ impl Writer {
         &mut self,
         work: impl FnOnce(&Connection, &mut SequenceCache) -> rusqlite::Result<T>,
     ) -> Result<T, Failure> {
-        let done = self.run_statement("BEGIN IMMEDIATE").and_then(|()| work(&self.database, &mut self.cache));
+        let begun = self.files.check().and_then(|()| self.run_statement("BEGIN IMMEDIATE"));
+        let done = begun.and_then(|()| work(&self.database, &mut self.cache));
         let outcome = match done {
             Ok(value) => self.run_statement("COMMIT").map(|()| value).map_err(|error| (error, Stage::Commit)),
             Err(error) => Err((error, Stage::Before)),
@@ -226,6 +253,13 @@ impl Writer {
             None => {}
         }
         self.healthy = failure.is_none();
+        let locked = failure.is_some_and(is_locked);
+        if locked != self.locked {
+            self.locked = locked;
+            if let Err(error) = self.database.busy_timeout(if locked { STILL_BUSY } else { BUSY }) {
+                tracing::warn!(%error, "the time to wait for locks could not be set");
+            }
+        }
     }
 
     fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {

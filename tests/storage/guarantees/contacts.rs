@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use futures::future::join_all;
-use stickslip::store::{Session, Store, StoreError};
+use stickslip::store::{Heading, Session, Store, StoreError};
 use stickslip_wire::SessionSummary;
 use uuid::Uuid;
 
 use crate::common::kill::exact;
-use crate::fixtures::{record, records, session, snapshot, stored};
+use crate::fixtures::{receipt, record, records, session, snapshot, stored};
 
 pub async fn what_is_stored_is_found(store: &dyn Store) {
     store.ready().await.unwrap();
@@ -40,14 +40,55 @@ pub async fn sessions_are_listed_in_order_and_by_pages(store: &dyn Store) {
     }
     let (mut seen, mut after): (Vec<SessionSummary>, _) = (Vec::new(), Some(before));
     loop {
-        let page = store.list(None, after, 2).await.unwrap();
+        let page = store.list(None, None, after, 2).await.unwrap();
         assert!(page.len() <= 2);
         let Some(last) = page.last() else { break };
         after = Some(last.id);
         seen.extend(page);
     }
     assert_eq!(exact(&seen), exact(&made));
-    assert!(store.list(None, None, 1).await.unwrap()[0].id <= made[0].id);
+    assert!(store.list(None, None, None, 1).await.unwrap()[0].id <= made[0].id);
+}
+
+pub async fn a_label_changes_alone_and_finds_its_session(store: &dyn Store) {
+    let (made, past) = stored(store, 2).await;
+    let tenant = Some(made.tenant.clone());
+    let found = async |label: &str| {
+        let listed = store.list(None, Some(label.to_owned()), None, 1_000).await.unwrap();
+        assert_eq!(listed.iter().any(|item| item.id == made.id), {
+            let own = store.list(tenant.clone(), Some(label.to_owned()), None, 1_000).await.unwrap();
+            own.iter().any(|item| item.id == made.id)
+        });
+        listed.iter().any(|item| item.id == made.id)
+    };
+    for label in [Some("50 %_ Ärger of A.B\\C"), None, Some("")] {
+        let label = label.map(str::to_owned);
+        store.rename(made.id, label.clone(), None).await.unwrap();
+        let renamed = Session { label: label.clone(), ..made.clone() };
+        assert_eq!(exact(&store.find(made.id).await.unwrap()), exact(&renamed));
+        assert_eq!(store.heading(made.id).await.unwrap(), Heading { sequence: 2, label: label.clone() });
+        assert_eq!(exact(&store.history(made.id, 0, 10).await.unwrap()), exact(&past));
+        for (text, is_part) in [
+            ("a.b\\c", true),
+            ("A_B", false),
+            ("50 %_ Ä", true),
+            ("ä", false),
+            ("\\\\", false),
+            ("%", true),
+            ("50%", false),
+        ] {
+            let wanted = is_part && label.as_ref().is_some_and(|label| !label.is_empty());
+            assert_eq!(found(text).await, wanted, "{text} in {label:?}");
+        }
+        assert_eq!(found("").await, label.is_some());
+    }
+    let nobody = store.rename(Uuid::now_v7(), Some("nobody".to_owned()), None).await;
+    assert!(matches!(nobody, Err(StoreError::NotFound)));
+    // A key that is taken refuses it, and it takes its key.
+    store.rename(made.id, Some("first".to_owned()), Some(receipt("naming", None, 2))).await.unwrap();
+    let twice = store.rename(made.id, Some("second".to_owned()), Some(receipt("naming", None, 2))).await;
+    assert!(matches!(twice, Err(StoreError::KeyTaken)), "{twice:?}");
+    assert_eq!(store.heading(made.id).await.unwrap().label.as_deref(), Some("first"));
 }
 
 pub async fn moves_are_appended_at_the_expected_sequence_alone(store: &dyn Store) {
@@ -73,10 +114,22 @@ pub async fn a_fork_shares_the_past_and_nothing_else(store: &dyn Store) {
     let (original, past) = stored(store, 5).await;
     store.save_snapshot(original.id, snapshot(4)).await.unwrap();
     let copy = Session { sequence: 5, label: None, ..session(None) };
-    let early = Session { sequence: 4, ..session(None) };
-    let refused = store.fork(original.id, early.clone(), None).await;
+    let late = Session { sequence: 6, ..session(None) };
+    let refused = store.fork(original.id, late.clone(), None).await;
     assert!(matches!(refused, Err(StoreError::Stale { found: 5 })), "{refused:?}");
-    assert!(matches!(store.find(early.id).await, Err(StoreError::NotFound)));
+    assert!(matches!(store.find(late.id).await, Err(StoreError::NotFound)));
+    // A part of the past, and a snapshot only if it is of that part.
+    for (sequence, kept) in [(0, None), (3, None), (4, Some(snapshot(4)))] {
+        let early = Session { sequence, ..session(Some("early")) };
+        store.fork(original.id, early.clone(), None).await.unwrap();
+        assert_eq!(exact(&store.find(early.id).await.unwrap()), exact(&early));
+        let past = &past[..usize::try_from(sequence).unwrap()];
+        assert_eq!(exact(&store.history(early.id, 0, 10).await.unwrap()), exact(&past.to_vec()));
+        assert_eq!(store.snapshot(early.id).await.unwrap(), kept);
+        store.append(early.id, sequence, vec![record(sequence + 1)], None).await.unwrap();
+        assert_eq!(store.heading(early.id).await.unwrap().sequence, sequence + 1);
+    }
+    assert_eq!(exact(&store.history(original.id, 0, 10).await.unwrap()), exact(&past));
     store.fork(original.id, copy.clone(), None).await.unwrap();
     // Its times are its own, though its last move is older.
     assert_eq!(exact(&store.find(copy.id).await.unwrap()), exact(&copy));
@@ -138,7 +191,7 @@ pub async fn what_is_deleted_is_gone(store: &dyn Store) {
     assert!(matches!(store.snapshot(session.id).await, Err(StoreError::NotFound)));
     assert!(matches!(store.append(session.id, 2, records(2, 3), None).await, Err(StoreError::NotFound)));
     assert!(matches!(store.delete(session.id, 2).await, Err(StoreError::NotFound)));
-    let listed = store.list(None, None, 1_000).await.unwrap();
+    let listed = store.list(None, None, None, 1_000).await.unwrap();
     assert!(listed.iter().all(|found| found.id != session.id));
 }
 

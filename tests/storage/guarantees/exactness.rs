@@ -1,7 +1,7 @@
 //! A store returns what was saved, to the last bit.
 
 use jiff::{SignedDuration, Timestamp};
-use stickslip::store::{Record, Session, Store};
+use stickslip::store::{Measured, Record, Session, Store};
 use stickslip_wire::{Move, State};
 
 use crate::common::kill::Random;
@@ -30,7 +30,7 @@ const AWKWARD: [f64; 18] = [
     0.300_000_000_000_000_04,
 ];
 
-/// A move of thirteen numbers.
+/// A move of fourteen numbers.
 fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
     let mut optional = |present: bool| present.then(&mut number);
     let step = Move {
@@ -51,7 +51,8 @@ fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
         elastic_energy: number(),
         ..record(sequence).state
     };
-    Record { step, tolerance: number(), state, ..record(sequence) }
+    let measured = Some(Measured { force: number(), at: None });
+    Record { step, tolerance: number(), state, measured, ..record(sequence) }
 }
 
 pub async fn every_number_is_read_to_the_last_bit(store: &dyn Store) {
@@ -95,10 +96,13 @@ pub async fn times_are_read_to_the_nanosecond(store: &dyn Store) {
         // A clock may be set back between two moves.
         let moves = [later, at].map(|at| at + SignedDuration::from_nanos(41));
         for (sequence, at) in (0..).zip(moves) {
-            store.append(made.id, sequence, vec![Record { at, ..record(sequence + 1) }], None).await.unwrap();
+            let measured = Some(Measured { force: 1.0, at: Some(at) });
+            let moved = vec![Record { at, measured, ..record(sequence + 1) }];
+            store.append(made.id, sequence, moved, None).await.unwrap();
             assert_eq!(store.find(made.id).await.unwrap().updated_at, at);
         }
         let found = store.history(made.id, 0, 2).await.unwrap();
         assert_eq!(found.iter().map(|item| item.at).collect::<Vec<_>>(), moves);
+        assert_eq!(found.iter().map(|item| item.measured.unwrap().at.unwrap()).collect::<Vec<_>>(), moves);
     }
 }

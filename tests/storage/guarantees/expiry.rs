@@ -41,7 +41,7 @@ pub async fn idle_sessions_expire_and_the_others_stay(store: &dyn Store) {
     }
     assert_eq!(store.history(copy.id, 0, 10).await.unwrap().len(), 1);
     assert!(matches!(store.find(deleted.id).await, Err(StoreError::NotFound)));
-    let listed = store.list(None, None, 1_000).await.unwrap();
+    let listed = store.list(None, None, None, 1_000).await.unwrap();
     assert!(listed.iter().all(|found| found.id != idle.id && found.id != moved_then.id));
 }
 

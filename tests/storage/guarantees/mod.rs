@@ -48,6 +48,7 @@ async fn postgres_gives_the_guarantees() {
 async fn are_given<F: Future<Output = Arc<dyn Store>>>(store: impl Fn() -> F) {
     contacts::what_is_stored_is_found(&*store().await).await;
     contacts::sessions_are_listed_in_order_and_by_pages(&*store().await).await;
+    contacts::a_label_changes_alone_and_finds_its_session(&*store().await).await;
     contacts::moves_are_appended_at_the_expected_sequence_alone(&*store().await).await;
     contacts::a_fork_shares_the_past_and_nothing_else(&*store().await).await;
     contacts::a_long_past_is_forked_and_deleted_while_others_move(store().await).await;

@@ -9,7 +9,7 @@ use stickslip_mechanics::profile::{Profile, Ring, RoundedPunch, Sphere, StressRa
 use stickslip_mechanics::{Contact, Elasticity, Preload, Setup};
 
 use super::{Error, Estimate, ScanFit};
-use crate::linear::dot;
+use crate::linear::{dot, quadratic};
 
 /// Radii at which the place of the largest pressure is sought.
 const PLACES: usize = 128;
@@ -79,7 +79,7 @@ impl ScanFit {
             .collect();
         let estimate = |value: f64, index: usize, fixed: bool| {
             let gradient: Vec<f64> = changes.iter().map(|change| change[index]).collect();
-            let error = self.covariance.quadratic(&gradient).max(0.0).sqrt();
+            let error = quadratic(&self.covariance, &gradient).max(0.0).sqrt();
             Estimate { value, standard_error: if fixed { 0.0 } else { error } }
         };
         Ok(ContactEstimate {

@@ -6,10 +6,11 @@
 
 use super::Error;
 use super::curve::Curve;
-use super::noise::{self, OUTLIER};
+use super::noise;
 use super::normal_equations::{Equations, MOST_COLUMNS, Solution, Statistics};
 use super::smoothing::{self, Smoothing};
 use super::start;
+use crate::robust::{self, HUBER, OUTLIER};
 
 /// Intervals of the curve, at most; and how many points each is to have.
 const INTERVALS: std::ops::RangeInclusive<usize> = 6..=80;
@@ -17,8 +18,6 @@ const POINTS_EACH: usize = 4;
 /// Turns in which residuals are weighted, and all turns.
 const WEIGHTED_TURNS: usize = 4;
 const TURNS: usize = 25;
-/// Huber's constant, in standard deviations.
-const HUBER: f64 = 1.5;
 /// The standard deviation, in units of the half extent, that the axis is expected to move by: it bounds a step where the scan says nothing.
 const LOOSE: f64 = 0.3;
 /// The standard deviation of a tilt, in the range of heights over the half extent.
@@ -125,7 +124,7 @@ impl Turns<'_> {
             let moved = [axis[0] + step[0], axis[1] + step[1]];
             let residuals = self.residuals(moved, tilt, &found);
             let sizes = &mut residuals.iter().map(|value| value.abs()).collect::<Vec<f64>>();
-            deviation = noise::robust_deviation(sizes).max(1e-12);
+            deviation = robust::robust_deviation(sizes).max(1e-12);
             let before = weights.clone();
             if turn < WEIGHTED_TURNS {
                 let huber = |value: &f64| (HUBER * deviation / value.abs()).min(1.0);
@@ -136,8 +135,8 @@ impl Turns<'_> {
             let changed = before.iter().zip(&weights).filter(|(a, b)| (*a - *b).abs() > 0.5).count();
             let still = (0..2).all(|index| {
                 let column = equations.intervals + 1 + if self.tilt { self.directions() } else { 0 } + index;
-                let known = self.shift && index < self.directions() && column < solution.inverse.size();
-                let error = if known { deviation * solution.inverse.at(column, column).sqrt() } else { 0.0 };
+                let known = self.shift && index < self.directions() && column < solution.inverse.nrows();
+                let error = if known { deviation * solution.inverse[(column, column)].sqrt() } else { 0.0 };
                 step[index].abs() <= 1e-2 * error + 1e-12
             });
             // A step back across the last one goes too far as a rule.
@@ -222,7 +221,7 @@ impl Turns<'_> {
         for (&ring, value) in rings.iter().zip(residuals) {
             sizes[ring].push(value.abs());
         }
-        let of_ring = |sizes: &mut Vec<f64>| noise::median(sizes) / noise::MEDIAN_SIZE;
+        let of_ring = |sizes: &mut Vec<f64>| robust::median(sizes) / robust::MEDIAN_SIZE;
         let most: Vec<f64> = sizes.iter_mut().map(|sizes| OUTLIER * of_ring(sizes).max(deviation)).collect();
         for ((weight, value), ring) in weights.iter_mut().zip(residuals).zip(rings) {
             *weight = f64::from(u8::from(value.abs() <= most[ring]));
@@ -288,7 +287,7 @@ impl Turns<'_> {
         for column in 0..count * directions {
             let spread = if column < tilts { STEEP } else { LOOSE };
             let place = equations.intervals + 1 + column;
-            equations.matrix.add(place, place, (deviation / spread).powi(2));
+            equations.matrix[(place, place)] += (deviation / spread).powi(2);
         }
         Ok(equations)
     }

@@ -26,9 +26,8 @@ pub use smoothing::Smoothing;
 
 use curve::Curve;
 use fit::{Scaled, Sought};
+use nalgebra::DMatrix;
 use stickslip_mechanics::profile::Profile;
-
-use crate::linear::Symmetric;
 
 /// Points that a fit needs.
 pub const FEWEST_POINTS: usize = 12;
@@ -148,7 +147,7 @@ pub struct ScanFit {
     profile: Profile,
     curve: Curve,
     /// Covariance of the curvatures, 1/m^2.
-    covariance: Symmetric,
+    covariance: DMatrix<f64>,
 }
 
 impl ScanFit {

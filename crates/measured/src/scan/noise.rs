@@ -2,33 +2,10 @@
 
 use super::curve::Curve;
 
-/// A residual beyond so many standard deviations is an outlier.
-pub(super) const OUTLIER: f64 = 5.0;
 /// Blocks that an estimate of the variance of means needs.
 const FEWEST_BLOCKS: usize = 6;
 /// Lags of the autocorrelation, at most.
 const MOST_LAGS: usize = 500;
-
-/// The median size of normal noise, and its 90th percentile, in standard deviations.
-pub(super) const MEDIAN_SIZE: f64 = 0.6745;
-const LARGE_SIZE: f64 = 1.6449;
-
-/// The size below which a share of them lies; zero if there are none.
-fn quantile(sizes: &mut [f64], share: f64) -> f64 {
-    let Some(last) = sizes.len().checked_sub(1) else { return 0.0 };
-    *sizes.select_nth_unstable_by((last as f64 * share) as usize, f64::total_cmp).1
-}
-
-/// The median of some sizes; zero if there are none.
-pub(super) fn median(sizes: &mut [f64]) -> f64 {
-    quantile(sizes, 0.5)
-}
-
-/// A robust standard deviation: from the median and the 90th percentile of the sizes, the larger. A tenth of the points may be
-/// outliers, and half of the residuals zero, as those of rounded heights can be.
-pub(super) fn robust_deviation(sizes: &mut [f64]) -> f64 {
-    (median(sizes) / MEDIAN_SIZE).max(quantile(sizes, 0.9) / LARGE_SIZE)
-}
 
 /// One residual: its radius, the side of the axis (+1, -1), and its value.
 pub(super) struct Residual {

@@ -4,8 +4,10 @@
 //! points: the equations cost no more for a million points than for a thousand. The penalty is on steps of the curvature, so
 //! that a parabola, and no other shape, is free of it.
 
+use nalgebra::{DMatrix, DVectorView};
+
 use super::curve::Curve;
-use crate::linear::{Symmetric, dot};
+use crate::linear::{add, dot, factor, quadratic, solve};
 
 /// Columns beside the curve that a fit can have: tilt along x and y, shift of the axis along x and y.
 pub(super) const MOST_COLUMNS: usize = 4;
@@ -80,7 +82,7 @@ impl Statistics {
     pub(super) fn equations(&self) -> Equations {
         let intervals = self.sums.len();
         let size = intervals + 1 + self.column_count;
-        let mut matrix = Symmetric::zero(size);
+        let mut matrix = DMatrix::zeros(size, size);
         let mut right = vec![0.0; size];
         let area = self.width * self.width;
         for (index, sums) in self.sums.iter().enumerate() {
@@ -98,22 +100,22 @@ impl Statistics {
                     *product = dot(&quadratic, &sums.powers[k..k + 3]);
                 }
                 for &(column, other) in &rows[..=place] {
-                    matrix.add(row, column, dot(&products, &other));
+                    add(&mut matrix, row, column, dot(&products, &other));
                 }
                 right[row] += dot(&quadratic, &sums.heights);
                 for column in 0..self.column_count {
                     let product = (0..3).map(|k| quadratic[k] * sums.columns[k][column]).sum();
-                    matrix.add(intervals + 1 + column, row, product);
+                    add(&mut matrix, intervals + 1 + column, row, product);
                 }
             }
         }
         for row in 0..self.column_count {
             for column in 0..=row {
-                matrix.add(intervals + 1 + row, intervals + 1 + column, self.columns[row][column]);
+                add(&mut matrix, intervals + 1 + row, intervals + 1 + column, self.columns[row][column]);
             }
             right[intervals + 1 + row] = self.column_heights[row];
         }
-        let scale = (0..intervals).map(|index| matrix.at(index, index)).sum::<f64>() / intervals as f64;
+        let scale = (0..intervals).map(|index| matrix[(index, index)]).sum::<f64>() / intervals as f64;
         let stiffness = vec![1.0; intervals - 1];
         Equations {
             width: self.width,
@@ -132,7 +134,7 @@ impl Statistics {
 pub(super) struct Equations {
     pub(super) width: f64,
     pub(super) intervals: usize,
-    pub(super) matrix: Symmetric,
+    pub(super) matrix: DMatrix<f64>,
     pub(super) right: Vec<f64>,
     square: f64,
     pub(super) count: f64,
@@ -148,7 +150,7 @@ pub(super) struct Solution {
     pub(super) penalty: f64,
     pub(super) unknowns: Vec<f64>,
     /// The inverse of the penalised matrix.
-    pub(super) inverse: Symmetric,
+    pub(super) inverse: DMatrix<f64>,
     /// The sum of squared residuals.
     pub(super) squares: f64,
     /// Degrees of freedom that the fit takes: the trace of its influence matrix.
@@ -157,13 +159,13 @@ pub(super) struct Solution {
 
 impl Equations {
     /// The matrix with the penalty on steps of the curvature.
-    pub(super) fn penalised(&self, penalty: f64) -> Symmetric {
+    pub(super) fn penalised(&self, penalty: f64) -> DMatrix<f64> {
         let mut matrix = self.matrix.clone();
         for index in 1..self.intervals {
             let strength = penalty * self.scale * self.stiffness[index - 1];
-            matrix.add(index, index, strength);
-            matrix.add(index - 1, index - 1, strength);
-            matrix.add(index, index - 1, -strength);
+            add(&mut matrix, index, index, strength);
+            add(&mut matrix, index - 1, index - 1, strength);
+            add(&mut matrix, index, index - 1, -strength);
         }
         matrix
     }
@@ -181,11 +183,11 @@ impl Equations {
 
     /// The solution for a penalty; `None` if the points do not determine it.
     pub(super) fn solve(&self, penalty: f64) -> Option<Solution> {
-        let factor = self.penalised(penalty).cholesky()?;
-        let unknowns = factor.solve(&self.right);
+        let factor = factor(self.penalised(penalty))?;
+        let unknowns = solve(&factor, &self.right);
         let inverse = factor.inverse();
         let squares = self.squares(&unknowns);
-        let freedom = inverse.trace_of_product(&self.matrix);
+        let freedom = inverse.dot(&self.matrix);
         Some(Solution { penalty, unknowns, inverse, squares, freedom })
     }
 
@@ -193,29 +195,27 @@ impl Equations {
     /// -(N + P)^-1 P k, and what they change by when pairs of intervals have one curvature.
     pub(super) fn systematic(&self, solution: &Solution) -> [Vec<f64>; 2] {
         let (found, count) = (&solution.unknowns, self.intervals);
-        let mut pull = self.penalised(solution.penalty);
-        pull.subtract(&self.matrix);
-        let pulled: Vec<f64> = (0..found.len()).map(|row| dot(pull.row(row), found)).collect();
-        let taken = (0..count).map(|row| LACKING * dot(solution.inverse.row(row), &pulled)).collect();
+        let full = self.penalised(solution.penalty);
+        let pulled = (&full - &self.matrix) * DVectorView::from_slice(found, found.len());
+        let taken = (&solution.inverse * pulled).iter().take(count).map(|lack| LACKING * lack).collect();
 
         let pair_of = |row: usize| if row < count { row / 2 } else { row - count + count.div_ceil(2) };
         let size = pair_of(found.len() - 1) + 1;
-        let (mut matrix, mut right) = (Symmetric::zero(size), vec![0.0; size]);
-        let full = self.penalised(solution.penalty);
+        let (mut matrix, mut right) = (DMatrix::zeros(size, size), vec![0.0; size]);
         for row in 0..found.len() {
             for column in 0..found.len() {
-                matrix.add_one(pair_of(row), pair_of(column), full.at(row, column));
+                matrix[(pair_of(row), pair_of(column))] += full[(row, column)];
             }
             right[pair_of(row)] += self.right[row];
         }
-        let coarse = matrix.cholesky().map(|factor| factor.solve(&right));
+        let coarse = factor(matrix).map(|factor| solve(&factor, &right));
         let changed = (0..count).map(|row| coarse.as_ref().map_or(0.0, |coarse| coarse[pair_of(row)] - found[row]));
         [taken, changed.collect()]
     }
 
     /// The sum of squared residuals.
     fn squares(&self, unknowns: &[f64]) -> f64 {
-        (self.square - 2.0 * dot(unknowns, &self.right) + self.matrix.quadratic(unknowns)).max(1e-15 * self.square)
+        (self.square - 2.0 * dot(unknowns, &self.right) + quadratic(&self.matrix, unknowns)).max(1e-15 * self.square)
     }
 
     /// The curve of some unknowns, with a parabola added that had been taken off the heights.

@@ -25,12 +25,12 @@ pub(super) fn constrained(equations: &Equations, plain: &Solution, parabola: f64
         return Some(plain.unknowns.clone());
     }
     let matrix = equations.penalised(plain.penalty);
-    let size = matrix.size();
+    let size = matrix.nrows();
     // Unknowns in units of their own make all diagonals one.
-    let units: Vec<f64> = (0..size).map(|index| 1.0 / matrix.at(index, index).sqrt()).collect();
+    let units: Vec<f64> = (0..size).map(|index| 1.0 / matrix[(index, index)].sqrt()).collect();
     let upper = (0..size).flat_map(|column| (0..=column).map(move |row| (row, column)));
     let (at, (across, values)): (Vec<usize>, (Vec<usize>, Vec<f64>)) =
-        upper.map(|(row, column)| (row, (column, matrix.at(row, column) * units[row] * units[column]))).unzip();
+        upper.map(|(row, column)| (row, (column, matrix[(row, column)] * units[row] * units[column]))).unzip();
     let quadratic = CscMatrix::new_from_triplets(size, size, at, across, values);
     // The step from the plain solution, which has no linear term: the digits of the heights do not enter.
     let linear = vec![0.0; size];

@@ -1,11 +1,12 @@
 //! The fit in metres: its table, its covariance, and what is left of the scan.
 
+use nalgebra::DMatrix;
 use stickslip_mechanics::profile::{Profile, Tabulated};
 
 use super::curve::Curve;
 use super::fit::{Fitted, Scaled};
 use super::{Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, noise, programme};
-use crate::linear::{Symmetric, dot};
+use crate::linear::dot;
 
 /// Parabolas added to a curve whose table does not rise, as shares of its mean curvature.
 const LIFTS: [f64; 8] = [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
@@ -31,15 +32,12 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
     let intervals = curvatures.len();
     let variance = fitted.variance * fitted.inflation * bend * bend;
     let systematic = equations.systematic(solution);
-    let mut covariance = Symmetric::zero(intervals);
-    for row in 0..intervals {
-        for column in 0..=row {
-            let off: f64 = systematic.iter().map(|off| off[row] * off[column]).sum();
-            covariance.add(row, column, variance * solution.inverse.at(row, column) + bend * bend * off);
-        }
-    }
-    let apex = Estimate { value: curvatures[0], standard_error: covariance.at(0, 0).sqrt() };
-    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > covariance.at(0, 0))
+    let covariance = DMatrix::from_fn(intervals, intervals, |row, column| {
+        let off: f64 = systematic.iter().map(|off| off[row] * off[column]).sum();
+        variance * solution.inverse[(row, column)] + bend * bend * off
+    });
+    let apex = Estimate { value: curvatures[0], standard_error: covariance[(0, 0)].sqrt() };
+    let radius_of_curvature = (apex.value > 0.0 && apex.value * apex.value > covariance[(0, 0)])
         .then(|| Estimate { value: 1.0 / apex.value, standard_error: apex.standard_error / (apex.value * apex.value) });
     let (raw, left_out) = drawn(fitted, scaled, units);
     let residuals: Vec<f64> =

@@ -3,8 +3,10 @@
 //! The scan is thinned to the median of each cell of a grid, which single spikes do not reach. Its parabola by least squares tells
 //! the way up; then a coarse curve is fitted about each axis of a grid over the scan.
 
+use nalgebra::DMatrix;
+
 use super::normal_equations::{MOST_COLUMNS, Statistics};
-use crate::linear::Symmetric;
+use crate::linear::{add, factor, solve};
 
 /// Points that a median is taken of.
 const CELL: usize = 5;
@@ -44,18 +46,18 @@ pub(super) fn medians(points: &[[f64; 3]], plane: bool) -> Vec<[f64; 3]> {
 /// The curvature of the least-squares parabola with a tilt; zero if the points do not determine one.
 pub(super) fn curvature(points: &[[f64; 3]], plane: bool) -> f64 {
     let size = if plane { 4 } else { 3 };
-    let mut matrix = Symmetric::zero(size);
+    let mut matrix = DMatrix::zeros(size, size);
     let mut right = vec![0.0; size];
     for &[x, y, z] in points {
         let columns = [1.0, 0.5 * (x * x + y * y), x, y];
         for row in 0..size {
             for column in 0..=row {
-                matrix.add(row, column, columns[row] * columns[column]);
+                add(&mut matrix, row, column, columns[row] * columns[column]);
             }
             right[row] += columns[row] * z;
         }
     }
-    matrix.cholesky().map_or(0.0, |factor| factor.solve(&right)[1])
+    factor(matrix).map_or(0.0, |factor| solve(&factor, &right)[1])
 }
 
 /// The axis about which a coarse curve fits best; `None` if the gap opens outward about none.

@@ -1,35 +1,54 @@
 //! Many Hertzian asperities on one rigid motion, which do not interact elastically: X(y) = sum sqrt(R_i (y - h_i)) over the gaps
 //! h_i < y (Greenwood & Williamson 1966; with friction by Ciavarella 1998 and Jaeger 1998).
 //!
-//! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its digits. Those
-//! whose gaps lie far below the level are summed as the few that [`FarField`] replaces them by: a sum costs the logarithm of
-//! their number.
+//! Each asperity that is touched adds the moments of a parabola from its own tip on, so that a thin ring keeps its digits. The
+//! levels are divided into cells of a few gaps each. Within a cell the asperities whose gaps lie far below it are one series of
+//! X' ([`Local`]), the others are summed one by one; whole cells are summed by a [`MomentTree`]. So a ring costs two cells and the
+//! logarithm of their number.
+//!
+//! One asperity alone is a [`Sphere`].
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::far_field::FarField;
+use super::far_field::{FarField, Local};
+use super::gauss::TWELVE_POINTS;
+use super::moment_tree::MomentTree;
 use super::roots::increasing;
-use super::{DoubleDouble, Error, Moments, Ring, range};
+use super::{DoubleDouble, Error, Moments, Ring, Sphere, range};
 use crate::error::CurveFault;
 
 /// Asperities in the smallest cluster: fewer are summed one by one sooner than as the twenty points of a cluster.
-const LEAF: usize = 32;
+const LEAF: usize = 16;
+
+/// Asperities up to this many are summed one by one, without a look at their clusters.
+const FEW: usize = 8 * LEAF;
 
 /// Asperities that are summed side by side.
 const LANES: usize = 4;
 
 /// A set of asperities; copies share it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asperities(Arc<Set>);
+pub struct Asperities(pub(super) Count);
+
+/// One asperity, or several.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Count {
+    One(Sphere),
+    Many(Arc<Set>),
+}
 
 #[derive(Debug, PartialEq)]
-struct Set {
+pub(super) struct Set {
     /// Gaps above the smallest, m, rising, and sqrt(R), m^(1/2), of each.
     gaps: Vec<f64>,
     roots: Vec<f64>,
     clusters: FarField,
+    /// Cells of levels, rising from zero, with X' by the asperities far below each; their upper ends; and their moments.
+    cells: Vec<Local>,
+    ends: Vec<f64>,
+    whole_cells: MomentTree,
     /// The sum of all sqrt(R), m^(1/2).
     total: f64,
 }
@@ -63,21 +82,57 @@ impl Asperities {
         set.sort_by(|a, b| a.0.total_cmp(&b.0));
         let first = set[0].0;
         let (gaps, roots): (Vec<f64>, Vec<f64>) = set.into_iter().map(|(gap, root)| (gap - first, root)).unzip();
-        let bounds: Vec<f64> = gaps.iter().chain(gaps.last()).copied().collect();
-        let clusters = FarField::new(&bounds, LEAF, |index, add| add(gaps[index], roots[index]));
-        let total = roots.iter().sum();
-        Ok(Asperities(Arc::new(Set { gaps, roots, clusters, total })))
+        Ok(Asperities(match (gaps.len(), radii) {
+            (1, &[radius]) => Count::One(Sphere::of_curvature(radius)),
+            _ => Count::Many(Arc::new(Set::new(gaps, roots))),
+        }))
     }
 
     /// How many.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.0.gaps.len()
+        match &self.0 {
+            Count::One(_) => 1,
+            Count::Many(set) => set.gaps.len(),
+        }
+    }
+}
+
+impl Set {
+    fn new(gaps: Vec<f64>, roots: Vec<f64>) -> Set {
+        let last = gaps[gaps.len() - 1];
+        let bounds: Vec<f64> = gaps.iter().copied().chain([last]).collect();
+        let clusters = FarField::new(&bounds, LEAF, |index, add| add(gaps[index], roots[index]));
+        // Above the last gap cells double in width, until all asperities are one cluster far below.
+        let start = bounds[gaps.len().saturating_sub(LEAF)];
+        let width = last - if start < last { start } else { 0.0 };
+        let beyond: Vec<f64> = std::iter::successors(Some((last, width)), |&(end, width)| {
+            (end < 2.0 * last).then_some((end + width, 2.0 * width))
+        })
+        .map(|(end, _)| end)
+        .collect();
+        let cells = clusters.locals(&beyond, (&gaps, &roots), |distance| 0.5 / distance.sqrt());
+        let total = roots.iter().sum();
+        let ends = cells.iter().map(|cell| cell.high).collect();
+        let mut set = Set { gaps, roots, clusters, cells, ends, whole_cells: MomentTree::new([].into_iter()), total };
+        let whole = |cell: &Local| {
+            let depth = cell.high - cell.low;
+            (set.moments_within(Some(cell), cell.low.into(), cell.high.into(), depth), depth)
+        };
+        let whole_cells: Vec<_> = set.cells.iter().map(whole).collect();
+        set.whole_cells = MomentTree::new(whole_cells.into_iter());
+        set
     }
 
-    /// How many are touched at a level.
-    fn touched(&self, level: DoubleDouble) -> usize {
-        self.0.gaps.partition_point(|&gap| above(level, gap) > 0.0)
+    /// The cell below whose upper end a level lies, if it does not lie above all.
+    fn cell(&self, level: DoubleDouble) -> usize {
+        self.ends.partition_point(|&end| above(level, end) > 0.0)
+    }
+
+    /// How many are touched at a level of a cell.
+    fn touched(&self, cell: Option<&Local>, level: DoubleDouble) -> usize {
+        let Some(cell) = cell else { return self.gaps.len() };
+        cell.items.start + self.gaps[cell.items.clone()].partition_point(|&gap| above(level, gap) > 0.0)
     }
 
     /// The sums over some asperities of what one gives by sqrt(R) and its gap, which is smooth in the gap up to `level` alone.
@@ -87,47 +142,103 @@ impl Asperities {
         level: DoubleDouble,
         term: impl Fn(f64, f64) -> [f64; N],
     ) -> [f64; N] {
-        let set = &*self.0;
         let (mut far, mut near) = ([[0.0; LANES]; N], [[0.0; LANES]; N]);
         let here = level.value();
-        set.clusters.visit_clusters(
-            some,
-            (here, here),
-            &mut |gaps, roots| add(&mut far, gaps, roots, &term),
-            &mut |items| add(&mut near, &set.gaps[items.clone()], &set.roots[items], &term),
-        );
+        let mut each = |items: Range<usize>| add(&mut near, &self.gaps[items.clone()], &self.roots[items], &term);
+        if some.len() <= FEW {
+            each(some);
+        } else {
+            let far = &mut |_, gaps: &[f64; _], roots: &[f64; _]| add(&mut far, gaps, roots, &term);
+            self.clusters.visit_clusters(some, (here, here), far, &mut each);
+        }
         std::array::from_fn(|index| far[index].iter().sum::<f64>() + near[index].iter().sum::<f64>())
     }
 
-    /// The same over all that are touched.
-    fn sum_below<const N: usize>(&self, level: DoubleDouble, term: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
-        self.sum(0..self.touched(level), level, term)
+    /// The moments of a ring within one cell.
+    fn moments_within(&self, cell: Option<&Local>, inner: DoubleDouble, outer: DoubleDouble, depth: f64) -> Moments {
+        if depth <= 0.0 {
+            return Moments::default();
+        }
+        let moments = |root: f64, gap: f64| {
+            // The ring of a parabola x^2 = R (y - h), over sqrt(R): see `sphere.rs`.
+            let top = above(outer, gap);
+            let edge = top.sqrt();
+            let width = depth.min(top) / (edge + above(inner, gap).max(0.0).sqrt());
+            let area = root * width * width;
+            let lever = (4.0 / 3.0 * edge - width) * edge + 0.2 * width * width;
+            [root * width, area * (edge - 1.0 / 3.0 * width), area * width * lever]
+        };
+        // Of those touched within the ring, only the outer level is seen.
+        let first = cell.map_or(0, |cell| cell.first_near);
+        let (before, after) = (self.touched(cell, inner), self.touched(cell, outer));
+        let (old, new) = (self.sum(first..before, inner, moments), self.sum(before..after, outer, moments));
+        let mut sums: [f64; 3] = std::array::from_fn(|index| old[index] + new[index]);
+        if let Some(cell) = cell.filter(|cell| cell.first_near > 0) {
+            let start = above(inner, cell.low);
+            let rates = cell.at(TWELVE_POINTS.map(|(at, _)| start + depth * at));
+            for (rate, (at, weight)) in rates.into_iter().zip(TWELVE_POINTS) {
+                let (mut share, left) = (weight * rate * depth, depth * (1.0 - at));
+                for sum in &mut sums {
+                    *sum += share;
+                    share *= left;
+                }
+            }
+        }
+        let [width, first, second] = sums;
+        Moments { width, first, second }
+    }
+
+    /// The moments of the ring up to a level from a lower one.
+    fn moments_between(&self, inner: DoubleDouble, outer: DoubleDouble, depth: f64) -> Moments {
+        let (first, last) = (self.cell(inner), self.cell(outer));
+        if first == last {
+            return self.moments_within(self.cells.get(last), inner, outer, depth);
+        }
+        let high = DoubleDouble::from(self.ends[first]);
+        let low = DoubleDouble::from(self.ends[last - 1]);
+        let (head, tail) = ((high - inner).value(), (outer - low).value());
+        let (run, run_depth) = self.whole_cells.run(first + 1, last);
+        let inside = Moments::stack(self.moments_within(self.cells.get(first), inner, high, head), run, run_depth);
+        Moments::stack(inside, self.moments_within(self.cells.get(last), low, outer, tail), tail)
+    }
+
+    /// The moments of all levels up to one.
+    fn moments_below(&self, level: DoubleDouble) -> Moments {
+        let last = self.cell(level);
+        let Some(below) = last.checked_sub(1) else {
+            return self.moments_within(self.cells.first(), DoubleDouble::ZERO, level, level.value());
+        };
+        let low = DoubleDouble::from(self.ends[below]);
+        let (depth, (cells, _)) = ((level - low).value(), self.whole_cells.run(0, last));
+        Moments::stack(cells, self.moments_within(self.cells.get(last), low, level, depth), depth)
+    }
+
+    /// X'(y).
+    fn rate_at(&self, level: DoubleDouble) -> f64 {
+        let cell = self.cells.get(self.cell(level));
+        let near = cell.map_or(0, |cell| cell.first_near)..self.touched(cell, level);
+        let [far] = cell.map_or([0.0], |cell| cell.at([above(level, cell.low)]));
+        far + self.sum(near, level, |root, gap| [0.5 * root / above(level, gap).sqrt()])[0]
     }
 
     /// X and its slope.
     fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2] {
-        self.sum_below(level, |root, gap| {
-            let depth = above(level, gap).sqrt();
-            [root * depth, 0.5 * root / depth]
-        })
+        [self.moments_below(level).width, self.rate_at(level)]
     }
 
     /// int_0^y X dy, and X.
     fn load_and_radius(&self, level: DoubleDouble) -> [f64; 2] {
-        self.sum_below(level, |root, gap| {
-            let depth = above(level, gap);
-            let radius = root * depth.sqrt();
-            [radius * depth / 1.5, radius]
-        })
+        let Moments { width, first, .. } = self.moments_below(level);
+        [first, width]
     }
 
     /// The level at which a function that rises from zero, given with its slope, has this value; `least` is no larger.
-    fn invert(&self, target: f64, least: f64, value: impl Fn(&Asperities, DoubleDouble) -> [f64; 2]) -> f64 {
+    fn invert(&self, target: f64, least: f64, value: impl Fn(&Set, DoubleDouble) -> [f64; 2]) -> f64 {
         if target <= 0.0 {
             return 0.0;
         }
         // Between two gaps it is smooth.
-        let gaps = &self.0.gaps;
+        let gaps = &self.gaps;
         let index = gaps.partition_point(|&gap| value(self, gap.into())[0] < target);
         let base = gaps[index.saturating_sub(1)];
         let room = gaps.get(index).map_or(f64::INFINITY, |next| next - base);
@@ -167,40 +278,26 @@ fn above(level: DoubleDouble, gap: f64) -> f64 {
     (whole - gap) + rest
 }
 
-impl CurveFamily for Asperities {
+impl CurveFamily for Arc<Set> {
     fn radius_at(&self, level: DoubleDouble) -> f64 {
-        self.sum_below(level, |root, gap| [root * above(level, gap).sqrt()])[0]
+        self.moments_below(level).width
     }
 
     fn rate(&self, level: f64) -> f64 {
-        self.radius_and_rate(level.into())[1]
+        self.rate_at(level.into())
     }
 
     fn level_of(&self, radius: f64) -> f64 {
-        let least = radius / self.0.total;
-        self.invert(radius, least * least, Asperities::radius_and_rate)
+        let least = radius / self.total;
+        self.invert(radius, least * least, Set::radius_and_rate)
     }
 
     fn moments_of(&self, ring: &Ring) -> Moments {
-        let (inner, outer) = (ring.inner.level, ring.outer.level);
-        let moments = |root: f64, gap: f64| {
-            // The ring of a parabola x^2 = R (y - h), over sqrt(R): see `sphere.rs`.
-            let depth = above(outer, gap);
-            let edge = depth.sqrt();
-            let width = ring.depth.min(depth) / (edge + above(inner, gap).max(0.0).sqrt());
-            let area = root * width * width;
-            let lever = (4.0 / 3.0 * edge - width) * edge + 0.2 * width * width;
-            [root * width, area * (edge - 1.0 / 3.0 * width), area * width * lever]
-        };
-        // Of those touched within the ring, only the outer level is seen.
-        let (before, after) = (self.touched(inner), self.touched(outer));
-        let (old, new) = (self.sum(0..before, inner, moments), self.sum(before..after, outer, moments));
-        let [width, first, second] = std::array::from_fn(|index| old[index] + new[index]);
-        Moments { width, first, second }
+        self.moments_between(ring.inner.level, ring.outer.level, ring.depth)
     }
 
     fn indentation_of(&self, load: f64) -> f64 {
-        let least = (1.5 * load / self.0.total).cbrt();
-        self.invert(load, least * least, Asperities::load_and_radius)
+        let least = (1.5 * load / self.total).cbrt();
+        self.invert(load, least * least, Set::load_and_radius)
     }
 }

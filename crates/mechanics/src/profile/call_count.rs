@@ -34,3 +34,8 @@ pub(crate) fn during<T>(work: impl FnOnce() -> T) -> (Calls, T) {
     let result = work();
     (CALLS.get(), result)
 }
+
+/// The calls since the count began.
+pub(crate) fn so_far() -> Calls {
+    CALLS.get()
+}

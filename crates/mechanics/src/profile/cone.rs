@@ -114,6 +114,10 @@ impl Shape for Cone {
         true
     }
 
+    fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
+        Some(vec![self.rise])
+    }
+
     fn singular_radii(&self) -> Vec<f64> {
         vec![0.0]
     }

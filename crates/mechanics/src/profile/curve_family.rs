@@ -3,7 +3,7 @@
 //! The slip history asks for X and its integrals over rings of levels, which every contact has whose tangential compliance is
 //! proportional to its normal one, point by point of the load curve (Ciavarella 1998; Jaeger 1998). Such a family is to the
 //! rest of the mechanics the body of revolution with the same curve, g the inverse of X, but for what needs a surface: its
-//! kernels and slopes are NaN, and whoever asks for a stress checks [`Profile::has_stress_field`](super::Profile) first.
+//! kernels and slopes are NaN, and whoever asks for a stress checks [`Profile::check_stress_field`](super::Profile) first.
 
 use super::ring_quadrature::{DepthNode, RingNodes};
 use super::shape::{End, Shape};

@@ -2,13 +2,16 @@
 //!
 //! With x = R tanh(sigma): g = R sigma tanh(sigma), all of it smooth for |Im sigma| < pi/2. For the kernel let C = sqrt(R^2 - x^2),
 //! D = sqrt(R^2 - r^2), q = x/C = sinh(sigma) and sinh(s) = sqrt(x^2 - r^2)/C; then cosh(s) = D/C and
-//! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R.
+//! K = int (R/D + asinh(q)/(q cosh s)) ds, of which only the second term needs a quadrature, at any r and up to x = R. Well below
+//! the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
 
 use super::gauss::{Singular, along_strip};
 use super::roots::increasing;
+use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Shape};
+use super::slope_series::MOST_POWERS;
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 
 /// A sphere, not its osculating paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +60,17 @@ impl ExactSphere {
     fn height_square(&self, square: DoubleDouble) -> f64 {
         let whole = self.radius * self.radius;
         (DoubleDouble::square_of(self.radius) - square).value().max(1e-30 * whole)
+    }
+
+    /// (x/R)^2 of a square, where series serve best.
+    fn shallow(&self, square: f64) -> Option<f64> {
+        Some(square / (self.radius * self.radius)).filter(|s| *s < LIMIT)
+    }
+
+    /// The kernel and its slope where series serve best.
+    fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
+        self.shallow(span.outer.value())?;
+        series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
     }
 
     fn place(&self, radius: f64, square: DoubleDouble) -> Place {
@@ -149,10 +163,17 @@ impl Shape for ExactSphere {
     }
 
     fn radius(&self, level: f64) -> f64 {
+        if level < LIMIT * self.radius {
+            return self.radius * shallow_sphere::square_at(level / self.radius).sqrt();
+        }
         self.radius * self.sigma(level).tanh()
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
+        if level.value() < LIMIT * self.radius {
+            let radius = DoubleDouble::from(self.radius);
+            return shallow_sphere::exact_square_at(level.over(radius)) * radius * radius;
+        }
         let sigma = self.sigma(level.value());
         if sigma > 1.0 {
             // By R^2 - x^2 = (R/cosh(sigma))^2: beside the equator the level depends on that difference, of which a rounded x
@@ -184,6 +205,9 @@ impl Shape for ExactSphere {
     }
 
     fn rise(&self, span: &Span) -> f64 {
+        if let Some(outer) = self.shallow(span.outer.value()) {
+            return self.radius * shallow_sphere::rise(outer, span.gap / (self.radius * self.radius));
+        }
         let (inner, outer, turn) = self.ends(span);
         turn * outer.x + inner.sigma * span.width()
     }
@@ -192,6 +216,9 @@ impl Shape for ExactSphere {
         let plain = (ring.outer.square - ring.inner.square).value();
         if plain > 0.5 * ring.outer.square.value() {
             return plain;
+        }
+        if let Some(outer) = self.shallow(ring.outer.square.value()) {
+            return self.radius * self.radius * shallow_sphere::gap_of(outer, depth / self.radius);
         }
         let outer = self.place(ring.outer.radius, ring.outer.square);
         let steepness = |sigma: f64| self.radius * (sigma.tanh() + sigma / sigma.cosh().powi(2));
@@ -212,6 +239,12 @@ impl Shape for ExactSphere {
     }
 
     fn moments(&self, span: &Span) -> Moments {
+        if self.shallow(span.outer.value()).is_some() {
+            let Moments { width, first, second } =
+                shallow_sphere::moments(span.outer_radius / self.radius, span.width() / self.radius);
+            let area = self.radius * self.radius;
+            return Moments { width: width * self.radius, first: first * area, second: second * area * self.radius };
+        }
         let (_, outer, length) = self.ends(span);
         // Poles of the fourth order at i pi/2: keep a margin.
         let singular = Singular { below: 1.1, above: f64::INFINITY };
@@ -235,6 +268,9 @@ impl Shape for ExactSphere {
         if outer <= 0.0 {
             return 0.0;
         }
+        if let Some((kernel, _)) = self.by_series(at, span) {
+            return kernel;
+        }
         let height = self.height_square(at.square).sqrt();
         let square_outer = self.height_square(span.outer);
         let (v_low, gap) = if inner > 0.0 { (inner.sqrt(), span.gap) } else { (0.0, outer) };
@@ -254,11 +290,28 @@ impl Shape for ExactSphere {
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
+        if let Some((_, slope)) = self.by_series(at, span) {
+            return slope;
+        }
         if at.radius > 0.0 || span.inner_radius > 0.0 {
             return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip gamma/t is 2/R to the last digit below 1e-9 R.
         smooth_coordinate::kernel_slope(self, &StressRadius::new(1e-9 * span.outer_radius), span)
+    }
+
+    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        let u = a / self.radius;
+        let (mut series, mut power) = (Vec::new(), u);
+        // By artanh(u) + u/(1 - u^2), up to a share of it that rounding loses.
+        while power > 0.02 * f64::EPSILON * u {
+            if series.len() >= MOST_POWERS {
+                return None;
+            }
+            series.extend([0.0, power + power / (series.len() + 1) as f64]);
+            power *= u * u;
+        }
+        Some(series)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -4,7 +4,7 @@
 //! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
 //! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table
 //! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about). So do the sums over many asperities
-//! (X a level, Y a gap).
+//! (X a level, Y a gap), for which all that is far below an interval of X is gathered, once, in a series over it ([`Local`]).
 
 use std::ops::Range;
 
@@ -20,6 +20,22 @@ struct Cluster {
     high: f64,
     weights: [f64; PROXIES],
     children: Option<(usize, usize)>,
+}
+
+/// How the sources of a cluster count: all alike, or with weights of their own.
+pub(super) enum Share {
+    Even(f64),
+    Uneven(Box<[f64; PROXIES]>),
+}
+
+impl Share {
+    /// The weights of a cluster that has these by itself.
+    pub(super) fn of(&self, weights: &[f64; PROXIES]) -> [f64; PROXIES] {
+        match self {
+            Share::Even(factor) => weights.map(|weight| factor * weight),
+            Share::Uneven(weights) => **weights,
+        }
+    }
 }
 
 /// A tree of clusters over items in rising order.
@@ -138,6 +154,41 @@ impl FarField {
         self.clusters.len() - 1
     }
 
+    /// How each cluster counts where its items do so unevenly: `share` is the factor of a run of items that have one, and
+    /// `sources` gives those of an item that has none.
+    pub(super) fn shares(
+        &self,
+        share: impl Fn(Range<usize>) -> Option<f64>,
+        sources: impl Fn(usize, &mut dyn FnMut(f64, f64)),
+    ) -> Vec<Share> {
+        let mut found: Vec<Share> = Vec::with_capacity(self.clusters.len());
+        // Children come before the cluster that they make up.
+        for cluster in &self.clusters {
+            let Cluster { first, last, low, high, .. } = *cluster;
+            if let Some(factor) = share(first..last) {
+                found.push(Share::Even(factor));
+                continue;
+            }
+            let mut weights = [0.0; PROXIES];
+            let mut add = |at: f64, weight: f64| {
+                for (sum, share) in weights.iter_mut().zip(shares(low, high, at)) {
+                    *sum += weight * share;
+                }
+            };
+            for child in cluster.children.into_iter().flat_map(|(low, high)| [low, high]) {
+                let Cluster { low, high, weights, .. } = &self.clusters[child];
+                for (index, weight) in found[child].of(weights).into_iter().enumerate() {
+                    add(place(*low, *high, index), weight);
+                }
+            }
+            if cluster.children.is_none() {
+                (first..last).for_each(|item| sources(item, &mut add));
+            }
+            found.push(Share::Uneven(Box::new(weights)));
+        }
+        found
+    }
+
     /// Goes through the items `items`, seen from the interval `from`: whole clusters as sources where they are far, by `far`, else
     /// item by item, by `near`.
     pub(super) fn visit(
@@ -147,18 +198,18 @@ impl FarField {
         far: &mut impl FnMut(f64, f64),
         near: &mut impl FnMut(usize),
     ) {
-        let mut each = |places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
+        let mut each = |_, places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
             places.iter().zip(weights).for_each(|(&place, &weight)| far(place, weight));
         };
         self.visit_clusters(items, from, &mut each, &mut |items| items.for_each(&mut *near));
     }
 
-    /// The same by whole clusters, places and weights together, and by runs of items.
+    /// The same by whole clusters, each with its number, places and weights, and by runs of items.
     pub(super) fn visit_clusters(
         &self,
         items: Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        far: &mut impl FnMut(usize, &[f64; PROXIES], &[f64; PROXIES]),
         near: &mut impl FnMut(Range<usize>),
     ) {
         if let Some(root) = self.clusters.len().checked_sub(1) {
@@ -171,7 +222,7 @@ impl FarField {
         index: usize,
         items: &Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        far: &mut impl FnMut(usize, &[f64; PROXIES], &[f64; PROXIES]),
         near: &mut impl FnMut(Range<usize>),
     ) {
         let cluster = &self.clusters[index];
@@ -183,13 +234,101 @@ impl FarField {
         let whole = first == cluster.first && last == cluster.last;
         if whole && distance >= (cluster.high - cluster.low).max(from.1 - from.0) {
             let places = std::array::from_fn(|index| place(cluster.low, cluster.high, index));
-            far(&places, &cluster.weights);
+            far(index, &places, &cluster.weights);
         } else if let Some((low, high)) = cluster.children {
             self.descend(low, items, from, far, near);
             self.descend(high, items, from, far, near);
         } else {
             near(first..last);
         }
+    }
+}
+
+/// What the sources far below an interval add up to there: a Chebyshev series in the place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Local {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// The first source that is not in the series, because it is nearer than the interval is wide.
+    pub(super) first_near: usize,
+    /// The sources within the interval.
+    pub(super) items: Range<usize>,
+    series: [f64; PROXIES],
+}
+
+impl Local {
+    /// Its values this far above the lower end, side by side.
+    pub(super) fn at<const N: usize>(&self, offsets: [f64; N]) -> [f64; N] {
+        // Gaps that agree leave an interval without width, whose lower end is all of it.
+        let half = (0.5 * (self.high - self.low)).max(f64::MIN_POSITIVE);
+        // Clenshaw's recurrence.
+        let twice = offsets.map(|offset| 2.0 * (offset / half - 1.0));
+        let (mut one, mut two) = ([0.0; N], [0.0; N]);
+        for &coefficient in self.series[1..].iter().rev() {
+            for lane in 0..N {
+                (one[lane], two[lane]) = (twice[lane] * one[lane] - two[lane] + coefficient, one[lane]);
+            }
+        }
+        std::array::from_fn(|lane| self.series[0] + 0.5 * twice[lane] * one[lane] - two[lane])
+    }
+}
+
+impl FarField {
+    /// The series over the interval of each of the smallest clusters, and over those between `beyond`, which rise from the last
+    /// of them. The sources have the places and weights of `sources`, one an item, and each adds its weight times `term` of
+    /// the distance.
+    ///
+    /// The sources that are far below a cluster are far below its halves: each takes over the series and adds those that are far
+    /// below itself alone.
+    pub(super) fn locals(&self, beyond: &[f64], sources: (&[f64], &[f64]), term: impl Fn(f64) -> f64) -> Vec<Local> {
+        let step = std::f64::consts::PI / (2 * PROXIES) as f64;
+        let transform: [[f64; PROXIES]; PROXIES] = std::array::from_fn(|order| {
+            let factor = if order == 0 { 1.0 } else { 2.0 } / PROXIES as f64;
+            std::array::from_fn(|point| factor * (step * (order * (2 * point + 1)) as f64).cos())
+        });
+        let narrowed = |wide: Option<&Local>, (low, high): (f64, f64), items: Range<usize>, depth: usize| {
+            let offsets = POINTS.map(|point| 0.5 * (high - low) * (1.0 + point));
+            let mut samples =
+                wide.map_or([0.0; PROXIES], |wide| wide.at(offsets.map(|offset| low - wide.low + offset)));
+            let mut add = |place: f64, weight: f64| {
+                for (sample, offset) in samples.iter_mut().zip(offsets) {
+                    *sample += weight * term(low - place + offset);
+                }
+            };
+            let first_near = self.start(sources.0.partition_point(|&place| low - place > high - low), depth);
+            let mut alone = Vec::new();
+            let added = wide.map_or(0, |wide| wide.first_near)..first_near;
+            self.visit(added, (low, high), &mut add, &mut |item| alone.push(item));
+            alone.into_iter().for_each(|item| add(sources.0[item], sources.1[item]));
+            let dot = |row: &[f64; PROXIES]| row.iter().zip(samples).map(|(share, sample)| share * sample).sum();
+            Local { low, high, first_near, items, series: transform.each_ref().map(dot) }
+        };
+        let (mut locals, mut open) = (Vec::new(), Vec::new());
+        let of = |wide: Option<&Local>, index: usize, depth: usize| {
+            let cluster = &self.clusters[index];
+            (cluster, narrowed(wide, (cluster.low, cluster.high), cluster.first..cluster.last, depth), depth)
+        };
+        open.extend(self.clusters.len().checked_sub(1).map(|root| of(None, root, 0)));
+        while let Some((cluster, local, depth)) = open.pop() {
+            if let Some((low, high)) = cluster.children {
+                open.extend([high, low].map(|child| of(Some(&local), child, depth + 1)));
+            } else {
+                locals.push(local);
+            }
+        }
+        let count = sources.0.len();
+        locals.extend(beyond.windows(2).map(|ends| narrowed(None, (ends[0], ends[1]), count..count, usize::MAX)));
+        locals
+    }
+
+    /// The first item of the cluster, this many halvings below the whole, that holds an item.
+    fn start(&self, item: usize, depth: usize) -> usize {
+        let mut cluster = self.clusters.last();
+        for _ in 0..depth {
+            let Some((low, high)) = cluster.and_then(|cluster| cluster.children) else { break };
+            cluster = self.clusters.get(if item < self.clusters[high].first { low } else { high });
+        }
+        cluster.map_or(0, |cluster| cluster.first)
     }
 }
 

@@ -24,10 +24,17 @@ const TWELVE: [(f64, f64); 6] = [
 ];
 
 /// The rule of twelve points over 0..1, in rising order.
-pub(crate) fn twelve() -> impl Iterator<Item = (f64, f64)> {
-    let upper = TWELVE.iter().rev().map(|(at, weight)| (1.0 - at, *weight));
-    TWELVE.iter().copied().chain(upper)
-}
+pub(crate) const TWELVE_POINTS: [(f64, f64); 12] = {
+    let mut points = [(0.0, 0.0); 12];
+    let mut index = 0;
+    while index < TWELVE.len() {
+        let (at, weight) = TWELVE[index];
+        points[index] = (at, weight);
+        points[11 - index] = (1.0 - at, weight);
+        index += 1;
+    }
+    points
+};
 
 const TWENTY: [(f64, f64); 10] = [
     (0.003_435_700_407_452_537_6, 0.008_807_003_569_576_059),

@@ -1,119 +1,91 @@
 //! The kernels of many adjoining rings, weighted and summed, at many radii.
 //!
-//! For the sphere K(r, x_outer) - K(r, x_inner) = (2/R) (x_outer^2 - x_inner^2)/(s_outer + s_inner), s = sqrt(x^2 - r^2): neighbours
-//! share a root, the differences of the squares are known, and what is left runs over plain arrays, several radii at a time.
+//! A ring that is far from r acts by the points of a Gauss rule over its radii, and many of them as one cluster ([`FarField`]); only near
+//! rings are asked for their kernels. A rule counts as good where it finds the depth of its ring, which is known.
 
-#[cfg(test)]
-use super::call_count;
+use super::far_field::FarField;
 use super::shape::Shape;
-use super::{DoubleDouble, Profile, Ring, StressRadius};
+use super::slope_series::SeriesRings;
+use super::{Profile, Ring, StressRadius, gauss};
 
-/// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
-const LANES: usize = 8;
+/// Fewer kernels than this, rings times radii, are summed sooner than clusters are made.
+pub(super) const FEW: usize = 256;
+/// A ring is near if it is nearer than this, in squares of radii over that of the edge: a smaller difference has lost digits.
+const NEAR: f64 = 1e-3;
 
 impl Profile {
     /// The sum of [`Profile::kernel`] times a weight over rings that adjoin each other from the centre outward, at each of
     /// `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
-        let ring_by_ring = || radii.iter().map(|&radius| self.kernel_sum(rings, &StressRadius::new(radius))).collect();
-        Shape::kernel_sums(self, rings, radii).unwrap_or_else(ring_by_ring)
+        let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
+        if let Some(series) = Shape::slope_series(self, edge).filter(|_| edge > 0.0) {
+            return SeriesRings::new(&series, edge, rings, |ring| self.gap_of(ring)).sums(radii);
+        }
+        Shape::kernel_sums(self, rings, radii).unwrap_or_else(|| {
+            let sources = Sources::new(self, rings, rings.len() * radii.len() > FEW);
+            radii.iter().map(|&radius| sources.sum(&StressRadius::new(radius))).collect()
+        })
+    }
+}
+
+/// Rings of any profile, and what stands for those that are far.
+struct Sources<'a> {
+    profile: &'a Profile,
+    rings: &'a [(Ring, f64)],
+    tree: FarField,
+    /// Whether a ring is in the tree.
+    resolved: Vec<bool>,
+    /// The square of the radius of the edge, m^2.
+    edge: f64,
+}
+
+impl Sources<'_> {
+    /// The sources of rings and their weights, in a tree if there are `many`.
+    fn new<'a>(profile: &'a Profile, rings: &'a [(Ring, f64)], many: bool) -> Sources<'a> {
+        let (top, edge) =
+            rings.last().map_or((0.0, 0.0), |(ring, _)| (ring.outer.level.value(), ring.outer.square.value()));
+        let sources: Vec<Vec<(f64, f64)>> = rings
+            .iter()
+            .map(|(ring, weight)| {
+                let (mut points, mut sum) = (Vec::new(), 0.0);
+                if many {
+                    let (low, high) = (ring.inner.radius, ring.outer.radius);
+                    gauss::Panel::fine(high - low).visit(|below, share| {
+                        let rise = share * profile.slope(high - below);
+                        points.push(((high - below) * (high - below), rise));
+                        sum += rise;
+                    });
+                }
+                let good = sum > 0.0 && (sum - ring.depth).abs() <= 4.0 * f64::EPSILON * top;
+                points.iter_mut().for_each(|(_, rise)| *rise *= weight * ring.depth / sum);
+                if good { points } else { Vec::new() }
+            })
+            .collect();
+        let ends =
+            rings.first().map(|(ring, _)| ring.inner).into_iter().chain(rings.iter().map(|(ring, _)| ring.outer));
+        let bounds: Vec<f64> = ends.filter(|_| many).map(|end| end.square.value()).collect();
+        let tree = FarField::new(&bounds, 1, |index, add| sources[index].iter().for_each(|&(at, rise)| add(at, rise)));
+        let resolved = sources.iter().map(|points| !points.is_empty()).collect();
+        Sources { profile, rings, tree, resolved, edge }
     }
 
-    fn kernel_sum(&self, rings: &[(Ring, f64)], at: &StressRadius) -> f64 {
-        let beyond = rings.iter().rev().take_while(|(ring, _)| ring.outer.radius >= at.radius);
-        beyond.filter(|(_, weight)| weight.abs() > 0.0).map(|(ring, weight)| weight * self.kernel(at, ring)).sum()
-    }
-}
-
-/// Rings of a sphere as arrays, from the edge inward.
-pub(super) struct Roots {
-    /// The outer edge.
-    edge: DoubleDouble,
-    rings: Vec<Inward>,
-}
-
-/// The terms of a ring that do not depend on its outer end.
-struct Inward {
-    /// x_inner^2, m^2, both parts.
-    square: f64,
-    rest: f64,
-    /// (2/R) (x_outer^2 - x_inner^2) times the weight.
-    share: f64,
-    /// (2/R) times the weight.
-    weight: f64,
-}
-
-impl Roots {
-    /// The rings of a sphere of this curvature radius, m, and their weights.
-    pub(super) fn new(curvature_radius: f64, rings: &[(Ring, f64)]) -> Roots {
-        let factor = 2.0 / curvature_radius;
-        let inward = |(ring, weight): &(Ring, f64)| {
-            let (square, rest) = ring.inner.square.parts();
-            // x_outer^2 - x_inner^2 = R (y_outer - y_inner).
-            Inward { square, rest, share: 2.0 * weight * ring.depth, weight: weight * factor }
+    fn sum(&self, at: &StressRadius) -> f64 {
+        let square = at.square.value();
+        let margin = NEAR * self.edge;
+        let first = self.rings.partition_point(|(ring, _)| ring.outer.radius < at.radius);
+        let kernel = |index: usize| {
+            let (ring, weight) = &self.rings[index];
+            if weight.abs() > 0.0 { weight * self.profile.kernel(at, ring) } else { 0.0 }
         };
-        Roots {
-            edge: rings.last().map_or(DoubleDouble::ZERO, |(ring, _)| ring.outer.square),
-            rings: rings.iter().rev().map(inward).collect(),
-        }
+        let alone = (first..self.rings.len()).filter(|&index| !self.resolved[index]);
+        let (mut far, mut near) = (0.0, alone.map(kernel).sum::<f64>());
+        self.tree.visit(
+            first..self.rings.len(),
+            (square, square + margin),
+            &mut |place, rise| far += rise / (place - square).sqrt(),
+            &mut |index| near += if self.resolved[index] { kernel(index) } else { 0.0 },
+        );
+        far + near
     }
-
-    /// The sums at each radius, m.
-    pub(super) fn sums(&self, radii: &[f64]) -> Vec<f64> {
-        let mut sums = Vec::with_capacity(radii.len());
-        for radii in radii.chunks(LANES) {
-            // Lanes left over repeat the first.
-            let mut squares = [DoubleDouble::square_of(radii[0]); LANES];
-            for (square, &radius) in squares.iter_mut().zip(radii) {
-                *square = DoubleDouble::square_of(radius);
-            }
-            sums.extend_from_slice(&self.lanes(&squares)[..radii.len()]);
-        }
-        sums
-    }
-
-    /// The sums at as many radii as there are lanes, whose squares are given.
-    fn lanes(&self, squares: &[DoubleDouble; LANES]) -> [f64; LANES] {
-        let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
-        let least = square.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = square.iter().copied().fold(0.0, f64::max);
-        // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
-        let excess = |lane: usize, one: f64, other: f64| (one - square[lane]) + (other - rest[lane]);
-        let (one, other) = self.edge.parts();
-        let mut reached: [f64; LANES] = std::array::from_fn(|lane| root_of(excess(lane, one, other)));
-        let mut sums = [0.0; LANES];
-        // Most rings lie clearly beyond all the radii of this chunk, and need no choice.
-        let clear = greatest * (1.0 + 4.0 * f64::EPSILON);
-        let (beyond, others) = self.rings.split_at(self.rings.partition_point(|ring| ring.square > clear));
-        for ring in beyond {
-            #[cfg(test)]
-            call_count::add(|calls| &mut calls.kernel);
-            let root: [f64; LANES] = std::array::from_fn(|lane| excess(lane, ring.square, ring.rest).sqrt());
-            for lane in 0..LANES {
-                sums[lane] += ring.share / (reached[lane] + root[lane]);
-            }
-            reached = root;
-        }
-        for ring in others {
-            #[cfg(test)]
-            call_count::add(|calls| &mut calls.kernel);
-            let root: [f64; LANES] = std::array::from_fn(|lane| root_of(excess(lane, ring.square, ring.rest)));
-            for lane in 0..LANES {
-                let whole = ring.share / (reached[lane] + root[lane]);
-                let cut = ring.weight * reached[lane];
-                sums[lane] += if root[lane] > 0.0 { whole } else { cut };
-            }
-            reached = root;
-            if ring.square < least {
-                break;
-            }
-        }
-        sums
-    }
-}
-
-/// The root of what is positive, and zero of all else.
-fn root_of(square: f64) -> f64 {
-    (if square > 0.0 { square } else { 0.0 }).sqrt()
 }

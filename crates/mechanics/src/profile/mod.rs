@@ -22,6 +22,7 @@ mod flat_punch;
 pub(super) mod gauss;
 mod kernel_sums;
 mod load_curve;
+mod logarithm;
 mod moment_tree;
 mod power_law;
 mod ring;
@@ -29,7 +30,10 @@ pub(super) mod ring_quadrature;
 mod roots;
 mod rounded_cone;
 mod rounded_punch;
+mod series_kernel;
+mod shallow_sphere;
 mod shape;
+mod slope_series;
 mod smooth_coordinate;
 mod smooth_interval;
 mod span;
@@ -49,6 +53,7 @@ pub use tabulated::{InterpolationError, Tabulated};
 use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::range;
+use asperities::Count;
 use ring_quadrature::RingNodes;
 use shape::{End, Shape};
 use span::Span;
@@ -183,7 +188,8 @@ macro_rules! profile {
                     $(Profile::$Family($dollar shape) => $dollar value,)+
                     Profile::Tabulated($dollar shape) => $dollar value,
                     Profile::Sum($dollar shape) => $dollar value,
-                    Profile::Asperities($dollar shape) => $dollar value,
+                    Profile::Asperities(Asperities(Count::One($dollar shape))) => $dollar value,
+                    Profile::Asperities(Asperities(Count::Many($dollar shape))) => $dollar value,
                     Profile::LoadCurve($dollar shape) => $dollar value,
                     Profile::Ellipsoid(Ellipsoid { ball: $dollar shape, .. }) => $dollar value,
                 }
@@ -198,7 +204,21 @@ impl Profile {
     /// kernels, slopes and stresses of such a profile are those of a body of revolution with the same curve, or NaN.
     #[must_use]
     pub fn has_stress_field(&self) -> bool {
-        !matches!(self, Profile::Asperities(_) | Profile::LoadCurve(_) | Profile::Ellipsoid(_))
+        self.check_stress_field().is_ok()
+    }
+
+    /// Refuses a stress of a profile without [`Profile::has_stress_field`].
+    ///
+    /// # Errors
+    /// [`Error::NoStressField`] with the type of the profile.
+    pub fn check_stress_field(&self) -> Result<(), Error> {
+        let profile = match self {
+            Profile::Asperities(_) => "asperities",
+            Profile::LoadCurve(_) => "load_curve",
+            Profile::Ellipsoid(_) => "ellipsoid",
+            _ => return Ok(()),
+        };
+        Err(Error::NoStressField { profile })
     }
 
     /// g(x), m, for a radius x >= 0, m.
@@ -238,6 +258,11 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.moments);
         each!(self, shape => shape.ring_moments(ring))
+    }
+
+    /// Difference of the squares of the radii of a ring, m^2, to round-off of itself.
+    fn gap_of(&self, ring: &Ring) -> f64 {
+        each!(self, shape => shape.span(ring).gap)
     }
 
     /// The levels of a ring that lie on a vertical edge, m.
@@ -448,6 +473,7 @@ dispatch! {
     power() -> f64;
     kernel(at: &StressRadius, span: &Span) -> f64;
     kernel_slope(at: &StressRadius, span: &Span) -> f64;
+    slope_series(a: f64) -> Option<Vec<f64>>;
     kernel_sums(rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>>;
     surface_slope(r: f64) -> f64;
     curvature_radius() -> Option<f64>;

@@ -1,12 +1,12 @@
 //! Power law f = c r^n: g = B x^n with B = kappa c, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2), int x dg = n B x^(n+1)/(n + 1).
 //!
-//! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by I_m = [x^(m-1) v]/m + (1 - 1/m) r^2 I_(m-2), a sum of
+//! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by a recursion ([`slope_series`](super::slope_series)) of
 //! positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
 use super::gauss::Singular;
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
-use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
+use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
 const MOST_TERMS: u16 = 24;
@@ -56,26 +56,9 @@ impl PowerLaw {
         self.slope(span.outer_radius) * share
     }
 
-    /// The kernel by recursion, all radii in units of the outer one.
-    fn by_recursion(&self, order: u16, at: &StressRadius, span: &Span) -> f64 {
-        let (inner, outer) = span.excess(at.square);
-        let unit = span.outer_radius;
-        let (x, v, gap) =
-            if inner > 0.0 { (span.inner_radius, inner.sqrt(), span.gap) } else { (at.radius, 0.0, outer) };
-        let (x, v, v_outer, gap) = (x / unit, v / unit, outer.sqrt() / unit, gap / (unit * unit));
-        let square = at.square.value() / (unit * unit);
-        let (dx, dv) = (gap / (1.0 + x), gap / (v + v_outer));
-        // m is the power under the integral; x^(m-1) and the difference 1 - x^(m-1) go with it.
-        let (mut m, mut power, mut missing, mut integral) =
-            if order % 2 == 1 { (0, 1.0 / x, -dx / x, ((dx + dv) / (x + v)).ln_1p()) } else { (1, 1.0, 0.0, dv) };
-        while m < order - 1 {
-            m += 2;
-            missing = (missing + dx * power) + (dx * power * x);
-            power *= x * x;
-            let m = f64::from(m);
-            integral = (dv + v * missing + (m - 1.0) * square * integral) / m;
-        }
-        self.slope(unit) * integral
+    /// The kernel and its slope by their closed form, where n is whole.
+    fn by_series(&self, at: &StressRadius, span: &Span) -> Option<(f64, f64)> {
+        series_kernel::kernel_and_slope(&self.slope_series(span.outer_radius)?, at, span)
     }
 }
 
@@ -239,22 +222,24 @@ impl Shape for PowerLaw {
         if outer <= 0.0 {
             return 0.0;
         }
+        if let Some((kernel, _)) = self.by_series(at, span) {
+            return kernel;
+        }
         let far = FAR * at.radius;
         if (inner > 0.0 && span.inner_radius >= far) || at.square.value() <= 0.0 {
             return self.far(span);
         }
         let limit = DoubleDouble::square_of(far);
         let (near, beyond) = (span.below(limit, far), span.above(limit, far));
-        let beyond = beyond.map_or(0.0, |span| self.far(&span));
-        beyond
-            + near.map_or(0.0, |near| match self.order {
-                Some(order) => self.by_recursion(order, at, &near),
-                None => smooth_coordinate::kernel(self, at, &near),
-            })
+        let near = near.map_or(0.0, |span| smooth_coordinate::kernel(self, at, &span));
+        near + beyond.map_or(0.0, |span| self.far(&span))
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         if at.radius > 0.0 || span.inner_radius > 0.0 {
+            if let Some((_, slope)) = self.by_series(at, span) {
+                return slope;
+            }
             return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip: (n/2) B x^(n-3)/(n - 3), where that integral exists.
@@ -271,6 +256,12 @@ impl Shape for PowerLaw {
         } else {
             f64::NEG_INFINITY
         }
+    }
+
+    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        let mut series = vec![0.0; usize::from(self.order?)];
+        *series.last_mut()? = self.slope(a);
+        Some(series)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

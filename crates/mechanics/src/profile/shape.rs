@@ -174,6 +174,12 @@ pub(super) trait Shape {
     /// Its derivative with respect to r^2, from the right.
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64;
 
+    /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that is no series
+    /// of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
+    fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
+        None
+    }
+
     /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than ring by ring.
     fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[f64]) -> Option<Vec<f64>> {
         None

@@ -3,7 +3,6 @@
 //! Everything follows from one difference, x_outer^2 - x_inner^2 = R (y_outer - y_inner), which is never taken between
 //! rounded radii (Hertz 1881; Popov & Hess 2015).
 
-use super::kernel_sums::Roots;
 use super::shape::Shape;
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -20,6 +19,12 @@ impl Sphere {
     /// [`Error::OutOfRange`] by [`range::RADIUS`].
     pub fn new(radius: f64) -> Result<Sphere, Error> {
         Ok(Sphere { curvature_radius: range::RADIUS.check(radius)? })
+    }
+
+    /// Curvature radius R, m.
+    #[must_use]
+    pub fn curvature_radius(&self) -> f64 {
+        self.curvature_radius
     }
 
     /// The same where R follows from other, checked numbers.
@@ -109,7 +114,7 @@ impl Shape for Sphere {
         true
     }
 
-    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
-        Some(Roots::new(self.curvature_radius, rings).sums(radii))
+    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        Some(vec![0.0, self.slope(a)])
     }
 }

@@ -264,6 +264,15 @@ impl Shape for Sum {
         self.total(|part| Shape::kernel_slope(part, at, span))
     }
 
+    fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
+        self.parts.iter().try_fold(Vec::new(), |mut sum, part| {
+            let series = part.slope_series(a)?;
+            sum.resize(sum.len().max(series.len()), 0.0);
+            sum.iter_mut().zip(series).for_each(|(sum, c)| *sum += c);
+            Some(sum)
+        })
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         self.total(|part| part.surface_slope(r))
     }

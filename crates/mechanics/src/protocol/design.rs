@@ -171,9 +171,7 @@ pub fn design(
     keep_going: &dyn Fn() -> bool,
 ) -> Result<Design, Error> {
     let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
-    if !contact.profile.has_stress_field() {
-        return Err(Error::NoStressField);
-    }
+    contact.profile.check_stress_field()?;
     if contact.friction <= 0.0 {
         return Err(above(Quantity::Friction, contact.friction, "nothing holds without friction"));
     }

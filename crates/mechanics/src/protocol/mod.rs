@@ -88,9 +88,7 @@ pub struct EqualPeaks {
 /// # Ok::<(), Error>(())
 /// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
-    if !contact.profile.has_stress_field() {
-        return Err(Error::NoStressField);
-    }
+    contact.profile.check_stress_field()?;
     let edge = contact.contact_radius();
     let singular = outermost_singular(&contact.profile, edge);
     let least = singular.unwrap_or(0.0);

@@ -89,9 +89,7 @@ impl Springs {
     /// ```
     pub fn new(setup: Setup, count: usize, reach: f64) -> Result<Springs, Error> {
         range::SPRING_COUNT.check(count as f64)?;
-        if !setup.profile.has_stress_field() {
-            return Err(Error::NoStressField);
-        }
+        setup.profile.check_stress_field()?;
         let mut fine = Springs::one_row(setup.clone(), count, reach)?;
         // Kinks fall elsewhere between the springs of each: one of them has a spring at the centre, the other has none.
         let half = count.div_ceil(2).max(2);

@@ -51,7 +51,7 @@ pub(super) struct Mesh {
 /// Gauss's rule over a panel, in the root of t - low if `rooted`.
 fn rule(low: f64, high: f64, rooted: bool) -> impl Iterator<Item = (f64, f64)> {
     let length = high - low;
-    gauss::twelve().map(move |(at, weight)| {
+    gauss::TWELVE_POINTS.into_iter().map(move |(at, weight)| {
         if rooted { (low + length * at * at, 2.0 * length * at * weight) } else { (low + length * at, length * weight) }
     })
 }

@@ -73,9 +73,7 @@ impl Contact {
     /// ```
     pub fn subsurface(&self, side: Side, poisson_ratio: f64) -> Result<Subsurface, Error> {
         let poisson = range::POISSON_RATIO.check(poisson_ratio)?;
-        if !self.profile.has_stress_field() {
-            return Err(Error::NoStressField);
-        }
+        self.profile.check_stress_field()?;
         let radius = self.contact_radius();
         let sign = if side == Side::Second { 1.0 } else { -1.0 };
         let (pressed, dragged) = (self.elasticity.e_star(), sign * self.elasticity.g_star() * self.scale());

@@ -81,6 +81,27 @@ fn only_the_ring_at_the_tip_of_a_cone_is_infinite_there() {
 }
 
 #[test]
+fn kernels_of_odd_powers_are_finite_at_the_centre_and_so_are_their_slopes_off_it() {
+    let centre = StressRadius::new(0.0);
+    for n in [3.0, 5.0, 7.0] {
+        let power = Profile::PowerLaw(PowerLaw::new(n, 0.2).unwrap());
+        let whole = ring(&power, DoubleDouble::ZERO, power.level(0.4));
+        // int g'(x)/x dx = n B x^(n-1)/(n - 1).
+        let kernel = power.slope(0.4) / (n - 1.0);
+        let [sum, ..] = power.kernel_sums(&[(whole, 1.0)], &[0.0, 1e-170, 0.1])[..] else { panic!("three sums") };
+        assert!((sum / kernel - 1.0).abs() < 1e-14, "{n}: {sum} {kernel}");
+        // Half of int g'(x)/x^3 dx.
+        let outer = ring(&power, DoubleDouble::from(power.level(0.1)), power.level(0.4));
+        let scale = power.slope(1.0);
+        let slope = 0.5
+            * scale
+            * if n > 3.0 { (0.4_f64.powf(n - 3.0) - 0.1_f64.powf(n - 3.0)) / (n - 3.0) } else { 4_f64.ln() };
+        let found = power.kernel_slope(&centre, &outer);
+        assert!((found / slope - 1.0).abs() < 1e-13, "{n}: {found} {slope}");
+    }
+}
+
+#[test]
 fn power_laws_from_the_smallest_exponent_to_the_largest() {
     // kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2), the g(1) of f = r^n, to 17 digits.
     for (n, kappa) in [

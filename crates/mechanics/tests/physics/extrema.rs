@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::support::{displace, forall, sphere, standing_out};
+use crate::support::{Worst, displace, forall, sphere, standing_out};
 use proptest::prelude::*;
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, FlatPunch, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
@@ -344,5 +344,32 @@ fn a_long_table_is_searched_between_all_its_knots() {
         let peaks = contact.residual().peaks.len();
         let seen = check(&contact, &notes);
         assert!(seen > 0 && seen <= peaks, "{seen} of {peaks}");
+    }
+}
+
+/// Far rings are summed by clusters where there are many radii, and each by its kernel where there is one.
+#[test]
+fn many_radii_at_once_have_the_stress_of_each_alone() {
+    let worst = Worst::new("shear stress at many radii against one by one / (mu times the mean pressure)", 1e-13);
+    let fading: Vec<f64> = falling_amplitude(20, 0.9).collect();
+    // Rings of all widths, beside each other and within each other.
+    let thin: Vec<f64> = (0..16).map(|power| 0.3 + 0.3 * (-0.3_f64).powi(power)).collect();
+    for (profile, special) in profiles() {
+        for path in [&fading, &thin] {
+            let contact = displaced(pressed(profile.clone(), Preload::NormalForce(10.0)), path);
+            let edge = contact.contact_radius();
+            let kinks = contact.residual().peaks.into_iter().map(|peak| peak.radius);
+            let special: Vec<f64> = special.iter().copied().chain(kinks).collect();
+            let radii = dense(&special, edge);
+            let unit = 0.3 * contact.normal_force() / (std::f64::consts::PI * edge * edge);
+            for (radius, found) in radii.iter().zip(contact.shears(&radii)) {
+                let alone = contact.shear(*radius);
+                if alone.is_finite() {
+                    worst.close(found, alone, unit.max(alone.abs()));
+                } else {
+                    assert_eq!(found.to_bits(), alone.to_bits(), "at {radius}");
+                }
+            }
+        }
     }
 }

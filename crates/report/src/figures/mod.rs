@@ -1,11 +1,12 @@
 //! Figures 1 to 5 of Kraft & Pohrt (2016), drawn from the exact solver, figures 6 to 9 about protocols, and figures 10
-//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, and figure 14 about rough contacts: SVG, and CSV with the data.
+//! and 11 about steady cycles, figures 12 and 13 about fretting fatigue, figure 14 about rough contacts, and figure 15 about measured loops: SVG, and CSV with the data.
 //!
 //! All are normalised — displacement by that of gross slip, force by mu F_N, stress by mu p_max, radius by a — so that they
 //! hold for every sphere, whatever the reference contact below is made of.
 
 mod cycles;
 mod fretting;
+mod identifiability;
 mod protocols;
 mod rough;
 
@@ -27,7 +28,7 @@ const POINTS: usize = 400;
 /// The last number of reversals in figure 5.
 const MAX_REVERSALS: usize = 40;
 
-/// Writes `figure1.svg` to `figure14.svg` and the CSV file of each into `dir`, which is created if it does not exist.
+/// Writes `figure1.svg` to `figure15.svg` and the CSV file of each into `dir`, which is created if it does not exist.
 ///
 /// # Errors
 /// An error of the file system; a figure that cannot be drawn is [`io::ErrorKind::Other`].
@@ -48,7 +49,11 @@ pub fn write(dir: &Path) -> io::Result<()> {
         fs::write(dir.join(format!("{name}.svg")), section.svg().map_err(io::Error::other)?)?;
         fs::write(dir.join(format!("{name}.csv")), section_csv(section))?;
     }
-    draw(charts.len() + sections.len() + 1, &rough::chart().map_err(io::Error::other)?)
+    let next = charts.len() + sections.len() + 1;
+    draw(next, &rough::chart().map_err(io::Error::other)?)?;
+    let decades = identifiability::chart().map_err(io::Error::other)?;
+    fs::write(dir.join(format!("figure{}.csv", next + 1)), csv(&decades))?;
+    fs::write(dir.join(format!("figure{}.svg", next + 1)), decades.svg_over_decades().map_err(io::Error::other)?)
 }
 
 fn charts() -> Result<Vec<Chart>, Error> {
@@ -247,6 +252,8 @@ mod tests {
             let kept = std::fs::read_to_string(folder.join(&name)).unwrap();
             assert!(chart.svg().unwrap() == kept, "{name} has changed");
         }
+        let decades = super::identifiability::chart().unwrap().svg_over_decades().unwrap();
+        assert!(decades == std::fs::read_to_string(folder.join("figure15.svg")).unwrap(), "figure15.svg has changed");
         for (number, section) in (12..).zip(super::fretting::sections().unwrap()) {
             let name = format!("figure{number}.svg");
             let kept = std::fs::read(folder.join(&name)).unwrap();

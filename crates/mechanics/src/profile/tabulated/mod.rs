@@ -9,6 +9,7 @@
 
 mod build;
 mod interpolation_error;
+mod kernel_sums;
 mod panel;
 mod spline;
 #[cfg(test)]
@@ -16,6 +17,7 @@ mod tests;
 
 use super::super::error::TableFault;
 use super::far_field::FarField;
+use super::kernel_sums::FEW;
 use super::moment_tree::MomentTree;
 use super::shape::{self, End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
@@ -26,7 +28,7 @@ use panel::Panel;
 use spline::Knot;
 
 /// Panels in the smallest cluster of the kernel's sources.
-const LEAF: usize = 4;
+const LEAF: usize = 1;
 
 /// A tabulated profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,10 +111,7 @@ impl Tabulated {
         bounds.push(last.end().0.value());
         let sources = FarField::new(&bounds, LEAF, |index, add| {
             let panel = &panels[index];
-            gauss::Panel::fine(panel.high - panel.low).visit(|below, weight| {
-                let t = panel.high - below;
-                add(panel.base * panel.base + t * t, weight * panel.slope_at(t));
-            });
+            kernel_sums::sources(panel, panel.low, panel.high, 1.0, add);
         });
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
@@ -377,6 +376,10 @@ impl Shape for Tabulated {
             |panel, span| smooth_coordinate::kernel(panel, at, span),
             |gap, weight| weight / gap.sqrt(),
         )
+    }
+
+    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+        if rings.len() * radii.len() > FEW { kernel_sums::sums(self, rings, radii) } else { None }
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {

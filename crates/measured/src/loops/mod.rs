@@ -1,0 +1,226 @@
+//! A measured loop of force over displacement becomes friction, stiffness and compliance of the machine.
+//!
+//! The forward model is the exact contact at constant load behind a machine spring, of any profile (`loading_curve`, `model`). Its
+//! parameters are fitted by least squares (Levenberg-Marquardt with the exact Jacobian, whose gradients are carried through the turning points;
+//! `least_squares`) after outliers have been found (Huber 1964; `fit`). Turning points come from the record (`reversals`, `record`), and are
+//! parameters themselves where the displacement is noisy. Intervals are those of the profile likelihood, since the linear ones are wrong by a
+//! factor of two for a loop in partial slip (`intervals`).
+//!
+//! A loop that stays in partial slip does not distinguish the compliance of the machine from that of the contact, and a fit that ignores the
+//! machine looks as good as one that does not. So a compliance that is neither sought nor known widens all intervals by all that it could be.
+//!
+//! SI units throughout.
+
+mod error;
+mod fit;
+mod identifiable;
+mod intervals;
+mod least_squares;
+mod loading_curve;
+mod model;
+mod outcome;
+mod parameter;
+mod prepare;
+mod record;
+mod result;
+mod reversals;
+mod sampled_curve;
+mod start;
+#[cfg(test)]
+mod tests;
+
+pub use error::Error;
+pub use parameter::Parameter;
+pub use result::{Curve, Estimate, Note, Residual, Runs};
+
+use loading_curve::LoadingCurve;
+use outcome::{Doubt, fitted_contact, left_over};
+use prepare::prepare;
+use record::Branches;
+use stickslip_mechanics::Contact;
+
+/// Points that a record needs.
+pub const FEWEST_POINTS: usize = 8;
+/// Points of a record that are used: of more, every second, third and so on, and the turning points.
+pub const MOST_POINTS: usize = 4_000;
+/// Turning points, in all records, up to which their places are refined where the displacement is noisy.
+pub const MOST_REFINED_TURNS: usize = 64;
+/// Points that the refinement of one turning point needs.
+const POINTS_PER_TURN: usize = 20;
+/// A turning point found in the noise is known to this many of its standard deviations.
+const TURN_ERROR: f64 = 2.0;
+/// A residual of this share of the force is rounding.
+const ROUNDING: f64 = 1e-9;
+/// A residual of so many times the noise given is none.
+const MORE_THAN_NOISE: f64 = 3.0;
+/// A record with fewer of its points on sticking branches slides nearly always.
+const FEW_STICKING: f64 = 0.1;
+
+/// How a record begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Within a cycle that has been run through before.
+    Steady,
+    /// With the first move of a contact at rest.
+    Virgin,
+}
+
+/// One record of a bench, at constant load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Displacement of the machine, m.
+    pub displacement: Vec<f64>,
+    /// Tangential force, N; positive where it belongs to a positive displacement.
+    pub force: Vec<f64>,
+    /// Times, s, where a drift is sought.
+    pub time: Option<Vec<f64>>,
+    /// Normal force, N; that of the contact where it is left out.
+    pub normal_force: Option<f64>,
+    /// How it begins; steady where it is left out.
+    pub start: Option<Start>,
+    /// By how much it counts; above zero.
+    pub weight: f64,
+}
+
+/// A parameter that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its value.
+    pub value: f64,
+    /// Its standard error; zero where it is held.
+    pub standard_error: f64,
+}
+
+/// Standard deviations of the noise, where they are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// Of the force, N.
+    pub force: Option<f64>,
+    /// Of the displacement, m.
+    pub displacement: Option<f64>,
+}
+
+/// What is to be fitted.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// The contact as it is thought to be, with its load.
+    pub contact: Contact,
+    /// At least one.
+    pub records: Vec<Record>,
+    /// What is sought; at least one, none twice.
+    pub free: Vec<Parameter>,
+    /// What is known better than the definition says, none twice. One with a standard error takes part in the fit.
+    pub known: Vec<Known>,
+    /// The noise of the instruments.
+    pub noise: Noise,
+}
+
+/// The fit.
+#[derive(Clone, Debug)]
+pub struct LoopFit {
+    /// In the order of `free`, then what is known with a standard error.
+    pub estimates: Vec<Estimate>,
+    /// Of the estimates with each other; `None` where one of them is not determined.
+    pub correlations: Vec<Vec<Option<f64>>>,
+    /// What the data determine, by name, and what only in combination.
+    pub identifiable: Vec<String>,
+    /// What is left.
+    pub residual: Residual,
+    /// Standard deviations of force, N, and displacement, m: as given, or as estimated.
+    pub noise: [f64; 2],
+    /// One a record.
+    pub curves: Vec<Curve>,
+    /// What to know of it.
+    pub notes: Vec<Note>,
+    /// The fitted contact.
+    pub contact: Contact,
+}
+
+/// Fits the parameters of a contact and its bench to measured loops.
+///
+/// ```
+/// use stickslip_measured::loops::{Known, Noise, Parameter, Record, Task, fit};
+/// use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+///
+/// let ball = |friction| Setup {
+///     profile: Profile::Sphere(Sphere::new(0.01).unwrap()),
+///     elasticity: Elasticity::effective(1.15e11, 8.5e10).unwrap(),
+///     friction,
+///     preload: Preload::NormalForce(10.0),
+/// };
+/// // A loop of a contact with another friction than we think.
+/// let mut truth = Contact::new(ball(0.4))?;
+/// let (mut displacement, mut force) = (vec![], vec![]);
+/// for step in 0..500 {
+///     let place = 2.5e-7 * (0.05 * f64::from(step)).sin();
+///     truth.apply(&Move { tangential: Some(Tangential::Displacement(place)), ..Move::default() })?;
+///     displacement.push(place);
+///     force.push(truth.force());
+/// }
+/// let record = Record { displacement, force, time: None, normal_force: None, start: None, weight: 1.0 };
+/// let stiff = Known { parameter: Parameter::MachineCompliance, value: 0.0, standard_error: 0.0 };
+/// let task = Task {
+///     contact: Contact::new(ball(0.3))?,
+///     records: vec![Record { start: Some(stickslip_measured::loops::Start::Virgin), ..record }],
+///     free: vec![Parameter::Friction, Parameter::GStar],
+///     known: vec![stiff],
+///     noise: Noise::default(),
+/// };
+/// let found = fit(&task, &|| true).unwrap();
+/// assert!((found.estimates[0].value - 0.4).abs() < 1e-9);
+/// # Ok::<(), stickslip_mechanics::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error`], which says what the records lack; [`Error::Interrupted`] as soon as `proceed` says no.
+pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
+    let data = prepare(task, false)?;
+    let fitted = fit::fit(&data, task.noise.force, proceed)?;
+    let compliance = Parameter::MachineCompliance;
+    let compliance_unknown =
+        !task.free.contains(&compliance) && !task.known.iter().any(|known| known.parameter == compliance);
+    let mut doubt = Doubt::new(task, &data, &fitted, proceed)?;
+    if compliance_unknown {
+        // What a compliance that may be anything leaves open is open.
+        let wider = prepare(task, true)?;
+        let free = fit::fit(&wider, task.noise.force, proceed)?;
+        let own = std::mem::replace(&mut doubt, Doubt::new(task, &wider, &free, proceed)?);
+        for (estimate, own) in doubt.estimates.iter_mut().zip(&own.estimates) {
+            let ([low, high], value) = (estimate.interval, own.value);
+            let interval = [low.map(|low| low.min(value)), high.map(|high| high.max(value))];
+            *estimate = Estimate { interval, value, at_bound: own.at_bound, ..*estimate };
+        }
+    }
+    let Doubt { estimates, correlations, identifiable } = doubt;
+    let (curves, residual, sticking) = left_over(&data, &fitted)?;
+    let bench = data.layout.bench(&fitted.values);
+    let displacement_noise = data.records.iter().map(|record| record.noise).fold(0.0, f64::max);
+    let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
+    let noisy = task.noise.force.is_some_and(|noise| noise > 0.0 && residual.rms > MORE_THAN_NOISE * noise);
+    let steady_offset = task.free.contains(&Parameter::DisplacementOffset)
+        && data.layout.column(Parameter::DisplacementOffset).is_none();
+    let slides = |record: &Branches| {
+        let half = 0.5 * (record.extremes[0].displacement - record.extremes[1].displacement);
+        half >= LoadingCurve::new(&record.contact, &record.curve, bench).gross_slip()
+    };
+    let notes = [
+        (compliance_unknown, Note::MachineComplianceUnknown),
+        (!data.records.iter().any(slides), Note::PartialSlipOnly),
+        (sticking < FEW_STICKING, Note::BeyondGrossSlip),
+        (steady_offset || task.records.iter().any(|record| record.start.is_none()), Note::FirstBranchUnknown),
+        (noisy || (!residual.runs.random && residual.rms > ROUNDING * force), Note::NotCoulomb),
+    ];
+    Ok(LoopFit {
+        estimates,
+        correlations,
+        identifiable,
+        residual,
+        noise: [fitted.force_noise, displacement_noise],
+        curves,
+        notes: notes.into_iter().filter_map(|(applies, note)| applies.then_some(note)).collect(),
+        // A search that has run away has not found anything.
+        contact: fitted_contact(task, &data, &fitted).map_err(|_| Error::NoSolution)?,
+    })
+}

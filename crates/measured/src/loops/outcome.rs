@@ -1,0 +1,130 @@
+//! From the minimum to what is reported: estimates, residual, curves, the fitted contact.
+
+use stickslip_mechanics::profile::Profile;
+use stickslip_mechanics::{Contact, Elasticity, Preload, Setup, Sphere};
+
+use super::fit::Fitted;
+use super::identifiable::identifiable;
+use super::intervals::{Covariance, interval};
+use super::least_squares::Data;
+use super::{Curve, Error, Estimate, Parameter, Residual, Runs, Task};
+
+/// Standard deviations by which too few runs are no accident.
+const TOO_FEW_RUNS: f64 = 4.0;
+
+/// How surely the values of a fit are known.
+pub(super) struct Doubt {
+    pub(super) estimates: Vec<Estimate>,
+    pub(super) correlations: Vec<Vec<Option<f64>>>,
+    pub(super) identifiable: Vec<String>,
+}
+
+impl Doubt {
+    pub(super) fn new(task: &Task, data: &Data, fitted: &Fitted, proceed: &dyn Fn() -> bool) -> Result<Doubt, Error> {
+        let covariance = Covariance::new(data, fitted)?;
+        let estimates = estimates(task, data, fitted, &covariance, proceed)?;
+        let column = |estimate: &Estimate| data.layout.column(estimate.parameter);
+        let correlation = |a: &Estimate, b: &Estimate| covariance.correlation(column(a)?, column(b)?);
+        let correlations = estimates.iter().map(|a| estimates.iter().map(|b| correlation(a, b)).collect()).collect();
+        let identifiable = identifiable(data, fitted, &covariance, &estimates);
+        Ok(Doubt { estimates, correlations, identifiable })
+    }
+}
+
+/// The estimates of a task, each with its interval.
+fn estimates(
+    task: &Task,
+    data: &Data,
+    fitted: &Fitted,
+    covariance: &Covariance,
+    proceed: &dyn Fn() -> bool,
+) -> Result<Vec<Estimate>, Error> {
+    let uncertain = task.known.iter().filter(|known| known.standard_error > 0.0).map(|known| known.parameter);
+    let beside = uncertain.filter(|parameter| !task.free.contains(parameter));
+    let mut estimates = Vec::new();
+    for parameter in task.free.iter().copied().chain(beside) {
+        let Some(column) = data.layout.column(parameter) else {
+            let value = middle(data);
+            estimates.push(Estimate { parameter, value, standard_error: None, interval: [None; 2], at_bound: false });
+            continue;
+        };
+        let standard_error = covariance.error(column);
+        let interval = interval(data, fitted, column, covariance, task.noise.force.is_some(), proceed)?;
+        let (value, at_bound) = (fitted.values[column], fitted.bound.contains(&column));
+        estimates.push(Estimate { parameter, value, standard_error, interval, at_bound });
+    }
+    Ok(estimates)
+}
+
+/// The middle of the loops, m: what a steady loop has in place of a displacement offset.
+fn middle(data: &Data) -> f64 {
+    let middles =
+        data.records.iter().map(|record| 0.5 * (record.extremes[0].displacement + record.extremes[1].displacement));
+    middles.sum::<f64>() / data.records.len() as f64
+}
+
+/// The records beside their fit, what is left, and the share of the points at which something sticks.
+pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<(Vec<Curve>, Residual, f64), Error> {
+    let ones = vec![1.0; data.samples()];
+    let rows = data.rows(&fitted.values, &ones);
+    let (mut curves, mut row) = (Vec::new(), 0);
+    let (mut squares, mut largest, mut used) = (0.0, 0.0_f64, 0);
+    let (mut runs, mut expected, mut variance) = (0, 0.0, 0.0);
+    for record in &data.records {
+        let mut curve = Curve::default();
+        let (mut signs, mut changes, mut last) = ([0_u32; 2], 0, None);
+        for sample in &record.samples {
+            let residual = rows.residual[row];
+            let kept = fitted.factors[row] > 0.0;
+            curve.displacement.push(sample.displacement);
+            curve.measured.push(sample.force);
+            curve.fitted.push(sample.force + residual);
+            curve.used.push(kept);
+            curve.branch.push(sample.branch);
+            if kept {
+                squares += residual * residual;
+                largest = largest.max(residual.abs());
+                used += 1;
+                let sign = usize::from(residual > 0.0);
+                signs[sign] += 1;
+                changes += usize::from(last != Some(sign));
+                last = Some(sign);
+            }
+            row += 1;
+        }
+        let [a, b] = signs.map(f64::from);
+        let all = a + b;
+        runs += changes;
+        expected += 2.0 * a * b / all + 1.0;
+        variance += 2.0 * a * b * (2.0 * a * b - all) / (all * all * (all - 1.0).max(1.0));
+        curves.push(curve);
+    }
+    let random = expected - runs as f64 <= TOO_FEW_RUNS * variance.max(0.0).sqrt();
+    let residual = Residual {
+        rms: (squares / f64::from(used).max(1.0)).sqrt(),
+        largest,
+        outliers: 1.0 - f64::from(used) / ones.len() as f64,
+        runs: Runs { count: runs, expected, random },
+    };
+    let sticking = rows.slopes.iter().filter(|&&slope| slope > 0.0).count() as f64 / ones.len() as f64;
+    Ok((curves, residual, sticking))
+}
+
+/// The contact of the definition with the fitted values, at its own load.
+pub(super) fn fitted_contact(task: &Task, data: &Data, fitted: &Fitted) -> Result<Contact, Error> {
+    let value = |parameter| data.layout.value(&fitted.values, parameter);
+    let elasticity = task.contact.elasticity();
+    let (e_star, g_star) = (value(Parameter::EStar), value(Parameter::GStar));
+    let same =
+        [(e_star, elasticity.e_star()), (g_star, elasticity.g_star())].iter().all(|(a, b)| a.to_bits() == b.to_bits());
+    let profile = match task.contact.profile() {
+        Profile::Sphere(_) => Profile::Sphere(Sphere::new(value(Parameter::Radius))?),
+        profile => profile.clone(),
+    };
+    Ok(Contact::new(Setup {
+        profile,
+        elasticity: if same { elasticity } else { Elasticity::effective(e_star, g_star)? },
+        friction: value(Parameter::Friction),
+        preload: Preload::NormalForce(task.contact.normal_force()),
+    })?)
+}

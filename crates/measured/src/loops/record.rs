@@ -1,0 +1,229 @@
+//! A record of the bench as branches between turning points, thinned, and the faults that show before any fit.
+
+use super::reversals::{Reversals, extent, reversals};
+use super::sampled_curve::SampledCurve;
+use super::{Error, FEWEST_POINTS, MOST_POINTS, Record, Start};
+use crate::robust::{median, quantile};
+use stickslip_mechanics::{Contact, range};
+
+/// Forces are compared after this share at either end is left out: outliers.
+const OUTLYING: f64 = 0.02;
+/// The largest friction coefficient that is believed.
+const MOST_FRICTION: f64 = 10.0;
+/// How far the measured stiffness may be from that of the definition before the units are doubted.
+const MOST_STIFFNESS_RATIO: f64 = 200.0;
+/// Standard errors by which a loop that turns the wrong way is known.
+const SURELY: f64 = 5.0;
+/// Below this share of the force a loop has no width.
+const ROUNDING: f64 = 1e-9;
+/// The stiffness after a reversal is that of this share of the branch.
+const FIRST_SHARE: f64 = 0.1;
+
+/// A point of the record, on its branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    pub(super) displacement: f64,
+    pub(super) force: f64,
+    pub(super) time: f64,
+    /// Zero up to the first turning point, and so on.
+    pub(super) branch: usize,
+}
+
+/// Where the displacement turns, or the record ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    pub(super) displacement: f64,
+    pub(super) time: f64,
+    /// Its column among the parameters, where the noise of the displacement leaves its place open.
+    pub(super) column: Option<usize>,
+}
+
+/// A record that can be fitted.
+#[derive(Clone, Debug)]
+pub(super) struct Branches {
+    pub(super) samples: Vec<Sample>,
+    pub(super) turns: Vec<Turn>,
+    pub(super) rising: bool,
+    pub(super) start: Start,
+    pub(super) weight: f64,
+    /// Standard deviation of the noise of the displacement, m.
+    pub(super) noise: f64,
+    /// The highest and the lowest places, ends included.
+    pub(super) extremes: [Turn; 2],
+    /// The virgin contact at the load of the record.
+    pub(super) contact: Contact,
+    /// Its first loading.
+    pub(super) curve: SampledCurve,
+    /// Half the range of the force without its extremes, N.
+    pub(super) half_force: f64,
+    /// The middle of that range, N.
+    pub(super) middle_force: f64,
+    /// Stiffness just after reversals, N/m; zero if no branch shows it.
+    pub(super) stiffness: f64,
+}
+
+impl Branches {
+    /// Finds the branches of a record, and thins it.
+    pub(super) fn new(record: &Record, index: usize, contact: &Contact, noise: Option<f64>) -> Result<Branches, Error> {
+        let Record { displacement, force, time, normal_force, start, weight } = record;
+        let contact = contact.pressed(normal_force.unwrap_or(contact.normal_force()))?;
+        if contact.normal_force() <= 0.0 {
+            return Err(Error::NoContact { record: Some(index) });
+        }
+        if displacement.len() < FEWEST_POINTS || displacement.len() != force.len() {
+            return Err(Error::TooFewPoints { record: index });
+        }
+        let span = |(low, high): (f64, f64)| high - low;
+        if span(extent(displacement)) <= 0.0 {
+            return Err(Error::ConstantDisplacement { record: index });
+        }
+        let low = quantile(&mut force.clone(), OUTLYING);
+        let high = quantile(&mut force.clone(), 1.0 - OUTLYING);
+        if high <= low {
+            return Err(Error::ConstantForce { record: index });
+        }
+        let Reversals { at, rising, noise } = reversals(displacement, noise);
+        if at.is_empty() {
+            return Err(Error::SingleBranch { record: index });
+        }
+        let time = |at: usize| time.as_ref().map_or(0.0, |time| time[at]);
+        let turn = |at: usize| Turn { displacement: displacement[at], time: time(at), column: None };
+        let turns: Vec<Turn> = at
+            .iter()
+            .map(|&at| {
+                if noise > 0.0 { Turn { displacement: vertex(displacement, at, noise), ..turn(at) } } else { turn(at) }
+            })
+            .collect();
+        let ends = [turn(0), turn(displacement.len() - 1)];
+        let by_place = |a: &&Turn, b: &&Turn| a.displacement.total_cmp(&b.displacement);
+        // An end within the noise of a turning point is not beyond it.
+        let beyond = |end: &Turn, sign: f64| {
+            turns.iter().all(|turn| sign * (end.displacement - turn.displacement) > 3.0 * noise)
+        };
+        let highest = turns.iter().chain(ends.iter().filter(|end| beyond(end, 1.0))).max_by(by_place);
+        let lowest = turns.iter().chain(ends.iter().filter(|end| beyond(end, -1.0))).min_by(by_place);
+        let (Some(&highest), Some(&lowest)) = (highest, lowest) else {
+            return Err(Error::SingleBranch { record: index });
+        };
+        let every = displacement.len().div_ceil(MOST_POINTS);
+        let mut samples = Vec::with_capacity(displacement.len() / every + at.len() + 1);
+        let mut branch = 0;
+        for (place, (&displacement, &force)) in displacement.iter().zip(force).enumerate() {
+            let turning = at.get(branch) == Some(&place);
+            if place % every == 0 || turning {
+                samples.push(Sample { displacement, force, time: time(place), branch });
+            }
+            branch += usize::from(turning);
+        }
+        let mut found = Branches {
+            samples,
+            turns,
+            rising,
+            start: start.unwrap_or(Start::Steady),
+            weight: *weight,
+            noise,
+            extremes: [highest, lowest],
+            curve: SampledCurve::new(&contact),
+            contact,
+            half_force: 0.5 * (high - low),
+            middle_force: 0.5 * (high + low),
+            stiffness: 0.0,
+        };
+        found.stiffness = found.stiffness_after_reversals();
+        Ok(found)
+    }
+
+    /// 1 where a branch rises, -1 where it falls.
+    pub(super) fn direction(&self, branch: usize) -> f64 {
+        if branch.is_multiple_of(2) == self.rising { 1.0 } else { -1.0 }
+    }
+
+    /// Refuses what no contact does, and what only another unit explains.
+    pub(super) fn check(&self, index: usize, stiffness_free: bool) -> Result<(), Error> {
+        let normal_force = self.contact.normal_force();
+        if self.half_force > MOST_FRICTION * normal_force {
+            return Err(Error::ForceUnit { record: index, force: self.half_force, normal_force });
+        }
+        if let Some(difference) = self.wrong_way() {
+            return Err(Error::WrongWay { record: index, difference });
+        }
+        let (measured, expected) = (self.stiffness, stiffness(&self.contact));
+        let doubtful = measured > MOST_STIFFNESS_RATIO * expected || measured < expected / MOST_STIFFNESS_RATIO;
+        if stiffness_free && measured > 0.0 && doubtful {
+            return Err(Error::StiffnessUnit { record: index, measured, expected });
+        }
+        Ok(())
+    }
+
+    /// By how much the force on the way up is below that on the way down, where that is sure: from the regression of the force on
+    /// displacement and direction.
+    fn wrong_way(&self) -> Option<f64> {
+        let scale = self.extremes[0].displacement - self.extremes[1].displacement;
+        let rows = || self.samples.iter().filter(|sample| sample.branch > 0 || self.start == Start::Steady);
+        let basis =
+            |sample: &Sample| nalgebra::Vector3::new(1.0, sample.displacement / scale, self.direction(sample.branch));
+        let normal: nalgebra::Matrix3<f64> = rows().map(|sample| basis(sample) * basis(sample).transpose()).sum();
+        let right: nalgebra::Vector3<f64> = rows().map(|sample| basis(sample) * sample.force).sum();
+        let inverse = normal.try_inverse()?;
+        let fitted = inverse * right;
+        let squares: f64 = rows().map(|sample| (sample.force - fitted.dot(&basis(sample))).powi(2)).sum();
+        let error = (squares / rows().count().saturating_sub(3).max(1) as f64 * inverse[(2, 2)]).sqrt();
+        (fitted[2] < -SURELY * error - ROUNDING * self.half_force).then_some(-2.0 * fitted[2])
+    }
+
+    /// The median over the branches of the slope of their first tenth.
+    fn stiffness_after_reversals(&self) -> f64 {
+        let mut slopes: Vec<f64> = Vec::new();
+        for branch in 1..=self.turns.len() {
+            let from = self.samples.partition_point(|sample| sample.branch < branch);
+            let to = self.samples.partition_point(|sample| sample.branch <= branch);
+            let points = &self.samples[from.saturating_sub(1)..to];
+            let (Some(first), Some(last)) = (points.first(), points.last()) else { continue };
+            let length = last.displacement - first.displacement;
+            let near = |sample: &&Sample| {
+                (sample.displacement - first.displacement).abs()
+                    <= FIRST_SHARE * length.abs().max(2.0 * self.noise / FIRST_SHARE)
+            };
+            let count = points.iter().take_while(near).count().max(3).min(points.len());
+            let mean = |of: fn(&Sample) -> f64| points[..count].iter().map(of).sum::<f64>() / count as f64;
+            let (u, f) = (mean(|sample| sample.displacement), mean(|sample| sample.force));
+            let (mut product, mut square) = (0.0, 0.0);
+            for sample in &points[..count] {
+                product += (sample.displacement - u) * (sample.force - f);
+                square += (sample.displacement - u).powi(2);
+            }
+            if square > 0.0 {
+                slopes.push(product / square);
+            }
+        }
+        median(&mut slopes).max(0.0)
+    }
+}
+
+/// The stiffness of a contact as defined, 2 G* a, N/m.
+pub(super) fn stiffness(contact: &Contact) -> f64 {
+    2.0 * contact.elasticity().g_star() * contact.contact_radius()
+}
+
+/// The extreme of a noisy displacement: the vertex of the parabola through the points about it that are within the noise.
+fn vertex(displacement: &[f64], at: usize, noise: f64) -> f64 {
+    let near = |index: &usize| (displacement[*index] - displacement[at]).abs() < 8.0 * noise;
+    let first = (0..at).rev().take_while(near).last().unwrap_or(at);
+    let last = (at..displacement.len()).take_while(near).last().unwrap_or(at);
+    let reach = (at - first).max(last - at).max(1) as f64;
+    let basis = |index: usize| {
+        let x = (index as f64 - at as f64) / reach;
+        nalgebra::Vector3::new(1.0, x, x * x)
+    };
+    let normal: nalgebra::Matrix3<f64> = (first..=last).map(|index| basis(index) * basis(index).transpose()).sum();
+    let right: nalgebra::Vector3<f64> = (first..=last).map(|index| basis(index) * displacement[index]).sum();
+    let Some(inverse) = normal.try_inverse() else { return displacement[at] };
+    let fitted = inverse * right;
+    let vertex = fitted[0] - 0.25 * fitted[1] * fitted[1] / fitted[2];
+    if (vertex - displacement[at]).abs() <= 8.0 * noise { vertex } else { displacement[at] }
+}
+
+/// A positive friction that the mechanics accepts.
+pub(super) fn clamp_friction(friction: f64) -> f64 {
+    friction.clamp(range::MIN_POSITIVE_FRICTION, range::FRICTION.max)
+}

@@ -1,0 +1,72 @@
+//! What a fit of loops yields.
+
+use super::Parameter;
+
+/// A parameter, with what the data leave of doubt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its value, in [`Parameter::unit`].
+    pub value: f64,
+    /// Standard error; `None` where the data do not determine it.
+    pub standard_error: Option<f64>,
+    /// Both ends of the interval at 95 %, by profile likelihood; `None` where an end is open.
+    pub interval: [Option<f64>; 2],
+    /// Whether the value lies at the bound of what is possible.
+    pub at_bound: bool,
+}
+
+/// How often the residual changes its sign, record by record: as often as noise does?
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Runs {
+    /// Runs of one sign.
+    pub count: usize,
+    /// Runs that noise has on average (Wald & Wolfowitz 1940).
+    pub expected: f64,
+    /// Whether it looks like noise.
+    pub random: bool,
+}
+
+/// What the fit leaves of the forces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// Root of the mean square, N, without outliers.
+    pub rms: f64,
+    /// Largest magnitude, N, without outliers.
+    pub largest: f64,
+    /// Share of the points that were left out.
+    pub outliers: f64,
+    /// Its signs.
+    pub runs: Runs,
+}
+
+/// A record beside its fit, thinned as the fit has used it; one entry a point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// As measured, m.
+    pub displacement: Vec<f64>,
+    /// As measured, N.
+    pub measured: Vec<f64>,
+    /// The force of the fitted contact on its bench, N.
+    pub fitted: Vec<f64>,
+    /// Whether the point was used, and not an outlier.
+    pub used: Vec<bool>,
+    /// Which branch it is on, from zero.
+    pub branch: Vec<usize>,
+}
+
+/// What a user of the result has to know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Note {
+    /// The compliance of the machine is neither sought nor known: the values take it as zero, the intervals as unknown.
+    MachineComplianceUnknown,
+    /// No loop reaches gross slip: the friction coefficient is extrapolated.
+    PartialSlipOnly,
+    /// Nearly all points slide: what they say of the stiffness is little.
+    BeyondGrossSlip,
+    /// How a record began was not said or cannot be known: it is taken as a part of a steady loop, whose middle is its zero.
+    FirstBranchUnknown,
+    /// The residual is no noise: friction is not Coulomb's, or the contact is another one.
+    NotCoulomb,
+}

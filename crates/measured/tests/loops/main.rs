@@ -1,0 +1,6 @@
+//! Loops of contacts that are known: does the fit find them, and does it know how surely?
+
+mod bench;
+mod faults;
+mod recovery;
+mod statistics;

@@ -1,0 +1,109 @@
+//! The weighted kernels of many adjoining rings of a table, at many radii.
+//!
+//! The weight of a panel that lies in one ring is that ring's, and the few panels that rings cut are cut with them. So the tree of
+//! the kernel's sources is weighted once, and each radius goes through it once, whatever the number of rings.
+
+use super::super::far_field::Share;
+use super::SmoothCoordinate as _;
+use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, gauss, smooth_coordinate};
+
+/// The panels of a table by their weights.
+struct WeightedPanels<'a> {
+    table: &'a Tabulated,
+    /// The weight of each panel, zero outside the rings; NaN of one that is cut.
+    weights: Vec<f64>,
+    /// The parts of those that are cut, by their panels.
+    parts: Vec<(usize, Span, f64)>,
+    shares: Vec<Share>,
+}
+
+/// The sums at each radius, m, of the kernels of rings times their weights; `None` with levels at a vertical edge.
+pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+    let panels = WeightedPanels::new(table, rings)?;
+    let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
+    let sum = |&radius: &f64| if radius > edge { 0.0 } else { panels.sum(&StressRadius::new(radius)) };
+    Some(radii.iter().map(sum).collect())
+}
+
+/// The sources of a stretch of a panel, as many times as its weight says.
+pub(super) fn sources(panel: &Panel, low: f64, high: f64, weight: f64, add: &mut dyn FnMut(f64, f64)) {
+    gauss::Panel::fine(high - low).visit(|below, share| {
+        let t = high - below;
+        add(panel.base * panel.base + t * t, weight * share * panel.slope_at(t));
+    });
+}
+
+impl WeightedPanels<'_> {
+    fn new<'a>(table: &'a Tabulated, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
+        let (mut weights, mut parts) = (vec![0.0; table.panels.len()], Vec::new());
+        for (ring, weight) in rings {
+            let span = table.span(ring);
+            if span.edge > 0.0 {
+                return None;
+            }
+            let (low, whole, high) = table.parts(&span);
+            weights[whole].fill(*weight);
+            for (index, span) in [low, high].into_iter().flatten() {
+                weights[index] = f64::NAN;
+                parts.push((index, span, *weight));
+            }
+        }
+        // Where the run of panels of the same weight ends that begins at a panel.
+        let mut ends: Vec<usize> = (1..=weights.len()).collect();
+        for index in (0..weights.len().saturating_sub(1)).rev() {
+            if weights[index].to_bits() == weights[index + 1].to_bits() {
+                ends[index] = ends[index + 1];
+            }
+        }
+        let share = |run: std::ops::Range<usize>| {
+            Some(weights[run.start]).filter(|weight| ends[run.start] >= run.end && !weight.is_nan())
+        };
+        let shares = table.sources.shares(share, |index, add| {
+            let panel = &table.panels[index];
+            for (_, span, weight) in parts_of(&parts, index) {
+                sources(panel, panel.t_of(span.inner), panel.t_of(span.outer), *weight, add);
+            }
+        });
+        Some(WeightedPanels { table, weights, parts, shares })
+    }
+
+    fn sum(&self, at: &StressRadius) -> f64 {
+        let table = self.table;
+        let square = at.square.value();
+        let (mut far, mut near) = (0.0, 0.0);
+        table.sources.visit_clusters(
+            table.find(at.radius)..table.panels.len(),
+            (square, square),
+            &mut |cluster, places, weights| {
+                let weights = self.shares[cluster].of(weights);
+                far += places.iter().zip(weights).map(|(place, weight)| weight / (place - square).sqrt()).sum::<f64>();
+            },
+            &mut |panels| near += panels.map(|panel| self.near(panel, at)).sum::<f64>(),
+        );
+        far + near
+    }
+
+    /// The share of one panel.
+    fn near(&self, index: usize, at: &StressRadius) -> f64 {
+        let panel = &self.table.panels[index];
+        let weight = self.weights[index];
+        if weight.is_nan() {
+            let parts = parts_of(&self.parts, index);
+            parts.iter().map(|(_, span, weight)| weight * smooth_coordinate::kernel(panel, at, span)).sum()
+        } else if weight.abs() > 0.0 {
+            // Its own end is rounded, and 1/sqrt(x^2 - r^2) has no digits to spare beneath it.
+            let next = self.table.panels.get(index + 1);
+            let span = next.map_or_else(|| panel.span(), |next| panel.span_up_to(next));
+            weight * smooth_coordinate::kernel(panel, at, &span)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The parts of a panel, of all in rising order.
+fn parts_of(parts: &[(usize, Span, f64)], index: usize) -> &[(usize, Span, f64)] {
+    let first = parts.partition_point(|part| part.0 < index);
+    let count = parts[first..].partition_point(|part| part.0 == index);
+    &parts[first..first + count]
+}

@@ -1,0 +1,188 @@
+//! Measured loops, their units, and the limits of their numbers.
+
+use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::range::{self, MIN_POSITIVE_NORMAL_FORCE, Quantity, Range};
+
+use crate::check::{Faults, JsonPath};
+use crate::limits::{FIT_POINTS, Numbers, limits};
+use crate::profile_fit::LengthUnit;
+use crate::single_key::not_null;
+
+/// A measured number, in its unit.
+const NUMBER: Range = Range { quantity: Quantity::Number, unit: "", min: -1e12, max: 1e12 };
+/// A time.
+const TIME: Range = Range { quantity: Quantity::Number, unit: "s", min: -1e12, max: 1e12 };
+/// The load of a loop: without one there is no friction.
+const LOAD: Range = Range { min: MIN_POSITIVE_NORMAL_FORCE, ..range::NORMAL_FORCE };
+/// The weight of a loop.
+const WEIGHT: Range = Range { quantity: Quantity::Number, unit: "", min: 1e-9, max: 1e9 };
+
+/// Force over displacement as a bench has measured them, point by point in the order of time, under a constant load.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredLoop {
+    /// Displacements.
+    pub displacement: Vec<f64>,
+    /// Tangential forces, as many.
+    pub force: Vec<f64>,
+    /// Times, s, rising, as many; only `drift` needs them.
+    pub time: Option<Vec<f64>>,
+    /// The load, N; that of the contact if it is left out.
+    pub normal_force: Option<f64>,
+    /// How the record begins; as `steady` if it is left out, with a warning.
+    pub start: Option<LoopStart>,
+    /// How much the loop counts beside the others, a pure number.
+    #[schema(default = 1.0)]
+    pub weight: Option<f64>,
+}
+limits!(MeasuredLoop {
+    displacement: Numbers(FIT_POINTS, NUMBER),
+    force: Numbers(FIT_POINTS, NUMBER),
+    time: Numbers(FIT_POINTS, TIME),
+    normal_force: LOAD,
+    weight: WEIGHT,
+});
+
+/// How a record begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LoopStart {
+    /// In a cycle that has been repeated before.
+    Steady,
+    /// With a contact that has never been moved.
+    Virgin,
+}
+
+/// The units of measured loops.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FitUnits {
+    /// Of `displacement`.
+    pub displacement: Option<LengthUnit>,
+    /// Of `force`.
+    pub force: Option<ForceUnit>,
+}
+
+impl FitUnits {
+    /// Those of displacement and force in m and N.
+    #[must_use]
+    pub fn in_si(self) -> [f64; 2] {
+        [self.displacement.unwrap_or_default().metres(), self.force.unwrap_or_default().newtons()]
+    }
+}
+
+/// A unit of force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub enum ForceUnit {
+    /// Newton.
+    #[default]
+    #[serde(rename = "N")]
+    Newton,
+    /// Millinewton.
+    #[serde(rename = "mN")]
+    Millinewton,
+    /// Micronewton.
+    #[serde(rename = "uN")]
+    Micronewton,
+    /// Kilonewton.
+    #[serde(rename = "kN")]
+    Kilonewton,
+}
+
+impl ForceUnit {
+    /// All of them.
+    pub const ALL: [ForceUnit; 4] =
+        [ForceUnit::Newton, ForceUnit::Millinewton, ForceUnit::Micronewton, ForceUnit::Kilonewton];
+
+    /// It in newtons.
+    #[must_use]
+    pub fn newtons(self) -> f64 {
+        match self {
+            ForceUnit::Newton => 1.0,
+            ForceUnit::Millinewton => 1e-3,
+            ForceUnit::Micronewton => 1e-6,
+            ForceUnit::Kilonewton => 1e3,
+        }
+    }
+
+    /// Its symbol.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            ForceUnit::Newton => "N",
+            ForceUnit::Millinewton => "mN",
+            ForceUnit::Micronewton => "uN",
+            ForceUnit::Kilonewton => "kN",
+        }
+    }
+}
+
+/// A checked loop, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopRecord {
+    /// Displacements, m.
+    pub displacement: Vec<f64>,
+    /// Tangential forces, N.
+    pub force: Vec<f64>,
+    /// Times, s, rising.
+    pub time: Option<Vec<f64>>,
+    /// The load, N, if it is not that of the contact.
+    pub normal_force: Option<f64>,
+    /// How it begins, if that is known.
+    pub start: Option<LoopStart>,
+    /// Its weight.
+    pub weight: f64,
+}
+
+impl MeasuredLoop {
+    /// The loop in SI units, `units` being those of displacement and force in m and N.
+    pub(super) fn check(
+        self,
+        units: [f64; 2],
+        drifts: bool,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> Option<LoopRecord> {
+        faults.part(|faults| {
+            self.check_members(at, faults);
+            let points = self.displacement.len();
+            for (name, length) in [("force", Some(self.force.len())), ("time", self.time.as_ref().map(Vec::len))] {
+                if let Some(length) = length.filter(|length| *length != points) {
+                    let detail =
+                        format_args!("has {length} numbers, and `displacement` has {points}: give one for each point");
+                    faults.add(at.member(name), detail);
+                }
+            }
+            match &self.time {
+                Some(time) => {
+                    if let Some(index) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
+                        let detail = "not later than the time before it: points are in the order of time";
+                        faults.add(at.member("time").index(index.saturating_add(1)), detail);
+                    }
+                }
+                None if drifts => faults.add(at.member("time"), "give the time of each point, or leave `drift` out"),
+                None => {}
+            }
+            let scaled = |mut column: Vec<f64>, unit: f64| {
+                column.iter_mut().for_each(|value| *value *= unit);
+                column
+            };
+            let [length, force] = units;
+            LoopRecord {
+                displacement: scaled(self.displacement, length),
+                force: scaled(self.force, force),
+                time: self.time,
+                normal_force: self.normal_force,
+                start: self.start,
+                weight: self.weight.unwrap_or(1.0),
+            }
+        })
+    }
+}

@@ -1,0 +1,143 @@
+//! The body of `POST /fit` and its reply: measured loops become the friction and the stiffness of their contact.
+
+mod data;
+mod parameter;
+mod reply;
+
+pub use data::{FitUnits, ForceUnit, LoopRecord, LoopStart, MeasuredLoop};
+pub use parameter::{FitParameter, KnownValue, KnownValues};
+pub use reply::{FitEstimate, FitReply, FitResidual, FittedLoop, NoiseLevels, SignRuns};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+
+use stickslip_mechanics::Setup;
+use stickslip_mechanics::range::{Quantity, Range};
+
+use crate::check::{Faults, JsonPath};
+use crate::definition::ContactDefinition;
+use crate::limits::{FIT_LOOPS, Items, Keywords, Limit, limits};
+use crate::parse::{Document, Rejection};
+use crate::single_key::not_null;
+
+/// The standard deviation of a measured force.
+const FORCE_NOISE: Range = Range { quantity: Quantity::Force, unit: "N", min: 1e-18, max: 1e18 };
+/// The standard deviation of a measured displacement; zero is an exact one.
+const DISPLACEMENT_NOISE: Range = Range { quantity: Quantity::Displacement, unit: "m", min: 0.0, max: 1e9 };
+
+/// Loops that a bench has measured, and what a fit is to find out from them; the server keeps nothing of it.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FitRequest {
+    /// The contact as far as it is known. What is free begins with its value here.
+    pub contact: ContactDefinition,
+    /// The measured loops, which are fitted together.
+    pub loops: Vec<MeasuredLoop>,
+    /// The units of `displacement` and `force` of the loops: SI if they are left out. Everything else is in SI units.
+    pub units: Option<FitUnits>,
+    /// What the fit determines.
+    pub free: Vec<FitParameter>,
+    /// What is known from elsewhere. With a standard error it takes part in the fit, whether it is free or not.
+    pub known: Option<KnownValues>,
+    /// The noise of the numbers; estimated from the loops if it is left out.
+    pub noise: Option<FitNoise>,
+}
+limits!(FitRequest { loops: Items(FIT_LOOPS), free: Distinct });
+
+/// Standard deviations of the noise of a measurement, in SI units.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FitNoise {
+    /// Of a force, N.
+    pub force: Option<f64>,
+    /// Of a displacement, m.
+    pub displacement: Option<f64>,
+}
+limits!(FitNoise { force: FORCE_NOISE, displacement: DISPLACEMENT_NOISE });
+
+/// At least one name, and none twice.
+struct Distinct;
+
+impl Keywords for Distinct {
+    fn keywords(&self) -> Value {
+        json!({"minItems": 1, "maxItems": FitParameter::ALL.len(), "uniqueItems": true})
+    }
+}
+
+impl Limit<Vec<FitParameter>> for Distinct {
+    fn check(&self, names: &Vec<FitParameter>, at: JsonPath<'_>, faults: &mut Faults) {
+        faults.length(at, names.len(), &(1..=FitParameter::ALL.len()));
+        for (index, name) in names.iter().enumerate() {
+            if names.iter().take(index).any(|other| other == name) {
+                faults.add(at.index(index), format_args!("{} is named twice", name.name()));
+            }
+        }
+    }
+}
+
+/// A checked request, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitTask {
+    /// The contact as it was defined.
+    pub definition: ContactDefinition,
+    /// Its checked setup.
+    pub setup: Setup,
+    /// The loops.
+    pub loops: Vec<LoopRecord>,
+    /// What is to be determined.
+    pub free: Vec<FitParameter>,
+    /// What is known.
+    pub known: KnownValues,
+    /// The noise, where it is known.
+    pub noise: FitNoise,
+    /// The units that the request has named.
+    pub units: FitUnits,
+}
+
+impl FitTask {
+    /// Points of all loops.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.loops.iter().fold(0, |sum, record| sum.saturating_add(record.force.len()))
+    }
+}
+
+impl Document for FitRequest {
+    type Checked = FitTask;
+
+    fn check(self) -> Result<FitTask, Rejection> {
+        let (mut faults, root) = (Faults::default(), JsonPath::Root);
+        let setup = self.contact.check(root.member("contact"), &mut faults);
+        self.check_members(root, &mut faults);
+        let drifts = self.free.contains(&FitParameter::Drift);
+        let units = self.units.unwrap_or_default();
+        let in_si = units.in_si();
+        let at = root.member("loops");
+        let loops: Option<Vec<LoopRecord>> = if FIT_LOOPS.contains(&self.loops.len()) {
+            let loops = self.loops.into_iter().enumerate();
+            loops.map(|(index, one)| one.check(in_si, drifts, at.index(index), &mut faults)).collect()
+        } else {
+            None
+        };
+        let known = self.known.unwrap_or_default();
+        known.check(root.member("known"), &mut faults);
+        let noise = self.noise.unwrap_or_default();
+        noise.check_members(root.member("noise"), &mut faults);
+        let task = setup.zip(loops).map(|(setup, loops)| FitTask {
+            definition: self.contact,
+            setup,
+            loops,
+            free: self.free,
+            known,
+            noise,
+            units,
+        });
+        faults.done(task)
+    }
+}

@@ -1,0 +1,92 @@
+//! The reply of `POST /fit`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_with::apply;
+use utoipa::ToSchema;
+
+use super::FitParameter;
+use crate::definition::ContactDefinition;
+use crate::reply::Warning;
+
+/// What the loops say, and what they leave open.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FitReply {
+    /// What is free, and what is known with a standard error, by name.
+    pub estimates: BTreeMap<FitParameter, FitEstimate>,
+    /// Their correlation coefficients, by both names; `null` where one is not determined.
+    pub correlations: BTreeMap<FitParameter, BTreeMap<FitParameter, Option<f64>>>,
+    /// What the loops determine: names, and combinations of them where one alone is not determined.
+    pub identifiable: Vec<String>,
+    /// What the fit leaves of the measured forces.
+    pub residual: FitResidual,
+    /// The noise: as it was given, else as estimated.
+    pub noise: NoiseLevels,
+    /// The loops as they were fitted, in SI units; long ones are thinned.
+    pub curve: Vec<FittedLoop>,
+    /// The contact with what was fitted, for `POST /contacts` and `/simulate`.
+    pub contact: ContactDefinition,
+    /// Warnings about the fit.
+    pub warnings: Vec<Warning>,
+}
+
+/// A quantity as the loops determine it, in its SI unit.
+#[apply(bool => #[serde(default, skip_serializing_if = "std::ops::Not::not")])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FitEstimate {
+    /// The value of the best fit.
+    pub value: f64,
+    /// Its standard error, if the fit were linear; `null` where it is not determined.
+    pub standard_error: Option<f64>,
+    /// Both ends of the interval that contains it with a probability of 95 %, by profile likelihood; `null` where there is no end.
+    pub interval: [Option<f64>; 2],
+    /// Whether the value is at the end of its range; left out if not.
+    pub at_bound: bool,
+}
+
+/// What a fit leaves of the forces.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FitResidual {
+    /// Root mean square without outliers, N.
+    pub rms: f64,
+    /// The largest magnitude without outliers, N.
+    pub largest: f64,
+    /// Share of the points that were left out because they are far off.
+    pub outliers: f64,
+    /// Whether it looks like noise.
+    pub runs: SignRuns,
+}
+
+/// Stretches of one sign in a residual: few of them are a systematic deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SignRuns {
+    /// How many there are.
+    pub count: usize,
+    /// How many noise would have.
+    pub expected: f64,
+    /// Whether the two agree.
+    pub random: bool,
+}
+
+/// Standard deviations of the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NoiseLevels {
+    /// Of a force, N.
+    pub force: f64,
+    /// Of a displacement, m.
+    pub displacement: f64,
+}
+
+/// A loop as it was fitted, point by point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FittedLoop {
+    /// Measured displacements, m.
+    pub displacement: Vec<f64>,
+    /// The force of the fit, N.
+    pub force: Vec<f64>,
+    /// The measured force, N.
+    pub measured: Vec<f64>,
+    /// Whether the point was used; if not, it is an outlier.
+    pub used: Vec<bool>,
+}

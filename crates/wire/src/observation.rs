@@ -1,0 +1,151 @@
+//! The body of `POST /contacts/{id}/observations` and its reply: a contact follows a bench.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use serde_with::{apply, skip_serializing_none};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+use stickslip_mechanics::{DEFAULT_TOLERANCE, range};
+
+use super::check::{Faults, JsonPath};
+use super::limits::{Items, PATH_MOVES, limits};
+use super::parse::{Document, Rejection};
+use super::path::Plan;
+use super::session::Advance;
+use super::simulate::Steps;
+use super::single_key::not_null;
+
+/// Measurements on a bench, in their order: the contact follows all of them, or none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]}))]
+pub struct ObservationsRequest {
+    /// The measurements.
+    pub observations: Vec<Observation>,
+}
+limits!(ObservationsRequest { observations: Items(PATH_MOVES) });
+
+/// A displacement and the force that was measured there.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default, deserialize_with = "not_null")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}))]
+pub struct Observation {
+    /// Tangential displacement of the indenter, m, to which the contact is moved.
+    pub displacement: f64,
+    /// Measured tangential force, N.
+    pub force: f64,
+    /// When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it.
+    pub at: Option<Timestamp>,
+}
+limits!(Observation { displacement: range::DISPLACEMENT, force: range::FORCE });
+
+/// The result of observations.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ObservationsReply {
+    /// The identifier of the contact.
+    pub id: Uuid,
+    /// The number of the last move, and of moves so far.
+    pub sequence: u64,
+    /// The observations beside what the contact predicts.
+    pub items: Vec<ObservedMove>,
+    /// The coefficient of friction by the last measured cycle; left out as long as the observations do not determine it.
+    pub friction: Option<FrictionEstimate>,
+}
+
+/// An observation beside what the contact predicts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ObservedMove {
+    /// Tangential displacement, m.
+    pub displacement: f64,
+    /// Measured tangential force, N.
+    pub force: f64,
+    /// Tangential force of the contact there, N, with the friction of its definition.
+    pub predicted: f64,
+    /// Measured less predicted force, N.
+    pub innovation: f64,
+}
+
+/// What was measured at the displacement of a move.
+#[skip_serializing_none]
+#[apply(Option => #[serde(default)] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ObservedForce {
+    /// Measured tangential force, N.
+    pub force: f64,
+    /// Tangential force of the contact there, N, with the friction of its definition.
+    pub predicted: f64,
+    /// Measured less predicted force, N.
+    pub innovation: f64,
+    /// When it was measured, if that is known (ISO 8601, UTC).
+    pub at: Option<Timestamp>,
+}
+
+/// A coefficient of friction from a measured cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FrictionEstimate {
+    /// Coefficient of friction μ, a pure number.
+    pub value: f64,
+    /// Its 95 % interval.
+    #[schema(min_items = 2, max_items = 2)]
+    pub interval: [f64; 2],
+    /// The number of the move after which the cycle began.
+    pub from: u64,
+    /// The number of the move that closed it.
+    pub to: u64,
+}
+
+/// The coefficient of friction that the observations of a contact have last determined.
+#[apply(Option => #[serde(skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FrictionReply {
+    /// The identifier of the contact.
+    pub id: Uuid,
+    /// Number of moves so far.
+    pub sequence: u64,
+    /// The estimate; left out as long as the observations do not determine it.
+    pub friction: Option<FrictionEstimate>,
+}
+
+impl ObservedForce {
+    /// A measured force beside the predicted one, N.
+    #[must_use]
+    pub fn new(force: f64, predicted: f64, at: Option<Timestamp>) -> ObservedForce {
+        ObservedForce { force, predicted, innovation: force - predicted, at }
+    }
+}
+
+impl Document for ObservationsRequest {
+    type Checked = Advance;
+
+    fn check(self) -> Result<Advance, Rejection> {
+        let mut faults = Faults::default();
+        let plan = faults.part(|faults| {
+            self.check_members(JsonPath::Root, faults);
+            let at = JsonPath::Root.member("observations");
+            let mut latest = Timestamp::MIN;
+            for (index, observation) in self.observations.iter().enumerate() {
+                let at = at.index(index);
+                observation.check_members(at, faults);
+                let Some(instant) = observation.at else { continue };
+                if i64::try_from(instant.as_nanosecond()).is_err() {
+                    faults.add(at.member("at"), format_args!("{instant} is too far off: 1678 to 2261 can be stored"));
+                } else if instant < latest {
+                    faults.add(at.member("at"), format_args!("{instant} is before {latest} of an earlier measurement"));
+                }
+                latest = latest.max(instant);
+            }
+        });
+        let plan = plan.map(|()| Plan::Observations(self.observations));
+        faults.done(plan.map(|plan| Advance {
+            plan,
+            stress: None,
+            steps: Steps::All,
+            tolerance: DEFAULT_TOLERANCE,
+            relax: None,
+        }))
+    }
+}

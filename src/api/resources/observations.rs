@@ -1,0 +1,61 @@
+//! `/contacts/{id}/observations` and `/contacts/{id}/friction`: a contact follows a bench.
+
+use axum::http::HeaderMap;
+use axum::response::Response;
+
+use crate::api::extract::CheckedBody;
+use crate::api::formats::Format;
+use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
+use crate::api::problem::Problem;
+use crate::api::query::CheckedQuery;
+use crate::api::reply;
+use crate::api::state::TenantApp;
+use stickslip_wire::{FrictionReply, ObservationsReply, ObservationsRequest};
+
+use super::moves::advance;
+
+/// Follow a bench
+///
+/// Moves the contact to each measured displacement, and keeps the measured force beside the force that it predicts: all of
+/// the observations or none.
+#[utoipa::path(
+    post, path = "/contacts/{id}/observations", tag = "contacts", params(ContactPath, IfMatch, IdempotencyKey),
+    request_body(content = ObservationsRequest, examples(
+        ("measured" = (summary = "Two measurements",
+            value = json!({"observations": [{"displacement": 1e-7, "force": 1.21}, {"displacement": 2e-7, "force": 2.04}]}))),
+        ("with its time" = (summary = "With the instant of the measurement",
+            value = json!({"observations": [{"displacement": 1e-7, "force": 1.21, "at": "2026-03-01T12:00:00.25Z"}]})))
+    )),
+    responses((status = 200, description = "The observations beside what the contact predicts", body = ObservationsReply,
+        headers(("ETag" = String, description = "The new sequence in quotes"))))
+)]
+pub async fn follow_bench(
+    TenantApp(app): TenantApp,
+    ContactPath { id }: ContactPath,
+    IfMatch { sequence }: IfMatch,
+    request: CheckedBody<ObservationsRequest>,
+) -> Result<Response, Problem> {
+    advance(&app, id, sequence, request).await
+}
+
+/// Get the measured friction of a contact
+///
+/// The coefficient of friction by the last measured cycle of the contact, from its stored observations.
+#[utoipa::path(
+    get, path = "/contacts/{id}/friction", tag = "contacts", params(ContactPath),
+    responses((status = 200, description = "The estimate, if there is one", body = FrictionReply,
+        headers(("ETag" = String, description = "The sequence in quotes"))))
+)]
+pub async fn get_friction(
+    TenantApp(app): TenantApp,
+    ContactPath { id }: ContactPath,
+    headers: HeaderMap,
+    _: CheckedQuery<()>,
+) -> Result<Response, Problem> {
+    let friction = app.sessions.friction(id).await?;
+    let tag = Format::Columns.tag(&friction.sequence.to_string());
+    if reply::is_current(&headers, &tag) {
+        return Ok(reply::not_modified(&tag));
+    }
+    Ok(reply::at_sequence(friction.sequence, reply::written(&friction)?))
+}

@@ -1,0 +1,48 @@
+// The view in the address: the zoom of plots, the lines switched off, chosen units, and the contact compared with. A link, a
+// bookmark or a reload shows the same again.
+import { el, notice } from "./dom.js";
+
+/** The view that the address has, as it stands behind the identifier of a contact. */
+export const viewQuery = () => location.hash.match(/\?.*$/)?.[0] ?? "";
+
+/** Keeps the address in step with plots, unit choices and the contact compared with, once it has been applied to them. */
+export function viewLink({ plots, units, overlay }) {
+  const given = new URLSearchParams(viewQuery());
+  for (const plot of plots) {
+    const range = given.get(plot.name)?.split(",").map(Number) ?? [];
+    if (range.length === 4 && range.every(Number.isFinite) && range[0] < range[1] && range[2] !== range[3])
+      plot.view = { x: range.slice(0, 2), y: range.slice(2) };
+    for (const name of given.getAll(`${plot.name}-off`)) plot.hidden.add(name);
+  }
+  for (const choice of units) {
+    const wanted = [...choice.options].find((option) => option.text === given.get(choice.id));
+    if (wanted) choice.value = wanted.value;
+  }
+  const write = () => {
+    const now = new URLSearchParams();
+    for (const plot of plots) {
+      if (plot.view) now.set(plot.name, [...plot.view.x, ...plot.view.y].map((value) => Number(value.toPrecision(5))).join());
+      for (const name of plot.hidden) now.append(`${plot.name}-off`, name);
+    }
+    for (const choice of units) if (choice.value !== "") now.set(choice.id, choice.selectedOptions[0].text);
+    if (overlay.other()) now.set("with", overlay.other());
+    const [path] = location.hash.split("?");
+    const query = now.size ? `?${now}` : "";
+    // Not through `location`, which would load the view anew.
+    history.replaceState(null, "", `${path}${query}`);
+  };
+  for (const plot of plots) plot.onlook = write;
+  for (const choice of units) choice.addEventListener("change", write);
+  overlay.oncompare = write;
+  if (given.get("with")) overlay.compare(given.get("with"));
+  return el("button", { type: "button", class: "quiet", id: "copy-link", onclick: copy }, "Copy link");
+}
+
+async function copy() {
+  try {
+    await navigator.clipboard.writeText(location.href);
+    notice("The link to this view is copied.");
+  } catch {
+    notice("The address of this page is the link to this view.");
+  }
+}

@@ -1,0 +1,103 @@
+//! The address of the client behind proxies, as those that are trusted state it.
+
+use std::net::IpAddr;
+use std::str::FromStr;
+
+use axum::http::HeaderMap;
+
+/// The address of the client of a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClientAddress(pub IpAddr);
+
+/// The addresses of proxies: one, or all of a network such as `10.0.0.0/8`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Network {
+    address: IpAddr,
+    /// Leading bits that an address of the network shares with this one.
+    bits: u32,
+}
+
+impl Network {
+    fn contains(&self, address: IpAddr) -> bool {
+        match (self.address, address) {
+            (IpAddr::V4(own), IpAddr::V4(other)) => (own.to_bits() ^ other.to_bits()).leading_zeros() >= self.bits,
+            (IpAddr::V6(own), IpAddr::V6(other)) => (own.to_bits() ^ other.to_bits()).leading_zeros() >= self.bits,
+            _ => false,
+        }
+    }
+}
+
+impl FromStr for Network {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Network, String> {
+        let refused = || "expected an address, or a network such as 10.0.0.0/8".to_owned();
+        let (address, bits) = text.split_once('/').map_or((text, None), |(address, bits)| (address, Some(bits)));
+        let address: IpAddr = address.parse().map_err(|_| refused())?;
+        let all = if address.is_ipv4() { 32 } else { 128 };
+        let bits = bits.map_or(Ok(all), str::parse).map_err(|_| refused())?;
+        if bits > all { Err(refused()) } else { Ok(Network { address, bits }) }
+    }
+}
+
+/// Whether the address is one of these.
+pub fn is_trusted(trusted: &[Network], address: IpAddr) -> bool {
+    trusted.iter().any(|network| network.contains(address))
+}
+
+/// The client of a request that came from `peer`. A proxy appends to `X-Forwarded-For` the address that called it; the last
+/// address that is not one of `trusted` is the client. What stands before it could be made up.
+pub fn client(peer: IpAddr, headers: &HeaderMap, trusted: &[Network]) -> IpAddr {
+    let mut client = peer.to_canonical();
+    if !is_trusted(trusted, client) {
+        return client;
+    }
+    let lines = headers.get_all("x-forwarded-for");
+    let lines: Vec<&str> = lines.iter().map(|line| line.to_str().unwrap_or_default()).collect();
+    for stated in lines.into_iter().rev().flat_map(|line| line.rsplit(',')) {
+        let Ok(stated) = stated.trim().parse::<IpAddr>() else { break };
+        client = stated.to_canonical();
+        if !is_trusted(trusted, client) {
+            break;
+        }
+    }
+    client
+}
+
+#[cfg(test)]
+mod tests {
+    use axum::http::{HeaderMap, HeaderValue};
+
+    use super::{Network, client};
+
+    #[test]
+    fn only_what_trusted_proxies_say_is_believed() {
+        let trusted: Vec<Network> =
+            ["127.0.0.1", "10.0.0.0/8", "fd00::/64"].iter().map(|text| text.parse().unwrap()).collect();
+        for (peer, lines, expected) in [
+            ("192.0.2.1", &["198.51.100.7"][..], "192.0.2.1"),
+            ("127.0.0.1", &[], "127.0.0.1"),
+            ("127.0.0.1", &["198.51.100.7"], "198.51.100.7"),
+            ("::ffff:127.0.0.1", &["198.51.100.7"], "198.51.100.7"),
+            ("127.0.0.1", &["1.1.1.1, 198.51.100.7, 10.1.2.3"], "198.51.100.7"),
+            ("127.0.0.1", &["1.1.1.1", "198.51.100.7, 10.1.2.3"], "198.51.100.7"),
+            ("fd00::1", &["2001:db8::1,fd00::2"], "2001:db8::1"),
+            ("fd00:0:0:1::1", &["2001:db8::1"], "fd00:0:0:1::1"),
+            ("127.0.0.1", &["10.1.2.3"], "10.1.2.3"),
+            ("127.0.0.1", &["198.51.100.7, nonsense"], "127.0.0.1"),
+        ] {
+            let mut headers = HeaderMap::new();
+            for line in lines {
+                headers.append("x-forwarded-for", HeaderValue::from_static(line));
+            }
+            assert_eq!(client(peer.parse().unwrap(), &headers, &trusted).to_string(), expected, "{peer} {lines:?}");
+        }
+    }
+
+    #[test]
+    fn a_network_is_an_address_with_the_bits_that_count() {
+        for bad in ["", "10.0.0.0/33", "10.0.0/8", "fd00::/129", "10.0.0.0/", "10.0.0.0/-1", "proxy"] {
+            assert!(bad.parse::<Network>().is_err(), "{bad}");
+        }
+    }
+}

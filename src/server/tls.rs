@@ -1,0 +1,95 @@
+//! TLS: the certificate and the private key of the service, which can be replaced while it runs.
+
+use std::io;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::{Arc, PoisonError, RwLock};
+
+use rustls::ServerConfig;
+use rustls::crypto::ring;
+use rustls::pki_types::pem::PemObject as _;
+use rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio_rustls::{TlsAcceptor, TlsConnector};
+
+use crate::unverified_tls;
+
+/// The files of a certificate, as PEM.
+#[derive(Clone, Debug)]
+pub struct TlsFiles {
+    /// The certificate, followed by those of its authorities.
+    pub certificate: PathBuf,
+    /// Its private key.
+    pub key: PathBuf,
+}
+
+/// Accepts TLS connections. Clones share the certificate.
+#[derive(Clone)]
+pub struct Tls {
+    files: TlsFiles,
+    // A std lock: held for a clone of the handle, and never across an await.
+    acceptor: Arc<RwLock<TlsAcceptor>>,
+}
+
+impl Tls {
+    /// Reads the files.
+    ///
+    /// # Errors
+    /// Which file cannot be read, or that the key is not that of the certificate.
+    pub fn open(files: TlsFiles) -> Result<Tls, String> {
+        let acceptor = Arc::new(RwLock::new(read(&files)?));
+        Ok(Tls { files, acceptor })
+    }
+
+    /// Reads the files again, for the connections to come.
+    ///
+    /// # Errors
+    /// As [`Tls::open`]; the certificate stays as it was then.
+    pub fn reload(&self) -> Result<(), String> {
+        let acceptor = read(&self.files)?;
+        *self.acceptor.write().unwrap_or_else(PoisonError::into_inner) = acceptor;
+        Ok(())
+    }
+
+    /// What accepts a connection now.
+    pub(crate) fn acceptor(&self) -> TlsAcceptor {
+        self.acceptor.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+fn read(TlsFiles { certificate, key }: &TlsFiles) -> Result<TlsAcceptor, String> {
+    let chain = CertificateDer::pem_file_iter(certificate).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let chain = chain.map_err(|error| format!("no certificate can be read from {}: {error}", certificate.display()))?;
+    let private = PrivateKeyDer::from_pem_file(key);
+    let private = private.map_err(|error| format!("no private key can be read from {}: {error}", key.display()))?;
+    let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
+        .with_safe_default_protocol_versions()
+        .and_then(|config| config.with_no_client_auth().with_single_cert(chain, private));
+    let mut config = config.map_err(|error| {
+        format!("{} and {} are no certificate with its key: {error}", certificate.display(), key.display())
+    })?;
+    config.alpn_protocols = vec![b"http/1.1".to_vec()];
+    Ok(TlsAcceptor::from(Arc::new(config)))
+}
+
+/// Calls `/healthz` of a service with TLS on this machine, whatever its certificate is.
+///
+/// # Errors
+/// Why it is not healthy.
+pub async fn healthz(address: SocketAddr) -> Result<(), String> {
+    let config = Arc::new(unverified_tls::config()?);
+    let call = async {
+        let stream = TcpStream::connect(address).await?;
+        let mut stream = TlsConnector::from(config).connect(address.ip().into(), stream).await?;
+        stream.write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").await?;
+        let mut status = [0; b"HTTP/1.1 200".len()];
+        stream.read_exact(&mut status).await?;
+        Ok::<_, io::Error>(String::from_utf8_lossy(&status).into_owned())
+    };
+    match call.await {
+        Ok(status) if status == "HTTP/1.1 200" => Ok(()),
+        Ok(status) => Err(status),
+        Err(error) => Err(error.to_string()),
+    }
+}

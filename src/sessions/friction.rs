@@ -1,0 +1,205 @@
+//! The friction of a contact by its observations: the newest measured cycle, beside the model with another friction.
+//!
+//! The estimate follows from what is stored, and is kept with the cached session until the next such cycle closes. A cycle
+//! counts if all of its moves are observations under one load. Noise closes cycles too: those with few moves are passed
+//! over, and so are those that are small beside others.
+
+use std::time::Duration;
+
+use uuid::Uuid;
+
+use crate::admission::Stop;
+use crate::simulation::cost;
+use crate::store;
+use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
+use stickslip_mechanics::Contact;
+use stickslip_wire::{FrictionEstimate, FrictionReply, limits};
+
+use super::cycles::CycleLog;
+use super::replay::PAGE;
+use super::{SessionError, Sessions};
+
+/// Moves that a cycle must have.
+const MOVES: u64 = 8;
+/// Newest cycles of so many moves that are compared; of less than half the largest amplitude are small ones.
+const COMPARED: usize = 100;
+/// How long an estimate may take.
+pub(super) const TIME: Duration = Duration::from_secs(5);
+/// Indentations are the same load if they agree to this part.
+const SAME_LOAD: f64 = 1e-12;
+
+/// What a cycle says about the friction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Estimated {
+    /// The move after which it began.
+    from: u64,
+    /// The move that closed it.
+    to: u64,
+    /// Nothing if it was not measured, or does not determine the friction.
+    pub(super) friction: Option<FrictionEstimate>,
+}
+
+/// The measurements of a cycle, as far as they have been read.
+#[derive(Default)]
+struct MeasuredCycle {
+    displacement: Vec<f64>,
+    force: Vec<f64>,
+    /// Indentation, m, and normal force, N.
+    load: Option<(f64, f64)>,
+}
+
+impl MeasuredCycle {
+    /// Adds a move; returns whether it is an observation under the same load as those before.
+    fn push(&mut self, record: &store::Record) -> bool {
+        let Some(measured) = record.measured else { return false };
+        let (indentation, _) = *self.load.get_or_insert((record.state.indentation, record.state.normal_force));
+        self.displacement.push(record.state.displacement);
+        self.force.push(measured.force);
+        (record.state.indentation - indentation).abs() <= SAME_LOAD * indentation.abs()
+    }
+}
+
+impl CycleLog {
+    /// The newest cycle that is not a small one: the move after which it began, and the one that closed it.
+    fn newest_large(&self) -> Option<(u64, u64)> {
+        let long = || self.newest.iter().rev().filter(|cycle| cycle.to - cycle.from >= MOVES).take(COMPARED);
+        let largest = long().map(|cycle| cycle.displacement_amplitude).fold(0.0, f64::max);
+        long().find(|cycle| cycle.displacement_amplitude >= 0.5 * largest).map(|cycle| (cycle.from, cycle.to))
+    }
+}
+
+impl Sessions {
+    /// The friction of a session by its observations.
+    ///
+    /// # Errors
+    /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
+    pub async fn friction(&self, id: Uuid) -> Result<FrictionReply, SessionError> {
+        let (stop, _raised_at_the_end) = self.common.pool.deadline();
+        let stop = stop.child_deadline(TIME);
+        // The lock is held for copies alone, so that the session can move on meanwhile.
+        let (virgin, sequence, known, mut estimated) = {
+            let mut guard = self.lock(id).await?;
+            let live = self.current(&mut guard).await?;
+            (live.contact.virgin(), live.session.sequence, live.cycles.clone(), live.estimated)
+        };
+        let (log, seen) = self.read_states(id, sequence, known, &virgin, &stop).await?;
+        if seen.is_ok() {
+            estimated = self.estimate(id, &log, &virgin, estimated, &[], &stop).await?;
+        }
+        let mut guard = self.lock(id).await?;
+        if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence == sequence) {
+            live.keep_log(&log);
+            live.estimated = estimated;
+        }
+        Ok(FrictionReply { id, sequence, friction: estimated.and_then(|estimated| estimated.friction) })
+    }
+
+    /// What the newest cycle of a log says that is not a small one; `earlier` if it is the same cycle, or if this takes too
+    /// long. `new` are the last moves of the log, which the store does not have yet.
+    pub(super) async fn estimate(
+        &self,
+        id: Uuid,
+        log: &CycleLog,
+        virgin: &Contact,
+        earlier: Option<Estimated>,
+        new: &[store::Record],
+        stop: &Stop,
+    ) -> Result<Option<Estimated>, SessionError> {
+        let Some((from, to)) = log.newest_large() else { return Ok(None) };
+        if let Some(earlier) = earlier.filter(|earlier| (earlier.from, earlier.to) == (from, to)) {
+            return Ok(Some(earlier));
+        }
+        let unknown = Some(Estimated { from, to, friction: None });
+        let moves = usize::try_from(to - from).unwrap_or(usize::MAX);
+        if moves >= *limits::PATH_MOVES.end() {
+            return Ok(unknown);
+        }
+        let _held =
+            self.common.pool.reserve(cost::bytes_of_friction(moves) + PAGE * size_of::<store::Record>()).await?;
+        let mut cycle = MeasuredCycle::default();
+        let stored = to.min(log.sequence - new.len() as u64);
+        let mut read = from.saturating_sub(1);
+        while read < stored {
+            let most = usize::try_from(stored - read).unwrap_or(PAGE).min(PAGE);
+            let page = self.common.store.history(id, read, most).await;
+            let page = page.map_err(|error| self.store_error(id, error))?;
+            if page.is_empty() || !page.iter().all(|record| cycle.push(record)) {
+                return Ok(unknown);
+            }
+            read += page.len() as u64;
+        }
+        let mut rest = new.iter().filter(|record| (from..=to).contains(&record.sequence));
+        if !rest.all(|record| cycle.push(record)) {
+            return Ok(unknown);
+        }
+        let (virgin, stop) = (virgin.clone(), stop.clone());
+        let fit = move || fitted(virgin, cycle, &stop);
+        let friction = self.common.pool.run(cost::of_friction(moves), fit).await?;
+        Ok(match friction {
+            Some(friction) => {
+                let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
+                Some(Estimated { from, to, friction })
+            }
+            None => earlier,
+        })
+    }
+}
+
+/// The coefficient of friction of a cycle with its 95 % interval, if the cycle determines it; nothing at all if the time is up.
+fn fitted(virgin: Contact, cycle: MeasuredCycle, stop: &Stop) -> Option<Option<(f64, [f64; 2])>> {
+    let MeasuredCycle { displacement, force, load } = cycle;
+    let normal_force = load.map(|(_, normal_force)| normal_force);
+    let record = Record { displacement, force, time: None, normal_force, start: Some(Start::Steady), weight: 1.0 };
+    let stiff = Known { parameter: Parameter::MachineCompliance, value: 0.0, standard_error: 0.0 };
+    let task = Task {
+        contact: virgin,
+        records: vec![record],
+        free: vec![Parameter::Friction, Parameter::ForceOffset],
+        known: vec![stiff],
+        noise: Noise::default(),
+    };
+    match fit(&task, &|| stop.check().is_ok()) {
+        Ok(found) => Some(determined(&found)),
+        Err(Error::Interrupted) => None,
+        Err(_) => Some(None),
+    }
+}
+
+/// The friction of a fit with its interval, unless the contact does not slide as a whole or the interval is as wide as that.
+fn determined(found: &LoopFit) -> Option<(f64, [f64; 2])> {
+    let friction = found.estimates.first()?;
+    let [Some(low), Some(high)] = friction.interval else { return None };
+    let slides = !found.notes.contains(&Note::PartialSlipOnly);
+    (slides && !friction.at_bound && high - low <= friction.value).then_some((friction.value, [low, high]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cycle_scan::{Answer, ClosedCycle};
+    use super::CycleLog;
+
+    #[test]
+    fn noise_and_what_was_long_ago_hide_no_cycle() {
+        let newest_large = |cycles: &[(u64, u64, f64)]| {
+            let cycle = |&(from, to, displacement_amplitude)| ClosedCycle {
+                from,
+                to,
+                displacement_amplitude,
+                answer: Answer::Steady { indentation: 1.0 },
+            };
+            let mut log = CycleLog::default();
+            log.newest.extend(cycles.iter().map(cycle));
+            log.newest_large()
+        };
+        assert_eq!(newest_large(&[]), None);
+        // Of few moves, or small beside others.
+        assert_eq!(newest_large(&[(1, 4, 9.0)]), None);
+        assert_eq!(newest_large(&[(1, 30, 1.0), (30, 60, 0.6), (45, 55, 0.2), (60, 63, 2.0)]), Some((30, 60)));
+        // After a hundred smaller ones a larger one is forgotten.
+        let later = |count: u64| (1..=count).map(|index| (30 * index, 30 * index + 30, 0.4));
+        let cycles: Vec<_> = std::iter::once((1, 30, 1.0)).chain(later(99)).collect();
+        assert_eq!(newest_large(&cycles), Some((1, 30)));
+        let cycles: Vec<_> = std::iter::once((1, 30, 1.0)).chain(later(100)).collect();
+        assert_eq!(newest_large(&cycles), Some((3_000, 3_030)));
+    }
+}

@@ -1,0 +1,50 @@
+//! axe-core from npm, at the version of `axe/package-lock.json`: rules of accessibility, run in the page.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+use crate::browser::Browser;
+
+const LOCK: &str = include_str!("axe/package-lock.json");
+
+/// The script, installed below the target folder if this version is not there yet.
+fn script() -> &'static str {
+    static SCRIPT: OnceLock<String> = OnceLock::new();
+    SCRIPT.get_or_init(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("axe");
+        let done = folder.join("installed.json");
+        if !std::fs::read_to_string(&done).is_ok_and(|installed| installed == LOCK) {
+            std::fs::create_dir_all(&folder).unwrap();
+            for name in ["package.json", "package-lock.json"] {
+                let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/axe").join(name);
+                std::fs::copy(source, folder.join(name)).unwrap();
+            }
+            let mut npm = Command::new("npm");
+            npm.args(["ci", "--prefer-offline", "--no-audit", "--no-fund", "--ignore-scripts"]);
+            let status = npm.current_dir(&folder).stdout(Stdio::null()).status();
+            assert!(status.expect("this test needs npm (Debian: apt install nodejs npm)").success());
+            std::fs::write(&done, LOCK).unwrap();
+        }
+        std::fs::read_to_string(folder.join("node_modules/axe-core/axe.min.js")).unwrap()
+    })
+}
+
+/// What the rules find that is serious or critical in the page as it is now, a line each.
+pub async fn serious(browser: &Browser) -> Vec<String> {
+    browser.page.execute(script(), vec![]).await.unwrap();
+    let run =
+        "const done = arguments[arguments.length - 1]; axe.run(document, { resultTypes: ['violations'] }).then(done);";
+    let found: Value = browser.page.execute_async(run, vec![]).await.unwrap();
+    assert!(found["passes"].as_array().unwrap().len() > 10, "the rules ran: {found}");
+    let severe =
+        |violation: &&Value| ["serious", "critical"].contains(&violation["impact"].as_str().unwrap_or_default());
+    let line = |violation: &Value| {
+        let places = violation["nodes"].as_array().unwrap().iter();
+        let places: Vec<_> = places.map(|node| format!("{} {}", node["target"], node["any"][0]["message"])).collect();
+        format!("{}: {}\n  {}", violation["id"], violation["help"], places.join("\n  "))
+    };
+    found["violations"].as_array().unwrap().iter().filter(severe).map(line).collect()
+}

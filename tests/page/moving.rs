@@ -1,0 +1,207 @@
+//! Moving a contact by hand: units, what is sent and when, going back, and a service that is away for a while.
+
+use serde_json::{Value, json};
+use stickslip_wire::client::Options;
+use tempfile::tempdir;
+
+use crate::browser::Browser;
+use crate::common::{Binary, create, until};
+use crate::{ball, moved};
+
+/// The number and the unit that a control shows.
+fn shown(name: &str) -> String {
+    format!(
+        "document.querySelector('#box-{name}').value + ' ' + \
+         document.querySelector('#unit-{name}').selectedOptions[0].textContent"
+    )
+}
+
+async fn displacement(server: &Binary, session: &stickslip_wire::NewSession) -> (u64, f64) {
+    let now = server.client.contact(session.id).await.unwrap();
+    (now.sequence, now.state.displacement)
+}
+
+#[tokio::test]
+async fn a_typed_number_keeps_its_unit_and_is_shown_before_it_is_sent() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let live = "document.querySelector('.badge.on') !== null";
+    browser.until(&format!("{live} && ({}) === '0 nm (auto)'", shown("displacement"))).await;
+    let note = "document.querySelector('#to-send-displacement').innerText";
+    for (typed, sequence, metres, si, micro) in
+        [("5000", 1, 5e-6, "0.000005", "5"), ("4900", 2, 4.9e-6, "0.0000049", "4.9")]
+    {
+        browser.write("#box-displacement", typed).await;
+        browser.until(&format!("{note} === 'Enter sends {typed} nm = {si} m.'")).await;
+        assert_eq!(displacement(&server, &session).await.0, sequence - 1, "nothing is sent while one types");
+        browser.press("#box-displacement", "\u{e007}").await;
+        browser.until(&format!("document.querySelector('.side').innerText.includes('\\n{micro} µm')")).await;
+        assert_eq!(displacement(&server, &session).await, (sequence, metres));
+        browser.until(&format!("({}) === '{typed} nm' && {note} === ''", shown("displacement"))).await;
+    }
+    // Another unit shows the same displacement, and stays too.
+    let choose = "(() => { const unit = document.querySelector('#unit-displacement'); unit.value = '-6'; \
+                  unit.dispatchEvent(new Event('change')); })() ?? null";
+    browser.value(choose).await;
+    browser.until(&format!("({}) === '4.9 µm'", shown("displacement"))).await;
+    browser.write("#box-displacement", "0,1").await;
+    browser.until(&format!("{note} === 'Enter sends 0,1 µm = 1e-7 m.'")).await;
+    // Escape sends nothing.
+    browser.press("#box-displacement", "\u{e00c}").await;
+    browser.until(&format!("({}) === '4.9 µm' && {note} === ''", shown("displacement"))).await;
+    assert_eq!(displacement(&server, &session).await.0, 2);
+
+    // A slider sends once, where it is let go; by keyboard each step.
+    browser.drag("#slide-displacement", 0.97, 0.6).await;
+    browser.until("document.querySelector('#plot-work .said') && !document.querySelector('.side').innerText.includes('4.9 µm')").await;
+    let (sequence, dragged) = displacement(&server, &session).await;
+    assert_eq!(sequence, 3);
+    assert!(dragged > 0.0 && dragged < 4e-6, "{dragged}");
+    // It stands at its end, which is the displacement itself.
+    browser.press("#slide-displacement", "\u{e012}").await;
+    let stepped = async || (displacement(&server, &session).await.0 == 4).then_some(());
+    until("the key moves the contact", stepped).await;
+
+    // A fault goes when the state has changed otherwise, and the number with it.
+    let fault = "document.querySelector('#fault-force').innerText";
+    browser.write("#box-force", "50").await;
+    browser.press("#box-force", "\u{e007}").await;
+    browser
+        .until(&format!(
+            "{fault}.includes('friction holds no more') && document.querySelector('#box-force').value === '50'"
+        ))
+        .await;
+    browser.picture("fault").await;
+    moved(&server, &session, &[0.0]).await;
+    let force = "Number(document.querySelector('#box-force').value)";
+    browser.until(&format!("{fault} === '' && Math.abs({force}) < 3.1 && !document.querySelector('#box-force').hasAttribute('aria-invalid')")).await;
+    browser.stayed_quiet_and_at(&server.address, &["status of 422"]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn undo_goes_back_by_a_fork_and_a_name_changes_in_place() {
+    let server = Binary::start(&[]);
+    let session = ball(&server).await;
+    moved(&server, &session, &[0.9, -0.7, 0.5]).await;
+    let path = server.client.history(session.id, None, None).await.unwrap().items;
+    let browser = Browser::start(400, 850, true).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let live = "document.querySelector('.badge.on') !== null";
+    browser.until(&format!("{live} && !document.querySelector('#undo').disabled")).await;
+    let mut before = session.id;
+    for (act, sequence) in [("#undo", 2), ("#undo", 1), ("#go-back", 0)] {
+        browser.click(act).await;
+        browser.until(&format!("!location.hash.includes('{before}') && {live}")).await;
+        let hash = browser.value("location.hash").await;
+        before = hash.as_str().unwrap().rsplit('/').next().unwrap().parse().unwrap();
+        let now = server.client.contact(before).await.unwrap();
+        assert_eq!(now.sequence, sequence, "{act}");
+        let expected = usize::try_from(sequence).unwrap().checked_sub(1).map(|last| path[last].state);
+        assert_eq!(now.state, expected.unwrap_or(session.state));
+    }
+    browser.until("document.querySelector('#undo').disabled").await;
+    assert_eq!(server.client.contact(session.id).await.unwrap().sequence, 3, "the original keeps its moves");
+
+    browser.click("#rename").await;
+    browser.write(".rename input", "Ball, before it moved").await;
+    browser.picture("rename").await;
+    browser.press(".rename input", "\u{e007}").await;
+    browser.until("document.querySelector('h1').innerText === 'Ball, before it moved'").await;
+    browser.until("document.documentElement.scrollWidth <= innerWidth").await;
+    let named = server.client.contact(before).await.unwrap();
+    assert_eq!((named.label.as_deref(), named.sequence), (Some("Ball, before it moved"), 0));
+    browser.page.goto(&format!("{}/#/", server.address)).await.unwrap();
+    browser
+        .until(
+            "[...document.querySelectorAll('.list strong')].some((name) => name.innerText === 'Ball, before it moved')",
+        )
+        .await;
+    browser.picture("list").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn a_service_that_is_away_is_named_and_the_page_goes_on_when_it_is_back() {
+    let folder = tempdir().unwrap();
+    let store = format!("sqlite:{}", folder.path().join("contacts.db").display());
+    let mut server = Binary::over(&store, &[]);
+    let session = ball(&server).await;
+    moved(&server, &session, &[0.5]).await;
+    let browser = Browser::start(1280, 900, false).await;
+    browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+    let live = "document.querySelector('.badge.on') !== null";
+    browser.until(live).await;
+    server.child.kill().unwrap();
+    server.child.wait().unwrap();
+    let away = "!document.querySelector('#away').hidden";
+    browser.until(&format!("{away} && !({live})")).await;
+    // A move is not repeated unasked, and says why it failed.
+    browser.write("#box-displacement", "50").await;
+    browser.press("#box-displacement", "\u{e007}").await;
+    browser
+        .until("document.querySelector('#fault-displacement').innerText.startsWith('The service does not answer')")
+        .await;
+    browser.picture("away").await;
+    // A view that is opened meanwhile is shown when the service is back.
+    browser.value("location.assign('#/') ?? null").await;
+    browser.until("document.querySelector('main').innerText.includes('Loading')").await;
+    let address = server.address.strip_prefix("http://").unwrap().to_owned();
+    let server = Binary::at(&address, &store, &[]);
+    browser.until(&format!("!({away}) && document.querySelector('.list strong')?.innerText === 'Steel ball'")).await;
+    browser.click(".list a").await;
+    browser.until(live).await;
+    let before = server.client.contact(session.id).await.unwrap();
+    assert_eq!(before.sequence, 1, "the move that failed was not made later");
+    moved(&server, &session, &[0.0]).await;
+    browser.until("document.querySelector('#box-displacement').value === '0'").await;
+    let text: Value = browser.value("document.body.innerText").await;
+    assert!(!text.as_str().unwrap().contains("Failed to fetch"), "{text}");
+    browser
+        .stayed_quiet_and_at(&server.address, &["ERR_CONNECTION", "ERR_INCOMPLETE", "ERR_EMPTY", "network error"])
+        .await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn the_largest_shear_stress_and_the_warnings_are_in_sight() {
+    let server = Binary::start(&[]);
+    let mut request = create();
+    // Equal bodies with Poisson's ratio zero: no warning is due.
+    request.material = serde_json::from_value(json!({"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.0}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.0}]})).unwrap();
+    let quiet = server.client.create(&request, &Options::default()).await.unwrap();
+    assert!(quiet.warnings.is_empty(), "{:?}", quiet.warnings);
+    let warned = ball(&server).await;
+    let browser = Browser::start(1280, 900, false).await;
+    let said = "document.querySelector('.state-text').innerText.replaceAll('\\n', '')";
+    for session in [&quiet, &warned] {
+        browser.page.goto(&format!("{}/#/contacts/{}", server.address, session.id)).await.unwrap();
+        let count = format!("document.querySelectorAll('#warnings li').length === {}", session.warnings.len());
+        browser.until(&format!("document.querySelector('#trust-card summary')?.innerText.startsWith('Accuracy') && document.querySelector('#trust-card dd') !== null && {count}")).await;
+        browser.until(&format!("{said}.includes('Largest shear stress0 Pa = 0 % of μ p')")).await;
+        // After gross slip it is the whole of it; back at zero sqrt(1/2).
+        let full = 0.3 * session.contact.max_pressure.unwrap();
+        for (part, share) in [(1.5, 1.0), (0.5, 0.5_f64.sqrt())] {
+            // One reversal from gross slip by the displacement of gross slip brings it to the middle.
+            moved(&server, session, &[part]).await;
+            let text = format!(
+                "Largest shear stress{} = {} % of μ p",
+                four_pascals(full * share),
+                crate::three(100.0 * share)
+            );
+            browser.until(&format!("{said}.includes({text:?})")).await;
+        }
+    }
+    browser.value("(document.querySelector('#trust-card').open = true) && null").await;
+    browser.picture("trust").await;
+    browser.stayed_quiet_and_at(&server.address, &[]).await;
+    browser.close().await;
+}
+
+/// Four digits in MPa or GPa, as the page shows them.
+fn four_pascals(value: f64) -> String {
+    if value >= 1e9 { format!("{} GPa", crate::four(value / 1e9)) } else { format!("{} MPa", crate::four(value / 1e6)) }
+}

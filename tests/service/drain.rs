@@ -1,0 +1,55 @@
+//! A server that is told to stop: requests that it has begun are done, or refused with a document, and never cut off.
+
+use std::time::Duration;
+
+use crate::common::raw::{PATIENCE, Service, post};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio::time::{sleep, timeout};
+
+/// A simulation, in two pieces.
+fn halves() -> (String, String) {
+    let contact = r#"{"profile": {"type": "sphere", "radius": 0.01}, "material": {"effective": {"e_star": 1e11,
+        "g_star": 8e10}}, "friction": 0.3, "preload": {"normal_force": 10}}"#;
+    let whole = post("/simulate", &format!(r#"{{"contact": {contact}, "path": {{"force": [1.0]}}}}"#));
+    let (first, second) = whole.split_at(whole.len() - 10);
+    (first.to_owned(), second.to_owned())
+}
+
+/// Sends half a request and has the server stop; after `pause`, if there is one, the other half. The reply.
+async fn stopped_within(drain_time: &str, pause: Option<Duration>) -> String {
+    let service = Service::start(&["--drain-time", drain_time]);
+    let (first, second) = halves();
+    let mut stream = TcpStream::connect(service.address).await.unwrap();
+    stream.write_all(first.as_bytes()).await.unwrap();
+    // The head has been read once the metrics count the request.
+    let counted = async {
+        let in_flight = "stickslip_http_requests_in_flight{method=\"POST\",route=\"/simulate\"} 1";
+        while !service.ask("127.0.0.1", &crate::common::raw::get("/metrics")).await.unwrap().text.contains(in_flight) {}
+    };
+    timeout(PATIENCE, counted).await.expect("the request is not in flight");
+    service.terminate();
+    if let Some(pause) = pause {
+        sleep(pause).await;
+        stream.write_all(second.as_bytes()).await.unwrap();
+    }
+    let mut reply = Vec::new();
+    timeout(PATIENCE, stream.read_to_end(&mut reply)).await.unwrap().unwrap();
+    String::from_utf8(reply).unwrap()
+}
+
+#[tokio::test]
+async fn what_takes_no_longer_than_the_drain_time_is_done() {
+    let reply = stopped_within("1m", Some(Duration::from_secs(4))).await;
+    assert!(reply.starts_with("HTTP/1.1 200 OK"), "{reply}");
+}
+
+#[tokio::test]
+async fn what_takes_longer_is_refused() {
+    let reply = stopped_within("100ms", None).await;
+    assert!(
+        reply.starts_with("HTTP/1.1 503 Service Unavailable") && reply.contains("\"code\":\"stopping\""),
+        "{reply}"
+    );
+    assert!(reply.to_lowercase().contains("retry-after: "), "{reply}");
+}

@@ -1,0 +1,132 @@
+//! A contact of which a move is missing in the store: nothing is answered for it, and the contacts beside it are served.
+
+use crate::common;
+use crate::fixtures::{along, url};
+
+use std::path::Path;
+
+use common::kill::Random;
+use common::postgres::Cluster;
+use common::process::Process;
+use common::{Server, create, problem, run, until};
+use futures::StreamExt as _;
+use reqwest::Method;
+use rusqlite::Connection;
+use stickslip_wire::EndReason;
+use stickslip_wire::client::{Client, Event, Options};
+use tempfile::tempdir;
+use uuid::Uuid;
+
+const MOVES: usize = 12;
+
+/// A contact with moves.
+async fn moved(client: &Client) -> Uuid {
+    let (options, mut random) = (Options::default(), Random(3));
+    let id = client.create(&create(), &options).await.unwrap().id;
+    client.path(id, &along((0..MOVES).map(|_| random.step()).collect()), &options).await.unwrap();
+    id
+}
+
+/// Every question about a contact and every change of it is refused, named in the log, and found by `check`.
+async fn is_damaged(base: &str, log: &Path, store: &str, (damaged, whole): (Uuid, Uuid), missing: &str) {
+    let server = Server::at(base);
+    let past = format!("/contacts/{damaged}");
+    for question in ["", "/history", "/history?format=csv&limit=20", "/cycles", "/loop", "/stress?points=2", "/events"]
+    {
+        let refusal = problem(server.get(&format!("{past}{question}")).await).await;
+        assert_eq!((refusal.status, &*refusal.code), (500, "damaged_contact"), "{question}: {refusal:?}");
+        assert!(refusal.detail.contains(&damaged.to_string()), "{refusal:?}");
+    }
+    for (change, body) in
+        [("move", r#"{"force": 0.1}"#), ("path", r#"{"path": {"displacement": [1e-9]}}"#), ("fork", "{}")]
+    {
+        let refusal = server.send(Method::POST, &format!("{past}/{change}"), Some(body), &[]).await;
+        assert_eq!(problem(refusal).await.code, "damaged_contact", "{change}");
+    }
+    assert_eq!(server.client.contact(whole).await.unwrap().sequence, MOVES as u64);
+    let lines = std::fs::read_to_string(log).unwrap();
+    let named = lines.lines().filter(|line| line.contains("ERROR") && line.contains(&damaged.to_string()));
+    assert!(named.filter(|line| line.contains(missing)).count() >= 10, "{lines}");
+    let arguments = ["check".to_owned(), "--store".to_owned(), store.to_owned()];
+    let checking = move || run(&arguments.each_ref().map(String::as_str));
+    let checked = tokio::task::spawn_blocking(checking).await.unwrap();
+    let said = String::from_utf8(checked.stdout).unwrap();
+    assert!(said.starts_with(&format!("contact {damaged}: {missing}\n")) && said.contains(" 1 findings"), "{said}");
+}
+
+#[tokio::test]
+async fn a_gap_in_the_moves_is_answered_by_an_error_of_its_own_from_a_file() {
+    let folder = tempdir().unwrap();
+    let (path, log) = (folder.path().join("gap.db"), folder.path().join("log"));
+    let arguments = ["--log", "warn", "--store", &url(&path)];
+    let process = Process::start_with(&arguments, &log).await;
+    let (damaged, whole) = (moved(&process.client).await, moved(&process.client).await);
+    process.stop().await;
+    let statement = "DELETE FROM moves WHERE sequence = 7
+        AND contact = (SELECT number FROM contacts WHERE id = ?1)";
+    assert_eq!(Connection::open(&path).unwrap().execute(statement, [damaged.to_string()]).unwrap(), 1);
+    let process = Process::start_with(&arguments, &log).await;
+    is_damaged(&process.base, &log, &url(&path), (damaged, whole), "move 7 is missing").await;
+    process.stop().await;
+}
+
+#[tokio::test]
+async fn a_gap_in_the_moves_is_answered_by_an_error_of_its_own_from_a_database() {
+    for (missing, condition) in [("move 7 is missing", "= 7"), ("move 11 is missing", "> 10")] {
+        let store = Cluster::shared().database().await;
+        let folder = tempdir().unwrap();
+        let log = folder.path().join("log");
+        let arguments = ["--log", "warn", "--store", &store];
+        let process = Process::start_with(&arguments, &log).await;
+        let (damaged, whole) = (moved(&process.client).await, moved(&process.client).await);
+        process.stop().await;
+        let statement = format!("DELETE FROM moves WHERE contact = '{damaged}' AND sequence {condition}");
+        Cluster::shared().execute(store.rsplit('/').next().unwrap(), &statement).await;
+        let process = Process::start_with(&arguments, &log).await;
+        is_damaged(&process.base, &log, &store, (damaged, whole), missing).await;
+        process.stop().await;
+    }
+}
+
+#[tokio::test]
+async fn a_gap_that_comes_while_a_contact_is_cached_ends_its_events_and_refuses_its_forks() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("live.db");
+    let process = Process::start(&url(&path)).await;
+    let id = moved(&process.client).await;
+    Connection::open(&path).unwrap().execute("DELETE FROM moves WHERE sequence = 7", []).unwrap();
+    let mut events = Box::pin(process.client.events(id, Some(0)).await.unwrap());
+    assert_eq!(events.next().await.unwrap().unwrap(), Event::End(EndReason::Damaged));
+    let server = Server::at(&process.base);
+    let fork = server.send(Method::POST, &format!("/contacts/{id}/fork"), Some("{}"), &[]).await;
+    assert_eq!(problem(fork).await.code, "damaged_contact");
+    assert_eq!(process.client.contacts(None, None).await.unwrap().items.len(), 1);
+    // The refused fork has left nothing behind.
+    process.stop().await;
+    let unowned = "SELECT count(*) FROM moves WHERE contact NOT IN (SELECT number FROM contacts)";
+    let left: i64 = Connection::open(&path).unwrap().query_row(unowned, [], |row| row.get(0)).unwrap();
+    assert_eq!(left, 0);
+}
+
+#[tokio::test]
+async fn a_snapshot_of_moves_that_are_not_stored_is_not_believed() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("ahead.db");
+    let process = Process::start(&url(&path)).await;
+    let (options, mut random) = (Options::default(), Random(5));
+    let id = process.client.create(&create(), &options).await.unwrap().id;
+    for _ in 0..6 {
+        process.client.path(id, &along((0..2_000).map(|_| random.step()).collect()), &options).await.unwrap();
+    }
+    let database = Connection::open(&path).unwrap();
+    until("a snapshot is stored", async || {
+        database.prepare("SELECT 1 FROM snapshots").unwrap().exists([]).unwrap().then_some(())
+    })
+    .await;
+    process.stop().await;
+    let last = "DELETE FROM moves WHERE sequence > (SELECT sequence - 1 FROM snapshots)";
+    assert!(database.execute(last, []).unwrap() > 0);
+    let process = Process::start(&url(&path)).await;
+    let server = Server::at(&process.base);
+    assert_eq!(problem(server.get(&format!("/contacts/{id}")).await).await.code, "damaged_contact");
+}

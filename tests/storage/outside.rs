@@ -1,0 +1,129 @@
+//! What others do to the files of the SQLite store: replaced, removed, lost in a crash, read by strangers.
+
+use crate::common;
+use crate::fixtures::url;
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+
+use common::process::{Process, refused};
+use common::{Server, ball, create, problem, run, until};
+use serde_json::json;
+use stickslip_wire::Move;
+use stickslip_wire::client::Options;
+use tempfile::tempdir;
+
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    format!("{}{ending}", path.display()).into()
+}
+
+/// Every change and every question is refused, and the service is not ready.
+async fn is_unavailable(server: &Server, id: &str) {
+    for refusal in [
+        server.post(&format!("/contacts/{id}/move"), &json!({"force": 0.3})).await,
+        server.post("/contacts", &ball()).await,
+        server.get(&format!("/contacts/{id}")).await,
+        server.get(&format!("/contacts/{id}/history")).await,
+    ] {
+        assert_eq!(problem(refusal).await.code, "storage_unavailable");
+    }
+    until("it is not ready", async || (server.get("/readyz").await.status() == 503).then_some(())).await;
+}
+
+#[tokio::test]
+async fn a_file_that_is_replaced_or_removed_takes_no_more_changes() {
+    let folder = tempdir().unwrap();
+    let (path, other, log) = (folder.path().join("mine.db"), folder.path().join("other.db"), folder.path().join("log"));
+    Process::start(&url(&other)).await.stop().await;
+    let process = Process::start_with(&["--log", "warn", "--store", &url(&path)], &log).await;
+    let server = Server::at(&process.base);
+    let id = server.contact().await;
+    let force = async |force: f64| server.post(&format!("/contacts/{id}/move"), &json!({"force": force})).await;
+    assert_eq!(force(0.1).await.status(), 200);
+    let (kept, mut sequence) = (folder.path().join("kept"), 1);
+    for (file, replacement) in [("", Some(&other)), ("", None), ("-wal", None), ("-shm", None)] {
+        let file = beside(&path, file);
+        fs::hard_link(&file, &kept).unwrap();
+        match replacement {
+            Some(other) => {
+                drop(fs::copy(other, beside(&path, ".copy")).and_then(|_| fs::rename(beside(&path, ".copy"), &file)))
+            }
+            None => fs::remove_file(&file).unwrap(),
+        }
+        is_unavailable(&server, &id).await;
+        // The same file again: nothing was lost, and the service goes on.
+        fs::rename(&kept, &file).unwrap();
+        sequence += 1;
+        let reply: serde_json::Value = force(0.1).await.json().await.unwrap();
+        assert_eq!(reply["sequence"], sequence, "{}", file.display());
+        until("it is ready again", async || (server.get("/readyz").await.status() == 200).then_some(())).await;
+    }
+    let lines = fs::read_to_string(&log).unwrap();
+    assert!(
+        lines.contains("mine.db has been replaced or removed") && lines.contains("mine.db-wal has been"),
+        "{lines}"
+    );
+
+    // At its end the server leaves the files of the other database alone.
+    fs::rename(&path, &kept).unwrap();
+    fs::copy(&other, &path).unwrap();
+    fs::write(beside(&path, "-wal.other"), "the log of another").unwrap();
+    fs::rename(beside(&path, "-wal.other"), beside(&path, "-wal")).unwrap();
+    process.stop().await;
+    assert_eq!(fs::read_to_string(beside(&path, "-wal")).unwrap(), "the log of another");
+    assert!(fs::read(&path).unwrap() == fs::read(&other).unwrap());
+}
+
+#[tokio::test]
+async fn a_log_that_is_missing_after_a_crash_is_noticed() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("crashed.db");
+    let log = beside(&path, "-wal");
+    let process = Process::start(&url(&path)).await;
+    let id = process.client.create(&create(), &Options::default()).await.unwrap().id;
+    process.client.apply(id, &Move::force(0.1).into(), &Options::default()).await.unwrap();
+    process.kill().await;
+    let kept = folder.path().join("kept");
+    fs::rename(&log, &kept).unwrap();
+    let (file, copy) = (url(&path), folder.path().join("copy.db"));
+    let said = refused(&file).stderr;
+    let asked = [&["check", "--store", &file][..], &["backup", copy.to_str().unwrap(), "--store", &file]];
+    for said in asked.map(|arguments| run(arguments).stderr).into_iter().chain([said]) {
+        let said = String::from_utf8(said).unwrap();
+        assert!(said.contains("not closed") && said.contains("crashed.db-wal is missing"), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+    assert!(!log.exists() && !copy.exists());
+    // With its log it is whole; and a copy of the file in use is a store that is closed.
+    fs::rename(&kept, &log).unwrap();
+    let process = Process::start(&file).await;
+    assert_eq!(process.client.contact(id).await.unwrap().sequence, 1);
+    assert!(run(&["backup", copy.to_str().unwrap(), "--store", &file]).status.success());
+    Process::start(&url(&copy)).await.stop().await;
+    process.stop().await;
+    // Closed, it needs no log.
+    assert!(!log.exists());
+    Process::start(&file).await.kill().await;
+    // An operator may accept the file as it is.
+    fs::write(&log, "").unwrap();
+    let process = Process::start(&file).await;
+    assert_eq!(process.client.contact(id).await.unwrap().sequence, 1);
+}
+
+#[tokio::test]
+async fn the_files_are_for_their_owner_alone() {
+    let folder = tempdir().unwrap();
+    let (path, copy) = (folder.path().join("private.db"), folder.path().join("copy.db"));
+    // Left by a program that was interrupted, for all to read.
+    for partial in [beside(&path, ".new"), beside(&copy, ".new")] {
+        fs::write(&partial, "").unwrap();
+        fs::set_permissions(&partial, fs::Permissions::from_mode(0o644)).unwrap();
+    }
+    let process = Process::start(&url(&path)).await;
+    process.client.create(&create(), &Options::default()).await.unwrap();
+    assert!(run(&["backup", copy.to_str().unwrap(), "--store", &url(&path)]).status.success());
+    for file in [&path, &beside(&path, "-wal"), &beside(&path, "-shm"), &copy] {
+        assert_eq!(fs::metadata(file).unwrap().permissions().mode() & 0o777, 0o600, "{}", file.display());
+    }
+}
