@@ -494,7 +494,7 @@ async fn a_changed_file_of_keys_counts_at_once_and_ends_the_events_of_revoked_ke
 async fn a_key_with_an_end_counts_until_then() {
     let server = Guarded::start("memory:", &[], &[("kept", &[Role::Write], "lab")]).await;
     let id = server.contact("kept").await;
-    let end = jiff::Timestamp::now() + jiff::SignedDuration::from_secs(5);
+    let end = jiff::Timestamp::now() + jiff::SignedDuration::from_secs(10);
     let brief = new_key_until("brief", &[Role::Read], "lab", Some(end)).unwrap();
     let all = std::fs::read_to_string(server.folder.path().join("keys")).unwrap() + &brief.entry + " # for a moment\n";
     server.replace(&all);

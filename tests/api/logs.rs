@@ -93,8 +93,7 @@ async fn the_line_of_a_change_says_who_made_it() {
 #[tokio::test]
 async fn a_client_that_leaves_has_its_line_too() {
     let server = Binary::start(&["--log-format", "json"]);
-    let long = serde_json::json!({"contact": common::ball(), "path": {"falling_amplitude": {"reversals": 1900}},
-        "steps": "last", "solver": {"springs": {"count": 1_000_000}}});
+    let long = common::long_simulation();
     let address = server.address.clone();
     let call = Client::new().post(format!("{address}/simulate")).json(&long).header("x-request-id", "mine").send();
     let call = tokio::spawn(call);

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use common::prometheus::{MISSING, Prometheus};
-use common::{Server, ball};
+use common::{Server, ball, long_simulation, until};
 use prometheus::core::Collector as _;
 use prometheus::{Opts, TextEncoder};
 use reqwest::{Method, StatusCode};
@@ -237,10 +237,14 @@ async fn clients_that_listen_and_clients_that_leave_are_counted() {
     assert_eq!(sample(&server, "stickslip_event_streams").await, 2);
     drop((first, second));
 
-    let long = json!({"contact": ball(), "path": {"falling_amplitude": {"reversals": 1900}}, "steps": "last",
-        "solver": {"springs": {"count": 1_000_000}}});
-    let call = tokio::time::timeout(Duration::from_millis(300), server.post("/simulate", &long)).await;
-    assert!(call.is_err(), "too quick to leave");
+    let long = long_simulation();
+    // The client leaves once its work has begun.
+    let begun =
+        until("the work has begun", async || (sample(&server, "stickslip_solver_running").await == 1).then_some(()));
+    tokio::select! {
+        _ = server.post("/simulate", &long) => panic!("too quick to leave"),
+        () = begun => {}
+    }
     let left = "stickslip_http_requests_total{method=\"POST\",route=\"/simulate\",status=\"499\"}";
     let streams = "stickslip_event_streams";
     let noticed = async {

@@ -173,6 +173,17 @@ pub fn ball() -> Value {
     })
 }
 
+/// Moves that take minutes on any machine: each of them is followed in many small steps.
+pub fn long_moves() -> Value {
+    let step = |index| json!({"force": 0.1 * f64::from(index % 7), "normal_force": 9.0 + 0.1 * f64::from(index % 9)});
+    json!({"moves": (0..80_000).map(step).collect::<Vec<_>>()})
+}
+
+/// A simulation that ends when its client leaves, or at its time limit.
+pub fn long_simulation() -> Value {
+    json!({"contact": ball(), "path": long_moves(), "steps": "last"})
+}
+
 /// A body: a contact, and members beside it.
 pub fn of(contact: &Value, rest: &Value) -> Value {
     let mut body = json!({"contact": contact});

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::common::ball;
 use crate::common::raw::{PATIENCE, Service, get, post};
+use crate::common::{ball, long_simulation};
 use futures::future::join_all;
 use serde_json::{Value, json};
 use tokio::io::AsyncWriteExt as _;
@@ -32,11 +32,11 @@ fn heavy_job() -> String {
     .to_string()
 }
 
-/// Sends heavy requests, each from an address of its own, and does not wait for the replies.
+/// Sends heavy requests of two kinds, each from an address of its own, and does not wait for the replies.
 async fn send_heavy(service: &Service, number: usize) -> Vec<TcpStream> {
-    let request = post("/simulate", &search(9_000).to_string());
+    let requests = [search(9_000), long_simulation()].map(|body| post("/simulate", &body.to_string()));
     let sent = (0..number).map(|index| {
-        let request = &request;
+        let request = &requests[index % 2];
         async move {
             let mut stream = service.connect_from(&format!("127.0.0.{}", 10 + index)).await.unwrap();
             stream.write_all(request.as_bytes()).await.unwrap();

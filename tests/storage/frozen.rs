@@ -16,8 +16,9 @@ use stickslip::sessions::CAPACITY;
 use stickslip::store::{PostgresStore, SqliteStore};
 use tempfile::tempdir;
 
-/// The time that the documentation gives is 2 s; a busy machine needs some more.
-const LIMIT: Duration = Duration::from_millis(4_500);
+/// The documentation gives 2 s for each, and all wait at once: one after the other they would take 24 s. A busy machine stays far
+/// below that.
+const LIMIT: Duration = Duration::from_secs(20);
 const CONTACTS: usize = 12;
 
 /// A request with an idempotency key; the time that it took, and its status.
