@@ -17,6 +17,7 @@ use tracing::Span;
 
 use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, counter, gauge, histogram};
 
+use super::memory::{BYTES, UNIT};
 use super::stop::{LONGEST_WORK, Stop, StopOnDrop};
 use super::turnstile::{INTERACTIVE, Kind, Turn, Turnstile};
 use super::{Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
@@ -29,25 +30,10 @@ pub const INLINE: Nanoseconds = 100_000;
 
 /// How long a request waits for what it needs by default before it is refused as overload.
 pub const LONGEST_WAIT: Duration = Duration::from_secs(10);
-/// Bytes of bodies, work and replies at a time by default.
-pub const BYTES: usize = 512 * 1024 * 1024;
-/// Bytes that one request takes at most, whatever it asks for: measured, with a margin.
-pub const LARGEST: usize = 256 * 1024 * 1024;
 /// Requests that are served at a time by default.
 pub const REQUESTS: usize = 512;
 /// Requests that wait at a time by default.
 pub const QUEUE: usize = 1024;
-/// Reservations up to this are not counted: the number of requests bounds them.
-pub const UNCOUNTED: usize = 16 * 1024;
-
-/// The divisor of the bytes of work that gives those of the states that work loads and copies, which come on top. A request that
-/// holds memory for its body waits for memory for a state; one that holds memory for a state waits for none, so that requests never
-/// wait for each other in a circle.
-pub const STATES_SHARE: usize = 4;
-
-/// Bytes are counted in units of this size.
-const UNIT: usize = 1024;
-
 /// The resources of a pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
@@ -77,25 +63,18 @@ impl Default for Capacity {
     }
 }
 
-impl Capacity {
-    /// Bytes of the states that work loads and copies at a time.
-    #[must_use]
-    pub fn state_bytes(&self) -> usize {
-        (self.bytes / STATES_SHARE).min(u32::MAX as usize)
-    }
-}
-
 /// The permits of the resources. Clones share it.
 #[derive(Clone, Debug)]
-pub struct Pool(Arc<Shared>);
+pub struct Pool(pub(super) Arc<Shared>);
 
 #[derive(Debug)]
-struct Shared {
-    capacity: Capacity,
+pub(super) struct Shared {
+    pub(super) capacity: Capacity,
     threads: Turnstile,
     places: Arc<Semaphore>,
-    units: Arc<Semaphore>,
-    states: Arc<Semaphore>,
+    pub(super) units: Arc<Semaphore>,
+    pub(super) small: Arc<Semaphore>,
+    pub(super) states: Arc<Semaphore>,
     queue: Arc<Semaphore>,
     quotas: Quotas,
     meters: Arc<PoolMeters>,
@@ -104,10 +83,6 @@ struct Shared {
 /// A place among the requests that are served, held until dropped.
 #[derive(Debug)]
 pub struct Place(#[expect(dead_code, reason = "held for its drop")] OwnedSemaphorePermit);
-
-/// Reserved bytes, held until dropped; none if they are too few to be counted.
-#[derive(Debug, Default)]
-pub struct Reservation(Option<OwnedSemaphorePermit>);
 
 /// The metrics of a pool.
 #[derive(Debug)]
@@ -156,33 +131,6 @@ pub enum PoolError {
     Panicked,
 }
 
-impl Reservation {
-    /// This and another one, as one.
-    #[must_use]
-    pub fn with(self, other: Reservation) -> Reservation {
-        match (self.0, other.0) {
-            (Some(mut permit), Some(more)) => {
-                permit.merge(more);
-                Reservation(Some(permit))
-            }
-            (one, another) => Reservation(one.or(another)),
-        }
-    }
-
-    /// Gives back all but this many bytes.
-    pub fn shrink(&mut self, bytes: usize) {
-        if let Some(permit) = &mut self.0 {
-            drop(permit.split(permit.num_permits().saturating_sub(bytes.div_ceil(UNIT))));
-        }
-    }
-
-    /// Whether it is large enough to be counted.
-    #[must_use]
-    pub fn is_counted(&self) -> bool {
-        self.0.is_some()
-    }
-}
-
 impl Pool {
     /// A pool with these resources; at least one of each.
     #[must_use]
@@ -193,6 +141,7 @@ impl Pool {
             threads: Turnstile::new(capacity.threads),
             places: semaphore(capacity.requests),
             units: semaphore((capacity.bytes / UNIT).min(u32::MAX as usize)),
+            small: semaphore(capacity.small_bytes() / UNIT),
             states: semaphore(capacity.state_bytes() / UNIT),
             queue: semaphore(capacity.queue),
             quotas: Quotas::new(capacity.quotas),
@@ -234,7 +183,9 @@ impl Pool {
             threads: self.0.threads.taken(),
             requests: taken(self.0.capacity.requests, &self.0.places),
             waiting: taken(self.0.capacity.queue, &self.0.queue),
-            bytes: UNIT * taken(self.0.capacity.bytes / UNIT, &self.0.units),
+            bytes: UNIT
+                * (taken(self.0.capacity.bytes / UNIT, &self.0.units)
+                    + taken(self.0.capacity.small_bytes() / UNIT, &self.0.small)),
         }
     }
 
@@ -257,7 +208,11 @@ impl Pool {
         timeout(self.0.capacity.wait, request).await.map_err(|_| PoolError::Busy)
     }
 
-    async fn permits(&self, semaphore: &Arc<Semaphore>, number: u32) -> Result<OwnedSemaphorePermit, PoolError> {
+    pub(super) async fn permits(
+        &self,
+        semaphore: &Arc<Semaphore>,
+        number: u32,
+    ) -> Result<OwnedSemaphorePermit, PoolError> {
         if let Ok(permit) = Arc::clone(semaphore).try_acquire_many_owned(number) {
             return Ok(permit);
         }
@@ -271,60 +226,6 @@ impl Pool {
     /// As [`Pool::wait`].
     pub async fn enter(&self) -> Result<Place, PoolError> {
         self.permits(&self.0.places, 1).await.map(Place)
-    }
-
-    /// Reserves bytes, but at most [`LARGEST`] and all that there are.
-    ///
-    /// # Errors
-    /// As [`Pool::wait`].
-    pub async fn reserve(&self, bytes: usize) -> Result<Reservation, PoolError> {
-        let mut reservation = Reservation::default();
-        self.resize(&mut reservation, bytes).await?;
-        Ok(reservation)
-    }
-
-    /// Reserves bytes for all the states that a piece of work loads or copies, but at most all that there are for states. Nothing
-    /// else may be waited for until they are released, except a thread.
-    ///
-    /// # Errors
-    /// As [`Pool::wait`].
-    pub async fn reserve_states(&self, bytes: usize) -> Result<Reservation, PoolError> {
-        if bytes <= UNCOUNTED {
-            return Ok(Reservation::default());
-        }
-        let wanted = bytes.div_ceil(UNIT).min((self.0.capacity.state_bytes() / UNIT).max(1));
-        Ok(Reservation(Some(self.permits(&self.0.states, wanted as u32).await?)))
-    }
-
-    /// Reserves bytes if they are free now.
-    #[must_use]
-    pub fn try_reserve(&self, bytes: usize) -> Option<Reservation> {
-        let units = u32::try_from(bytes.div_ceil(UNIT)).ok()?;
-        Arc::clone(&self.0.units).try_acquire_many_owned(units).ok().map(|permit| Reservation(Some(permit)))
-    }
-
-    /// Grows or shrinks a reservation.
-    ///
-    /// # Errors
-    /// As [`Pool::wait`]; the reservation is unchanged then.
-    pub async fn resize(&self, reservation: &mut Reservation, bytes: usize) -> Result<(), PoolError> {
-        if bytes <= UNCOUNTED {
-            reservation.0 = None;
-            return Ok(());
-        }
-        let most = (self.0.capacity.bytes.min(LARGEST) / UNIT).clamp(1, u32::MAX as usize);
-        let wanted = bytes.div_ceil(UNIT).min(most);
-        match &mut reservation.0 {
-            None => reservation.0 = Some(self.permits(&self.0.units, wanted as u32).await?),
-            Some(permit) if permit.num_permits() >= wanted => {
-                drop(permit.split(permit.num_permits() - wanted));
-            }
-            Some(permit) => {
-                let more = self.permits(&self.0.units, (wanted - permit.num_permits()) as u32).await?;
-                permit.merge(more);
-            }
-        }
-        Ok(())
     }
 
     /// The metrics.

@@ -32,6 +32,7 @@ pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64) -
     PROGRAM
         .saturating_add(cache)
         .saturating_add(capacity.bytes as u64)
+        .saturating_add(capacity.small_bytes() as u64)
         .saturating_add(capacity.state_bytes() as u64)
         .saturating_add(CONNECTION.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
         .saturating_add(REQUEST.saturating_mul(requests))

@@ -1,6 +1,7 @@
 //! Admission: turns on threads, permits for places and memory, quotas, work that is ended, and the estimate that decides where work runs.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
+use std::pin::pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -48,6 +49,31 @@ async fn bytes_are_reserved_once() {
     let all = pool.reserve(1_000 * UNIT).await.unwrap();
     assert_eq!(pool.taken().bytes, 200 * UNIT);
     drop(all);
+    assert_eq!(pool.taken().bytes, 0);
+}
+
+#[tokio::test]
+async fn small_needs_do_not_wait_behind_large_ones() {
+    let pool = Pool::new(Capacity { bytes: 200 * UNIT, ..Capacity::default() });
+    let small = 20 * UNIT;
+    let first = pool.reserve(150 * UNIT).await.unwrap();
+    let mut large = pin!(pool.reserve(100 * UNIT));
+    assert!(futures::poll!(large.as_mut()).is_pending());
+    let mut beside = pool.reserve(small).await.unwrap();
+    // They have a share, and no more.
+    let mut next = pin!(pool.reserve(small));
+    assert!(futures::poll!(next.as_mut()).is_pending());
+    assert!(pool.taken().bytes <= 200 * UNIT + pool.capacity().small_bytes());
+    pool.resize(&mut beside, 0).await.unwrap();
+    let next = next.await.unwrap();
+    drop(first);
+    let large = large.await.unwrap();
+    assert_eq!(pool.taken().bytes, 120 * UNIT);
+    // What is reserved in both ways is one.
+    let mut both = next.with(pool.reserve(30 * UNIT).await.unwrap());
+    pool.resize(&mut both, 25 * UNIT).await.unwrap();
+    assert_eq!(pool.taken().bytes, 125 * UNIT);
+    drop((both, large));
     assert_eq!(pool.taken().bytes, 0);
 }
 
