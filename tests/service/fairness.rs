@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::common::raw::{PATIENCE, Service, get, post};
-use crate::common::{ball, long_simulation};
+use crate::common::{ball, long_moves, long_simulation};
 use futures::future::join_all;
 use serde_json::{Value, json};
 use tokio::io::AsyncWriteExt as _;
@@ -112,6 +112,63 @@ async fn an_ordinary_call_takes_at_most_twice_its_time_and_a_tenth_of_a_second()
         assert!(most <= 2 * own + Duration::from_millis(100), "{name}: {most:?}, alone {own:?}");
     }
     drop(heavy);
+}
+
+/// Long work of other kinds than searches.
+fn other_kinds() -> [(&'static str, &'static str, Value); 5] {
+    let radii: Vec<_> = (0..10_000).map(|index| 1e-7 * f64::from(index)).collect();
+    let heights: Vec<_> = radii.iter().map(|r| r * r / 0.02).collect();
+    let mut table = ball();
+    table["profile"] = json!({"type": "tabulated", "r": radii, "z": heights});
+    let falling = |reversals: usize| json!({"falling_amplitude": {"reversals": reversals}});
+    let drive: Vec<_> = (1..=100).map(|index| 0.025 * f64::from(index)).collect();
+    [
+        ("curved moves", "/simulate", json!({"contact": table, "path": long_moves(), "steps": "last"})),
+        (
+            "stresses of a table",
+            "/simulate",
+            json!({"contact": table, "path": falling(2_000), "steps": "last", "stress": {"points": 10_000}}),
+        ),
+        (
+            "springs",
+            "/simulate",
+            json!({"contact": ball(), "path": falling(1_900), "steps": "last", "solver": {"springs": {"count": 1_000_000}}}),
+        ),
+        ("a protocol", "/protocols", json!({"contact": table, "reversals": 60})),
+        (
+            "cycles of an oscillating load",
+            "/cycle",
+            json!({"contact": table, "drive": {"force": drive}, "normal": {"normal_force": 1.0, "phase": 1.0}, "harmonics": 31}),
+        ),
+    ]
+}
+
+/// `cargo test --test service fairness -- --ignored --nocapture` prints how long a call waits for the checks of each.
+#[tokio::test]
+#[ignore = "measures times"]
+async fn work_of_every_kind_gives_way() {
+    let (_, request) = &ordinary()[0];
+    for (name, place, body) in other_kinds() {
+        let service = Arc::new(Service::start(&["--log", "warn"]));
+        let mut alone = Vec::new();
+        for _ in 0..20 {
+            alone.push(time_of(&service, request).await);
+        }
+        alone.sort();
+        let heavy = post(place, &body.to_string());
+        let mut streams = Vec::new();
+        for index in 0..4 {
+            let mut stream = service.connect_from(&format!("127.0.0.{}", 10 + index)).await.unwrap();
+            stream.write_all(heavy.as_bytes()).await.unwrap();
+            streams.push(stream);
+        }
+        let mut times = Vec::new();
+        for _ in 0..100 {
+            times.push(time_of(&service, request).await);
+        }
+        times.sort();
+        println!("beside {name}: alone {:?}, median {:?}, 99 of 100 within {:?}", alone[10], times[50], times[98]);
+    }
 }
 
 #[tokio::test]
