@@ -59,6 +59,7 @@ fn every_link_between_the_pages_leads_somewhere() {
         "limits.md",
         "gallery.md",
         "errors.md",
+        "reference.md",
         "verification.md",
     ] {
         let text = page(name);

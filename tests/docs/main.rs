@@ -9,4 +9,5 @@ mod docs;
 mod examples;
 mod node;
 mod python;
+mod reference;
 mod report;

@@ -283,9 +283,9 @@ pub struct HistoryPage {
 pub struct LoopPage {
     /// The number of the move that a point belongs to.
     pub sequence: Vec<u64>,
-    /// Fraction of that move, 1 at its end.
+    /// Fraction of that move, a pure number: 1 at its end.
     pub part: Vec<f64>,
-    /// Tangential displacement U of the indenter, m.
+    /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: Vec<f64>,
     /// Tangential force F, N.
     pub force: Vec<f64>,

@@ -99,7 +99,8 @@ limits!(Span { count: 2..=2_000_000_usize, from: AXIS_VALUE, to: AXIS_VALUE });
 pub struct SweepReply {
     /// How many points, and numbers in each column.
     pub points: usize,
-    /// The columns by their pointers: the axes, then the outputs; `null` where a point has no such number or no answer.
+    /// The columns by their pointers: the axes, then the outputs, in the unit of the field; `null` where a point has no such
+    /// number or no answer.
     pub columns: BTreeMap<String, Vec<Option<f64>>>,
     /// How many points have no answer.
     pub failed: u64,
