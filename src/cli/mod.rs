@@ -10,6 +10,7 @@ mod io;
 mod key;
 mod limits;
 mod profile;
+mod progress;
 mod protocol;
 mod reload;
 mod report;

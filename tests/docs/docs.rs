@@ -23,6 +23,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
         ("measured-surfaces.md", 1),
         ("measured-loops.md", 1),
         ("contacts.md", 7),
+        ("sweeps.md", 2),
         ("gallery.md", 1),
         ("errors.md", 1),
     ] {

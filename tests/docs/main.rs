@@ -8,6 +8,7 @@ mod dashboards;
 mod docs;
 mod examples;
 mod node;
+mod progress;
 mod python;
 mod reference;
 mod report;
