@@ -19,9 +19,9 @@ USER 65532:65532
 WORKDIR /data
 VOLUME /data
 EXPOSE 8080
-# Others can reach this address, so the service does not start without keys: -v …/keys:/keys:ro -e STICKSLIP_KEYS=/keys.
-# In a closed network, -e STICKSLIP_INSECURE=true allows it.
-ENV STICKSLIP_LISTEN=0.0.0.0:8080
+# Others can reach this address, so the service needs keys. The first start makes one, prints it, and stores its entry in the
+# volume. Keys of your own: -v …/keys:/keys:ro -e STICKSLIP_KEYS=/keys. None, in a closed network: -e STICKSLIP_INSECURE=true.
+ENV STICKSLIP_LISTEN=0.0.0.0:8080 STICKSLIP_FIRST_KEY=/data/keys
 HEALTHCHECK --interval=10s --timeout=3s --start-period=2s CMD ["/stickslip", "healthcheck"]
 ENTRYPOINT ["/stickslip"]
 CMD ["serve"]
