@@ -3,11 +3,12 @@ FROM rust:1.95-bookworm AS build
 RUN apt-get update && apt-get install --yes --no-install-recommends musl-tools ca-certificates
 WORKDIR /src
 COPY Cargo.toml Cargo.lock build.rs image ./
+COPY build ./build
 COPY .cargo ./.cargo
 COPY crates ./crates
 COPY src ./src
 COPY openapi ./openapi
-# The commit that /metrics shows.
+# The commit that --version and /metrics show: --build-arg BUILD_COMMIT=$(git rev-parse --short=12 HEAD).
 ARG BUILD_COMMIT=unknown
 RUN ./image /image
 

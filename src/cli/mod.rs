@@ -48,7 +48,7 @@ use sweep::Sweep;
 
 /// Simulate the frictional contact of two elastic bodies exactly: as a service, or from the command line.
 #[derive(Parser)]
-#[command(version, about, args_conflicts_with_subcommands = true)]
+#[command(version = env!("BUILD_VERSION"), about, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,

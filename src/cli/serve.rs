@@ -139,7 +139,7 @@ pub fn serve(mut options: Serve) -> Result<(), String> {
     let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
     tracing::info!(
         version = env!("CARGO_PKG_VERSION"),
-        commit = option_env!("BUILD_COMMIT"),
+        commit = env!("BUILD_COMMIT"),
         pid = std::process::id(),
         cache_bytes = options.cache_bytes.as_u64(),
         expire_after_s,

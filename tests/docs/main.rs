@@ -12,3 +12,5 @@ mod progress;
 mod python;
 mod reference;
 mod report;
+mod system_service;
+mod version;
