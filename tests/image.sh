@@ -3,7 +3,11 @@
 # Called by `./check image`. Needs user namespaces, which it takes to look like root and to mount.
 set -euo pipefail
 
-fail() { echo "image: $*" >&2; exit 1; }
+fail() {
+    echo "image: $*" >&2
+    [ -z "${server:-}" ] || stop || true
+    exit 1
+}
 
 if [ "${1:-}" != inside ]; then
     root=${1:?usage: image.sh FOLDER}
@@ -40,7 +44,11 @@ start() {
     base=http://127.0.0.1:${listen#*:}
 }
 # Of the unshare that became the program.
-stop() { kill -TERM "$(pgrep -P "$server" || echo "$server")"; while kill -0 "$server" 2>/dev/null; do sleep 0.05; done; }
+stop() {
+    kill -TERM "$(pgrep -P "$server" || echo "$server")"
+    while kill -0 "$server" 2>/dev/null; do sleep 0.05; done
+    server=
+}
 call() { curl --silent --fail --max-time 10 -H "authorization: Bearer $key" "$@"; }
 post() { call "$base$1" -H 'content-type: application/json' -d "$2"; }
 
