@@ -3,11 +3,12 @@ FROM rust:1.95-bookworm AS build
 RUN apt-get update && apt-get install --yes --no-install-recommends musl-tools ca-certificates
 WORKDIR /src
 COPY Cargo.toml Cargo.lock build.rs image ./
+COPY build ./build
 COPY .cargo ./.cargo
 COPY crates ./crates
 COPY src ./src
 COPY openapi ./openapi
-# The commit that /metrics shows.
+# The commit that --version and /metrics show: --build-arg BUILD_COMMIT=$(git rev-parse --short=12 HEAD).
 ARG BUILD_COMMIT=unknown
 RUN ./image /image
 
@@ -19,9 +20,9 @@ USER 65532:65532
 WORKDIR /data
 VOLUME /data
 EXPOSE 8080
-# Others can reach this address, so the service does not start without keys: -v …/keys:/keys:ro -e STICKSLIP_KEYS=/keys.
-# In a closed network, -e STICKSLIP_INSECURE=true allows it.
-ENV STICKSLIP_LISTEN=0.0.0.0:8080
+# Others can reach this address, so the service needs keys. The first start makes one, prints it, and stores its entry in the
+# volume. Keys of your own: -v …/keys:/keys:ro -e STICKSLIP_KEYS=/keys. None, in a closed network: -e STICKSLIP_INSECURE=true.
+ENV STICKSLIP_LISTEN=0.0.0.0:8080 STICKSLIP_FIRST_KEY=/data/keys
 HEALTHCHECK --interval=10s --timeout=3s --start-period=2s CMD ["/stickslip", "healthcheck"]
 ENTRYPOINT ["/stickslip"]
 CMD ["serve"]

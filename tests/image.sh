@@ -3,7 +3,11 @@
 # Called by `./check image`. Needs user namespaces, which it takes to look like root and to mount.
 set -euo pipefail
 
-fail() { echo "image: $*" >&2; exit 1; }
+fail() {
+    echo "image: $*" >&2
+    [ -z "${server:-}" ] || stop || true
+    exit 1
+}
 
 if [ "${1:-}" != inside ]; then
     root=${1:?usage: image.sh FOLDER}
@@ -21,23 +25,37 @@ mount -o remount,bind,ro "$root"
 mount -t tmpfs tmpfs "$root/data"
 if touch "$root/made" 2>/dev/null; then fail "the root can be written to"; fi
 
-# As user 65532, in the root, with the environment of the image. The user has no right left once the program runs.
+# As user 65532, in the root, with the environment of the image but for the port. The user has no right left once the program runs.
+read -ra environment < <(sed -n 's/^ENV //p' "$(dirname "$0")/../Dockerfile")
+[[ " ${environment[*]} " == *" STICKSLIP_LISTEN=0.0.0.0:8080 "* ]] || fail "the image does not listen for the port that is published"
 alone() {
-    env --ignore-environment PATH="$PATH" STICKSLIP_LISTEN="${listen:-127.0.0.1:0}" \
+    env --ignore-environment PATH="$PATH" "${environment[@]}" STICKSLIP_LISTEN="${listen:-0.0.0.0:0}" \
         unshare --user --map-user=65532 --map-group=65532 --root="$root" --wd=/data /stickslip "$@"
 }
 start() {
     exec {lines}< <(alone serve 2>/dev/null)
     server=$!
-    read -r -t 30 -u "$lines" line || fail "the service does not start"
-    base=$(grep -o 'http://[0-9.:]*' <<<"$line")
-    listen=${base#http://}
+    made= line=
+    until [[ $line == *"listens on"* ]]; do
+        read -r -t 30 -u "$lines" line || fail "the service does not start"
+        [[ $line != "key "* ]] || made=${line#key }
+    done
+    listen=$(grep -o '0\.0\.0\.0:[0-9]*' <<<"$line")
+    base=http://127.0.0.1:${listen#*:}
 }
 # Of the unshare that became the program.
-stop() { kill -TERM "$(pgrep -P "$server" || echo "$server")"; while kill -0 "$server" 2>/dev/null; do sleep 0.05; done; }
-post() { curl --silent --fail --max-time 10 "$base$1" -H 'content-type: application/json' -d "$2"; }
+stop() {
+    kill -TERM "$(pgrep -P "$server" || echo "$server")"
+    while kill -0 "$server" 2>/dev/null; do sleep 0.05; done
+    server=
+}
+call() { curl --silent --fail --max-time 10 -H "authorization: Bearer $key" "$@"; }
+post() { call "$base$1" -H 'content-type: application/json' -d "$2"; }
 
 start
+key=$made
+[ -n "$key" ] || fail "the first start makes no key"
+[ "$(curl --silent --output /dev/null --write-out '%{http_code}' "$base/contacts")" = 401 ] || fail "it answers without a key"
 process=$(pgrep -f "^/stickslip serve" -P "$server" || echo "$server")
 grep -q '^ *65532 ' "/proc/$process/uid_map" || fail "the process is not user 65532"
 grep -q '^CapEff:[[:space:]]*0000000000000000$' "/proc/$process/status" || fail "the process has rights"
@@ -54,7 +72,15 @@ alone check --store sqlite:copy.db || fail "the backup is not sound"
 
 listen=
 start
-curl --silent --fail --max-time 10 "$base/contacts/$id" | grep -q '"sequence":1' || fail "the move is gone after a restart"
+[ -z "$made" ] || fail "the second start makes another key"
+call "$base/contacts/$id" | grep -q '"sequence":1' || fail "the move is gone after a restart"
+stop
+
+# In a closed network, without keys.
+listen=
+environment+=(STICKSLIP_INSECURE=true)
+start
+curl --silent --fail --max-time 10 "$base/contacts" >/dev/null || fail "it needs a key in a closed network"
 stop
 
 listen=

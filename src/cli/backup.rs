@@ -6,6 +6,7 @@ use clap::Args;
 use stickslip::store;
 
 use super::io::print;
+use super::progress;
 use super::settings::ConfigFile;
 
 /// The store and the copy.
@@ -21,9 +22,16 @@ pub struct Backup {
 }
 
 impl Backup {
-    /// Copies the store.
+    /// Copies the store, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
-        let bytes = store::backup(&self.store, &self.file).map_err(|error| error.to_string())?;
+        let bar = progress::bar_of_bytes();
+        let show = |copied: u64, whole: u64| {
+            bar.set_length(whole);
+            bar.set_position(copied.min(whole));
+        };
+        let copied = store::backup(&self.store, &self.file, show);
+        bar.finish_and_clear();
+        let bytes = copied.map_err(|error| error.to_string())?;
         print(format_args!("copied the store to {}, {bytes} bytes", self.file.display()))
     }
 }

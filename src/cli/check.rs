@@ -1,10 +1,11 @@
 //! `stickslip check`: verifies a store.
 
 use clap::Args;
-use stickslip::sessions::{self, Finding};
+use stickslip::sessions::{self, CheckEvent};
 use stickslip::store;
 
 use super::io::print;
+use super::progress;
 use super::settings::ConfigFile;
 
 /// The store, and the allowed difference.
@@ -22,15 +23,23 @@ pub struct Check {
 }
 
 impl Check {
-    /// Replays every contact, and prints the findings.
+    /// Replays every contact, and prints the findings, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
         let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
         let checked = runtime.block_on(async {
             let store = store::open_to_read(&self.store).await.map_err(|error| error.to_string())?;
-            // A finding that cannot be printed is counted nevertheless.
-            let mut report = |finding: &Finding| drop(print(finding));
-            sessions::check(&*store, self.tolerance, &mut report).await.map_err(|error| error.to_string())
+            // A store that cannot be listed is a finding of the check itself.
+            let moves = if progress::is_shown() { sessions::count_moves(&*store).await.unwrap_or(0) } else { 0 };
+            let bar = progress::bar(moves, "moves");
+            let mut report = |event: CheckEvent<'_>| match event {
+                // A finding that cannot be printed is counted nevertheless.
+                CheckEvent::Found(finding) => bar.suspend(|| drop(print(finding))),
+                CheckEvent::Progress(checked) => bar.set_position(checked.moves),
+            };
+            let checked = sessions::check(&*store, self.tolerance, &mut report).await;
+            bar.finish_and_clear();
+            checked.map_err(|error| error.to_string())
         })?;
         print(checked)?;
         if checked.findings == 0 { Ok(()) } else { Err("the store is not sound".to_owned()) }

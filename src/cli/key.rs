@@ -1,10 +1,13 @@
 //! `stickslip key new` makes a key; `serve` reads the keys of its setting.
 
-use std::path::PathBuf;
+use std::fs::{self, OpenOptions};
+use std::io::Write as _;
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use jiff::Timestamp;
-use stickslip::access::{Keys, Role, new_key_until};
+use stickslip::access::{Keys, Role, new_key, new_key_until};
 
 use super::io::print;
 use super::settings::masked;
@@ -56,6 +59,26 @@ pub fn key(key: Key) -> Result<(), String> {
     let new = new_key_until(&name, &roles, &tenant, expires_at)?;
     let note = note.map(|note| format!(" # {note}")).unwrap_or_default();
     print(format_args!("key   {}\nentry {}{note}", new.key, new.entry))
+}
+
+/// The roles of the first key: of an operator who is alone.
+const FIRST_ROLES: [Role; 2] = [Role::Write, Role::Metrics];
+
+/// Makes a file with the entry of a new key, for its owner alone, and prints the key; a file that exists stays as it is.
+pub fn make_first_key(file: &Path) -> Result<(), String> {
+    if fs::symlink_metadata(file).is_ok() {
+        return Ok(());
+    }
+    let new = new_key("first", &FIRST_ROLES, "")?;
+    let name = masked(&file.to_string_lossy());
+    let write = || {
+        let mut entries = OpenOptions::new().write(true).create_new(true).mode(0o600).open(file)?;
+        let written = writeln!(entries, "{} # made at the first start", new.entry).and_then(|()| entries.sync_all());
+        // Half an entry would end the next start.
+        written.inspect_err(|_| drop(fs::remove_file(file)))
+    };
+    write().map_err(|error| format!("--first-key {name}: cannot make the file: {error}"))?;
+    print(format_args!("key {}\nis the first key, shown this once; its entry is in {name}", new.key))
 }
 
 /// The files of a setting.

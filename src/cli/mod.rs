@@ -10,6 +10,7 @@ mod io;
 mod key;
 mod limits;
 mod profile;
+mod progress;
 mod protocol;
 mod reload;
 mod report;
@@ -47,7 +48,7 @@ use sweep::Sweep;
 
 /// Simulate the frictional contact of two elastic bodies exactly: as a service, or from the command line.
 #[derive(Parser)]
-#[command(version, about, args_conflicts_with_subcommands = true)]
+#[command(version = env!("BUILD_VERSION"), about, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,

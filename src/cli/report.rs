@@ -6,6 +6,8 @@ use std::time::Duration;
 use clap::Args;
 use stickslip_report::benchmark::{self, NAMES, Options};
 
+use super::progress;
+
 /// Where to write the report, and how much to measure.
 #[derive(Args)]
 pub struct Report {
@@ -33,7 +35,7 @@ pub struct Report {
 const BUDGET: u32 = 110;
 
 impl Report {
-    /// Measures, and writes the report.
+    /// Measures, and writes the report, with progress on a terminal.
     pub fn run(self) -> Result<(), String> {
         let all = || NAMES.iter().map(|name| (*name).to_owned()).collect();
         let options = Options {
@@ -44,7 +46,14 @@ impl Report {
             compiler: env!("BUILD_COMPILER"),
             python: self.peers,
         };
-        let written = benchmark::measure(&options).and_then(|measured| benchmark::write(&self.out, &measured));
+        let bar = progress::bar(options.scenes.len() as u64, "scenes");
+        let show = |scene: &str| {
+            bar.set_message(scene.to_owned());
+            bar.inc(1);
+        };
+        let measured = benchmark::measure(&options, show);
+        bar.finish_and_clear();
+        let written = measured.and_then(|measured| benchmark::write(&self.out, &measured));
         written.map_err(|error| format!("cannot report to {}: {error}", self.out.display()))
     }
 }

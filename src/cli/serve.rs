@@ -58,6 +58,10 @@ pub struct Serve {
     /// API keys: entries as `stickslip key new` prints them, or files with such entries, separated by commas.
     #[arg(long, env = "STICKSLIP_KEYS", value_delimiter = ',')]
     keys: Vec<String>,
+    /// File of keys for a service that has no --keys and is not --insecure; if there is none, it is made, with one key of the
+    /// roles write and metrics, which is printed this once.
+    #[arg(long, env = "STICKSLIP_FIRST_KEY", value_name = "FILE")]
+    first_key: Option<PathBuf>,
     /// File with the certificate of the service and those of its authorities (PEM): TLS, with --tls-key.
     #[arg(long, env = "STICKSLIP_TLS_CERT")]
     tls_cert: Option<PathBuf>,
@@ -109,7 +113,7 @@ enum LogFormat {
 }
 
 /// Serves until a signal stops it.
-pub fn serve(options: Serve) -> Result<(), String> {
+pub fn serve(mut options: Serve) -> Result<(), String> {
     let filter = EnvFilter::try_new(&options.log).map_err(|error| format!("--log {}: {error}", options.log))?;
     // Spans go to a collector alone, and are not even made where there is none.
     let filter = filter.add_directive(format!("{}=off", otlp::SPANS).parse().map_err(|error| format!("{error}"))?);
@@ -127,6 +131,7 @@ pub fn serve(options: Serve) -> Result<(), String> {
     };
     tracing_subscriber::registry().with(spans).with(lines.with_filter(filter)).init();
     log_panics();
+    options.take_first_key()?;
     let (access, keys) = access(&options)?;
     runtime.block_on(survive_file_size_limit())?;
     let tls = tls(&options)?;
@@ -134,7 +139,7 @@ pub fn serve(options: Serve) -> Result<(), String> {
     let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
     tracing::info!(
         version = env!("CARGO_PKG_VERSION"),
-        commit = option_env!("BUILD_COMMIT"),
+        commit = env!("BUILD_COMMIT"),
         pid = std::process::id(),
         cache_bytes = options.cache_bytes.as_u64(),
         expire_after_s,
@@ -152,6 +157,18 @@ pub fn serve(options: Serve) -> Result<(), String> {
         tracing::info!("stopped");
     }
     served
+}
+
+impl Serve {
+    /// Sets `--keys` to the file of `--first-key`, which is made if there is none, unless there are keys or none are wanted.
+    fn take_first_key(&mut self) -> Result<(), String> {
+        let Some(file) = self.first_key.take().filter(|_| self.keys.is_empty() && !self.insecure) else {
+            return Ok(());
+        };
+        key::make_first_key(&file)?;
+        self.keys.push(file.to_string_lossy().into_owned());
+        Ok(())
+    }
 }
 
 /// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the signal that
@@ -188,8 +205,8 @@ fn access(options: &Serve) -> Result<(Access, Option<KeysInForce>), String> {
     if keys.is_none() && !listen.ip().to_canonical().is_loopback() {
         if !options.insecure {
             return Err(format!(
-                "refusing to listen on {listen} without keys: give --keys, or a loopback address such as 127.0.0.1:{}, or \
-                 --insecure to let in everybody who can reach it",
+                "refusing to listen on {listen} without keys: give --keys, or --first-key to have one made, or a loopback \
+                 address such as 127.0.0.1:{}, or --insecure to let in everybody who can reach it",
                 listen.port()
             ));
         }

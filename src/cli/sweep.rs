@@ -1,6 +1,6 @@
 //! `stickslip sweep`: a sweep without a server.
 
-use std::io::{self, IsTerminal as _, Write as _};
+use std::io;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -11,9 +11,7 @@ use stickslip::simulation::{Sweep as Plan, SweepResult};
 use stickslip_wire::{self as wire, SweepRequest};
 
 use super::io::{json, problem, read, write};
-
-/// Width of the progress bar, characters.
-const BAR_WIDTH: usize = 40;
+use super::progress;
 
 /// The sweep, and how to run it.
 #[derive(Args)]
@@ -36,29 +34,20 @@ impl Sweep {
         let threads = self.threads.unwrap_or(cores).max(1);
         let (points, outputs) = (plan.points(), plan.numbers(1));
         let (mut result, mut done) = (SweepResult::default(), 0);
+        let bar = progress::bar(points as u64, "points");
         while done < points {
             let turns = (0..threads).map(|_| Turn::alone()).collect();
             let slice = plan.slice(done..points, turns, &Stop::default(), None);
             result.append(slice.map_err(problem)?);
             done = result.values.len() / outputs;
-            show_progress(done, points);
+            bar.set_position(done as u64);
         }
+        bar.finish_and_clear();
         if result.failed > 0 {
             eprintln!("{} of {points} points failed; the first: {}", result.failed, json(&result.failures[0]));
         }
         let format = Format::named(&self.format, &Format::TABLES).unwrap_or(Format::Csv);
         let mut blocks = tables::sweep(plan.checked(), result).blocks(format);
         write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))
-    }
-}
-
-/// Draws the progress bar if standard error is a terminal.
-fn show_progress(done: usize, points: usize) {
-    let mut err = io::stderr().lock();
-    if err.is_terminal() {
-        let full = BAR_WIDTH * done / points.max(1);
-        let (bar, end) = ("=".repeat(full), if done == points { "\n" } else { "" });
-        // Progress that cannot be shown is no error.
-        let _ = write!(err, "\r[{bar:BAR_WIDTH$}] {done} of {points}{end}").and_then(|()| err.flush());
     }
 }

@@ -29,6 +29,15 @@ pub struct Finding {
     pub what: String,
 }
 
+/// What a check tells while it runs.
+#[derive(Clone, Copy, Debug)]
+pub enum CheckEvent<'a> {
+    /// A fault.
+    Found(&'a Finding),
+    /// What has been checked so far.
+    Progress(&'a Checked),
+}
+
 /// Counts of what has been checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
@@ -64,6 +73,20 @@ impl fmt::Display for Checked {
     }
 }
 
+/// Moves of all contacts of a store.
+///
+/// # Errors
+/// As the store's, if its contacts cannot be listed.
+pub async fn count_moves(store: &dyn Store) -> Result<u64, StoreError> {
+    let (mut moves, mut after) = (0_u64, None);
+    loop {
+        let page = store.list(None, None, after, SESSIONS).await?;
+        let Some(last) = page.last() else { return Ok(moves) };
+        after = Some(last.id);
+        moves = page.iter().fold(moves, |moves, session| moves.saturating_add(session.sequence));
+    }
+}
+
 /// Checks all of a store, and reports every fault. Recorded states may differ from the replayed ones by
 /// `tolerance`, relative to the largest that the session has had; 0 means not in a single bit.
 ///
@@ -72,7 +95,7 @@ impl fmt::Display for Checked {
 pub async fn check(
     store: &dyn Store,
     tolerance: f64,
-    report: &mut (dyn FnMut(&Finding) + Send),
+    report: &mut (dyn FnMut(CheckEvent<'_>) + Send),
 ) -> Result<Checked, StoreError> {
     let mut check = Check { store, tolerance, report, checked: Checked::default() };
     match store.check_integrity().await {
@@ -100,14 +123,14 @@ pub async fn check(
 struct Check<'a> {
     store: &'a dyn Store,
     tolerance: f64,
-    report: &'a mut (dyn FnMut(&Finding) + Send),
+    report: &'a mut (dyn FnMut(CheckEvent<'_>) + Send),
     checked: Checked,
 }
 
 impl Check<'_> {
     fn found(&mut self, contact: Option<Uuid>, what: String) {
         self.checked.findings += 1;
-        (self.report)(&Finding { contact, what });
+        (self.report)(CheckEvent::Found(&Finding { contact, what }));
     }
 
     /// Records unreadable data as a finding, unless the whole store is unreachable.
@@ -198,6 +221,7 @@ impl Check<'_> {
                 }
                 self.compare_snapshot(id, at, &contact, snapshot.as_ref());
             }
+            (self.report)(CheckEvent::Progress(&self.checked));
         }
         if different > REPORTED {
             self.found(Some(id), format!("{} further moves differ", different - REPORTED));

@@ -48,7 +48,7 @@ use stickslip_wire::{ForkRequest, SessionReply};
 
 pub use cache::CAPACITY;
 use cache::{Cache, Guard};
-pub use check::{Checked, Finding, check};
+pub use check::{CheckEvent, Checked, Finding, check, count_moves};
 pub use error::SessionError;
 pub use events::STREAMS;
 use loaded::LoadedSession;

@@ -91,14 +91,15 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     }
 }
 
-/// Copies a store to a file that is not there yet, while it is in use or not; returns its bytes.
+/// Copies a store to a file that is not there yet, while it is in use or not; returns its bytes. Meanwhile `progress` is called
+/// now and then with the bytes of the copy so far and of the store, which may have free pages that are not copied.
 ///
 /// # Errors
 /// [`OpenError`] if the store is none that is kept in a file, or why there is no copy.
-pub fn backup(url: &str, copy: &Path) -> Result<u64, OpenError> {
+pub fn backup(url: &str, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, OpenError> {
     match kind(url)? {
         Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),
-        Kind::Sqlite(path) => SqliteStore::backup(path, copy).map_err(|why| OpenError::new(url, why)),
+        Kind::Sqlite(path) => SqliteStore::backup(path, copy, progress).map_err(|why| OpenError::new(url, why)),
         Kind::Postgres => {
             Err(OpenError::of(url, "a database is backed up by its own means: pg_dump --format=custom --file=FILE URL"))
         }

@@ -31,6 +31,7 @@ mod cycles_path;
 mod documents;
 mod events;
 mod exposure;
+mod first_key;
 mod fit;
 mod formats;
 mod fretting;

@@ -11,9 +11,10 @@ use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 30] = [
+const CASES: [(&str, [&str; 3]); 31] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
     ("keys", ["a.keys", "b.keys", "c.keys"]),
+    ("first-key", ["a.keys", "b.keys", "c.keys"]),
     ("insecure", ["true", "true", "true"]),
     ("allowed-hosts", ["a.example", "b.example:81", "[2001:db8::1]"]),
     ("cors-origins", ["https://a.example", "http://b.example:81", "http://[::1]"]),

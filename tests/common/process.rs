@@ -52,6 +52,11 @@ impl Process {
             panic!("the server ended at once: {:?}", child.wait());
         };
         let base = line.split_whitespace().find(|word| word.starts_with("http")).unwrap().trim_end_matches(',');
+        Process::running(child, base)
+    }
+
+    /// A server that runs already, by its address.
+    pub fn running(child: Child, base: &str) -> Process {
         Process { child: Some(child), base: base.to_owned(), client: Client::new(base) }
     }
 

@@ -23,6 +23,7 @@ async fn every_command_of_the_pages_runs_as_printed() {
         ("measured-surfaces.md", 1),
         ("measured-loops.md", 1),
         ("contacts.md", 7),
+        ("sweeps.md", 2),
         ("gallery.md", 1),
         ("errors.md", 1),
     ] {
@@ -38,6 +39,33 @@ async fn every_command_of_the_pages_runs_as_printed() {
     }
     // The pages leave nothing behind but the contact of the gallery and two forks.
     assert_eq!(server.client.contacts(None, None).await.unwrap().items.len(), 3);
+}
+
+/// The second block of the page of access, in a folder with the file of keys of a running server.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_key_is_added_to_a_running_server_as_the_page_says() {
+    let text = page("access.md");
+    let block = text.split("```sh\n").nth(2).unwrap().split("```").next().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let first = stickslip::access::new_key("bench", &[stickslip::access::Role::Read], "lab").unwrap();
+    let keys = folder.path().join("keys");
+    std::fs::write(&keys, format!("{}\n", first.entry)).unwrap();
+    let arguments = ["--store", "memory:", "--keys", keys.to_str().unwrap()];
+    let server = Process::start_with(&arguments, &folder.path().join("log")).await;
+    let programs = std::path::Path::new(env!("CARGO_BIN_EXE_stickslip")).parent().unwrap();
+    let path = std::env::join_paths(
+        [programs.to_owned()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+    );
+    let mut run = Command::new("bash");
+    let script = block.replace("localhost:8080", server.base.trim_start_matches("http://"));
+    run.args(["-euo", "pipefail", "-c", &script]).current_dir(folder.path()).env("PATH", path.unwrap());
+    let said = succeed(&mut run, "bash is there");
+    assert!(said.contains("{\"items\":[]"), "{said}");
+    // The key before still counts.
+    let http = reqwest::Client::new();
+    let reply = http.get(format!("{}/contacts", server.base)).bearer_auth(&first.key).send().await.unwrap();
+    assert_eq!(reply.status(), 200);
+    assert_eq!(std::fs::read_to_string(keys).unwrap().lines().count(), 2);
 }
 
 #[test]
@@ -59,6 +87,7 @@ fn every_link_between_the_pages_leads_somewhere() {
         "limits.md",
         "gallery.md",
         "errors.md",
+        "reference.md",
         "verification.md",
     ] {
         let text = page(name);

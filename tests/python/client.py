@@ -4,17 +4,22 @@ import sys
 
 from made import Client
 from made.api.contacts import create_contact, get_contact, get_history, get_stress, move_contact, watch_contact
+from made.api.simulation import run_sweep
 from made.models import (
+    Axis,
     CreateRequest,
     ElasticBody,
     Field,
     MaterialBodies,
     MoveRequest,
+    NamedOutput,
     PreloadNormalForce,
     ProblemDocument,
     Rigid,
     SphereProfile,
     SphereProfileType,
+    SweepRequest,
+    SweepRequestBase,
 )
 
 RADIUS, LOAD, FRICTION = 0.01, 10.0, 0.3
@@ -59,4 +64,16 @@ assert [item.sequence for item in get_history.sync(id=made.id, client=client).it
 # Events end after as many as are asked for, so that they can be read whole.
 events = watch_contact.sync(id=made.id, client=client, last_event_id=0, limit=1)
 assert events.startswith("id: 1\nevent: state\ndata: {") and events.count("data: ") == 1, events
+# Columns of a sweep by names of their own. Gross slip begins at mu F_N.
+contact = {name: value for name, value in ball.to_dict().items() if name != "label"}
+table = run_sweep.sync(
+    client=client,
+    body=SweepRequest(
+        base=SweepRequestBase.from_dict({"contact": contact, "path": {"displacement": [1e-8]}}),
+        axes=[Axis(pointer="/contact/friction", name="mu", values=[0.1, 0.2])],
+        outputs=[NamedOutput(pointer="/contact/gross_slip_force", name="limit")],
+    ),
+)
+for friction, limit in zip(table.columns["mu"], table.columns["limit"], strict=True):
+    assert abs(limit / (friction * LOAD) - 1) < 1e-12, table
 print("the generated client works")

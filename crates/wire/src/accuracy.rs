@@ -63,9 +63,10 @@ pub struct Reference {
     pub solver: SolverKind,
     /// What makes it a reference.
     pub reason: String,
-    /// Its own estimated error of the forces, relative to `force_unit`: smaller differences have no meaning.
+    /// Its own estimated error of the forces, relative to `force_unit`, a pure number: smaller
+    /// differences have no meaning.
     pub force_error: f64,
-    /// Its own estimated error of the stresses, relative to `stress_unit`.
+    /// Its own estimated error of the stresses, relative to `stress_unit`, a pure number.
     pub stress_error: f64,
     /// Time spent on it, s.
     pub compute_time: f64,
@@ -83,14 +84,16 @@ pub struct Reference {
 pub struct AccuracyRow {
     /// The solver.
     pub solver: Solver,
-    /// Largest difference of the force from that of the reference, over all moves, relative to `force_unit`; `null` without
-    /// an answer, or where it is infinite.
+    /// Largest difference of the force from that of the reference, over all moves, relative to `force_unit`, a pure
+    /// number; `null` without an answer, or where it is infinite.
     pub force_error: Option<f64>,
-    /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`; likewise.
+    /// Largest difference of the shear stress at the end, over the radii, relative to `stress_unit`, a pure number;
+    /// likewise.
     pub stress_error: Option<f64>,
-    /// Error of the force as the solver estimates it, without a reference; likewise.
+    /// Error of the force as the solver estimates it, without a reference, relative to `force_unit`, a pure number; likewise.
     pub estimated_force_error: Option<f64>,
-    /// Error of the stress as the solver estimates it: for radii some cells away from kinks; likewise.
+    /// Error of the stress as the solver estimates it, relative to `stress_unit`, a pure number: for radii some cells away
+    /// from kinks; likewise.
     pub estimated_stress_error: Option<f64>,
     /// Time spent computing, s: the median of a few runs if one takes less than some milliseconds.
     pub compute_time: f64,

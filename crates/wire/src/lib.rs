@@ -78,4 +78,4 @@ pub use subsurface::{
     BodyName, Bulk, Direction, Subsurface, SubsurfaceField, SubsurfaceLine, SubsurfacePlane, SubsurfaceReply,
     SubsurfaceRequest, SubsurfaceSurface,
 };
-pub use sweep::{Axis, PointFailure, Span, SweepReply, SweepRequest};
+pub use sweep::{Axis, NamedOutput, Output, PointFailure, Span, SweepReply, SweepRequest};

@@ -365,20 +365,20 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, ContactDefinition, CreateRequest, CycleDrive,
         CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie, Findley,
         FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, LoadSpan, Machine, Material, Move, MoveRequest,
-        NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, Preload, ProtocolRequest, RelaxRequest,
-        RenameRequest, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane,
-        SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
+        NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, Preload, ProtocolRequest,
+        RelaxRequest, RenameRequest, SimulateRequest, Span, Springs, StrainBased, StressRequest, SubsurfaceLine,
+        SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity,
     };
 
-    fn of<D: Limited>() -> impl Iterator<Item = (&'static str, &'static str, Value)> {
-        D::limits().into_iter().map(|(member, keywords)| (D::SCHEMA, member, keywords))
+    fn of<D: Limited>() -> Vec<(&'static str, &'static str, Value)> {
+        D::limits().into_iter().map(|(member, keywords)| (D::SCHEMA, member, keywords)).collect()
     }
     macro_rules! of_all {
-        { $($document:ty),* } => { std::iter::empty()$(.chain(of::<$document>()))*.collect() };
+        { $($document:ty),* } => { [$(of::<$document>()),*].concat() };
     }
     of_all! {
         AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, CentrePlace, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, KnownValue, LineScan, LoadSpan, Machine, MapScan, Material, MeasuredLoop, Move, MoveRequest, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart, RelaxRequest, RenameRequest,
+        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, KnownValue, LineScan, LoadSpan, Machine, MapScan, Material, MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart, RelaxRequest, RenameRequest,
         Robustness, ScanLoad, SimulateRequest, Smoothing, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity
     }
 }

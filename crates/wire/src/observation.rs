@@ -61,7 +61,7 @@ pub struct ObservationsReply {
 pub struct ObservedMove {
     /// Tangential displacement, m.
     pub displacement: f64,
-    /// Measured tangential force, N.
+    /// Measured tangential force, N; positive along x.
     pub force: f64,
     /// Tangential force of the contact there, N, with the friction of its definition.
     pub predicted: f64,
@@ -74,7 +74,7 @@ pub struct ObservedMove {
 #[apply(Option => #[serde(default)] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ObservedForce {
-    /// Measured tangential force, N.
+    /// Measured tangential force, N; positive along x.
     pub force: f64,
     /// Tangential force of the contact there, N, with the friction of its definition.
     pub predicted: f64,
@@ -89,7 +89,7 @@ pub struct ObservedForce {
 pub struct FrictionEstimate {
     /// Coefficient of friction μ, a pure number.
     pub value: f64,
-    /// Its 95 % interval.
+    /// Both ends of its 95 % interval, pure numbers.
     #[schema(min_items = 2, max_items = 2)]
     pub interval: [f64; 2],
     /// The number of the move after which the cycle began.

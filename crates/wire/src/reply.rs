@@ -34,13 +34,13 @@ pub struct ContactSummary {
 /// The state after a move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct State {
-    /// Tangential displacement U of the indenter, m.
+    /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: f64,
     /// Tangential force F, N; positive for a positive displacement of a virgin contact.
     pub force: f64,
-    /// Indentation d, m; below zero the bodies are apart.
+    /// Indentation d, m; positive when pressed in, below zero the bodies are apart.
     pub indentation: f64,
-    /// Normal force F_N, N.
+    /// Normal force F_N, N; compression is positive.
     pub normal_force: f64,
     /// Contact radius a, m; of a profile without a stress field F_N′/(2 E*).
     pub contact_radius: f64,
@@ -48,7 +48,7 @@ pub struct State {
     pub stick_radius: f64,
     /// How much of the contact slipped in the last move.
     pub regime: Regime,
-    /// Work dissipated by friction since the start, J.
+    /// Work dissipated by friction since the start, J; never falls.
     pub dissipated_energy: f64,
     /// Energy stored in the tangential deformation, J.
     pub elastic_energy: f64,
@@ -86,7 +86,7 @@ impl Regime {
 /// The extrema of the shear stress of a contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Residual {
-    /// Shear stress in the centre, Pa; `null` where it is infinite.
+    /// Shear stress in the centre, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub centre: Option<f64>,
     /// All local extrema strictly between centre and edge, from the centre outwards, at their exact positions.
     pub peaks: Vec<Peak>,
@@ -96,8 +96,8 @@ pub struct Residual {
     pub min: Option<f64>,
     /// Mean magnitude of the peaks, Pa; `null` without a peak.
     pub mean: Option<f64>,
-    /// `max` over μ times the largest pressure at the present load (or, where that is infinite, the mean); `null` where
-    /// `max` is, without a load and without friction.
+    /// `max` over μ times the largest pressure at the present load (or, where that is infinite, the mean), a pure number;
+    /// `null` where `max` is, without a load and without friction.
     pub relative: Option<f64>,
 }
 
@@ -106,7 +106,7 @@ pub struct Residual {
 pub struct Peak {
     /// Where, m.
     pub radius: f64,
-    /// Shear stress there, Pa; `null` where it is infinite.
+    /// Shear stress there, Pa, positive as a positive displacement causes it; `null` where it is infinite.
     pub shear: Option<f64>,
 }
 
@@ -117,13 +117,14 @@ pub struct Accuracy {
     pub solver: SolverKind,
     /// Why this one.
     pub reason: String,
-    /// Estimated error of the forces, relative to the friction limit μ F_N: of rounding, of curved paths, of the
+    /// Estimated error of the forces, relative to the friction limit μ F_N, a pure number: of rounding, of curved paths, of the
     /// interpolation of a table, of springs.
     pub force_error: f64,
-    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean); of no
-    /// meaning for a profile without a stress field.
+    /// Estimated error of the stresses, relative to μ times the largest pressure (or, where that is infinite, to the mean), a
+    /// pure number; of no meaning for a profile without a stress field.
     pub stress_error: f64,
-    /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), if it was asked for.
+    /// Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
+    /// number, if it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub subsurface_error: Option<f64>,

@@ -234,13 +234,13 @@ pub struct PathReply {
 pub struct StressReply {
     /// Radii, m.
     pub radius: Vec<f64>,
-    /// Normal pressure, Pa; `null` where it is infinite.
+    /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
     pub pressure: Option<Vec<Option<f64>>>,
-    /// Shear stress, Pa; `null` where it is infinite.
+    /// Shear stress, Pa; positive as a positive displacement causes it; `null` where it is infinite.
     pub shear: Option<Vec<Option<f64>>>,
-    /// Slip, m; `null` outside the contact.
+    /// Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact.
     pub slip: Option<Vec<Option<f64>>>,
-    /// Tangential displacement of the surface, m.
+    /// Tangential displacement u(r) of the surface, m; positive along x.
     pub displacement: Option<Vec<Option<f64>>>,
     /// The extrema of the shear stress, if asked for.
     pub residual: Option<Residual>,
@@ -283,9 +283,9 @@ pub struct HistoryPage {
 pub struct LoopPage {
     /// The number of the move that a point belongs to.
     pub sequence: Vec<u64>,
-    /// Fraction of that move, 1 at its end.
+    /// Fraction of that move, a pure number: 1 at its end.
     pub part: Vec<f64>,
-    /// Tangential displacement U of the indenter, m.
+    /// Tangential displacement U of the indenter, m; positive along x.
     pub displacement: Vec<f64>,
     /// Tangential force F, N.
     pub force: Vec<f64>,

@@ -62,13 +62,13 @@ impl Field {
 pub struct Stress {
     /// Radii, m.
     pub radius: Vec<f64>,
-    /// Normal pressure, Pa; `null` where it is infinite.
+    /// Normal pressure, Pa; compression is positive; `null` where it is infinite.
     pub pressure: Option<Vec<Option<f64>>>,
-    /// Shear stress, Pa; `null` where it is infinite.
+    /// Shear stress, Pa; positive as a positive displacement causes it; `null` where it is infinite.
     pub shear: Option<Vec<Option<f64>>>,
-    /// Slip, m; `null` outside the contact.
+    /// Slip U − u(r), the displacement of the indenter less that of the surface, m; `null` outside the contact.
     pub slip: Option<Vec<Option<f64>>>,
-    /// Tangential displacement of the surface, m.
+    /// Tangential displacement u(r) of the surface, m; positive along x.
     pub displacement: Option<Vec<Option<f64>>>,
 }
 

@@ -1,5 +1,7 @@
 //! The body of `POST /sweep`, and its table.
 
+mod column;
+
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -17,6 +19,9 @@ use super::limits::{Items, Limit, Numbers, limits};
 use super::parse::{Document, Rejection, parse_value};
 use super::simulate::SimulateRequest;
 use super::single_key::not_null;
+use column::ColumnName;
+
+pub use column::{NamedOutput, Output};
 
 /// How far from a whole number, relatively, a value may be that goes to a field of whole numbers; it is rounded then.
 const WHOLE: f64 = 1e-9;
@@ -52,10 +57,10 @@ pub struct SweepRequest {
     pub base: JsonValue,
     /// The numbers that change.
     pub axes: Vec<Axis>,
-    /// JSON pointers to numbers in the reply to `POST /simulate`, a column each. Where a point does not have one, such as a
-    /// peak of a number that it does not reach, the column has `null`.
+    /// JSON pointers to numbers in the reply to `POST /simulate`, a column each, with or without a name. Where a point does
+    /// not have one, such as a peak of a number that it does not reach, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
-    pub outputs: Vec<String>,
+    pub outputs: Vec<Output>,
     /// Always make a job of it, even if it is small.
     #[serde(default)]
     pub job: bool,
@@ -71,6 +76,9 @@ pub struct Axis {
     /// JSON pointer to the number in the base, or to a member for a number that the base leaves out.
     #[schema(example = "/contact/friction")]
     pub pointer: String,
+    /// The name of the column; left out, the pointer.
+    #[schema(example = "friction")]
+    pub name: Option<String>,
     /// Evenly spaced values.
     pub linear: Option<Span>,
     /// Values with the same ratio from one to the next; both ends positive, or both negative.
@@ -78,7 +86,7 @@ pub struct Axis {
     /// These values.
     pub values: Option<Vec<f64>>,
 }
-limits!(Axis { values: AXIS_VALUES });
+limits!(Axis { name: ColumnName, values: AXIS_VALUES });
 
 /// Values from one to another. Where the field takes whole numbers, each of them must be whole to one part in 1e9, and is
 /// rounded; else list the values.
@@ -99,7 +107,8 @@ limits!(Span { count: 2..=2_000_000_usize, from: AXIS_VALUE, to: AXIS_VALUE });
 pub struct SweepReply {
     /// How many points, and numbers in each column.
     pub points: usize,
-    /// The columns by their pointers: the axes, then the outputs; `null` where a point has no such number or no answer.
+    /// The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a point
+    /// has no such number or no answer.
     pub columns: BTreeMap<String, Vec<Option<f64>>>,
     /// How many points have no answer.
     pub failed: u64,
@@ -165,6 +174,7 @@ impl Document for SweepRequest {
             );
         }
         let outputs = self.check_outputs(&mut faults);
+        self.check_names(&mut faults);
         let points = axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count()));
         if points > SWEEP_POINTS {
             faults.add(at, format_args!("{points} points: allowed are {}", SWEEP_POINTS));
@@ -191,11 +201,12 @@ impl SweepRequest {
         if !faults.length(at, self.outputs.len(), &OUTPUTS) {
             return outputs;
         }
-        for (index, text) in self.outputs.iter().enumerate() {
-            let at = at.index(index);
+        for (index, output) in self.outputs.iter().enumerate() {
+            let (at, text) = (at.index(index), output.pointer());
+            let at = output.place_of_pointer(&at);
             match Pointer::parse(text) {
                 None => faults.add(at, NO_POINTER),
-                Some(pointer) if outputs.contains(&pointer) || self.axes.iter().any(|axis| axis.pointer == *text) => {
+                Some(pointer) if outputs.contains(&pointer) || self.axes.iter().any(|axis| axis.pointer == text) => {
                     faults.add(at, "another column has the same pointer");
                 }
                 Some(pointer) => outputs.push(pointer),

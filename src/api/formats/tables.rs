@@ -247,12 +247,12 @@ pub fn sweep(sweep: &CheckedSweep, SweepResult { values, failed, failures }: Swe
     for (index, axis) in request.axes.iter().enumerate() {
         let axes = Arc::clone(&axes);
         let value = move |row| indices(&axes, row).nth(index).map(|(axis, index)| axis.number(index));
-        columns.push(Column::new(&axis.pointer, None, Cells::Numbers(Box::new(value))));
+        columns.push(Column::new(axis.column(), None, Cells::Numbers(Box::new(value))));
     }
-    for (index, name) in request.outputs.iter().enumerate() {
+    for (index, output) in request.outputs.iter().enumerate() {
         let values = Arc::clone(&values);
         let value = move |row| values.get(row * count + index).and_then(|value| Number::from_f64(*value));
-        columns.push(Column::new(name, None, Cells::Numbers(Box::new(value))));
+        columns.push(Column::new(output.column(), None, Cells::Numbers(Box::new(value))));
     }
     let failures = serde_json::to_string(&failures).unwrap_or_else(|_| "[]".to_owned());
     let before = format!("{{\"points\":{},\"columns\":{{", sweep.points);

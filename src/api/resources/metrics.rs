@@ -120,7 +120,7 @@ fn process(page: &Registry, traffic: &RequestMetrics) -> prometheus::Result<()> 
         .const_label("version", env!("CARGO_PKG_VERSION"))
         .const_label("engine", ENGINE.to_string())
         .const_label("rustc", env!("BUILD_COMPILER"))
-        .const_label("commit", option_env!("BUILD_COMMIT").unwrap_or("unknown"));
+        .const_label("commit", env!("BUILD_COMMIT"));
     gauge(page, build, 1.0)?;
     let now = Process::now();
     if let Some(seconds) = now.processor_seconds {

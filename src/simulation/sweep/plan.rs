@@ -101,11 +101,13 @@ impl Sweep {
 
     fn check_outputs(&self, found: &[Lookup]) -> Result<(), Rejection> {
         let (mut faults, at) = (Faults::default(), JsonPath::Root.member("outputs"));
-        for (index, found) in found.iter().enumerate() {
+        for (index, (found, output)) in found.iter().zip(&self.checked.request.outputs).enumerate() {
+            let at = at.index(index);
+            let at = output.place_of_pointer(&at);
             match found {
                 Lookup::Number(_) => {}
-                Lookup::Nothing => faults.add(at.index(index), "the reply to the base has no such member"),
-                Lookup::Other => faults.add(at.index(index), "the reply to the base has no number there"),
+                Lookup::Nothing => faults.add(at, "the reply to the base has no such member"),
+                Lookup::Other => faults.add(at, "the reply to the base has no number there"),
             }
         }
         faults.done(Some(()))

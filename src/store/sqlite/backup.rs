@@ -4,12 +4,18 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::FileExt as _;
 use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
 use rusqlite::Connection;
 
 use super::file::{MARK, beside, check_mark, lock, open_private, sync_folder};
 use super::readers::open_reader;
 use super::schema::{self, APPLICATION, IN_USE};
+
+/// How often the size of a copy is looked at.
+const POLL: Duration = Duration::from_millis(100);
 
 /// A read-only connection to a store of a version that this program supports.
 pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
@@ -35,8 +41,9 @@ fn mark(path: &Path) -> io::Result<i32> {
 }
 
 /// Copies the store at a path to a file that is not there yet: one state of it, whatever is written meanwhile. The copy
-/// gets its name when it is complete and on the disk. Returns its bytes.
-pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
+/// gets its name when it is complete and on the disk. Returns its bytes. Calls `progress` meanwhile with its bytes so far and those
+/// of the store.
+pub(super) fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
     let describe = |error: io::Error| format!("{}: {error}", copy.display());
     if fs::symlink_metadata(copy).is_ok() {
         return Err(format!("{} is there already, and is not overwritten", copy.display()));
@@ -46,7 +53,8 @@ pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
     // The remains of an interrupted copy are overwritten; the lock distinguishes them from a copy under way.
     let file = open_private(&partial).map_err(describe)?;
     lock(&file).map_err(|why| format!("{}: {why}", partial.display()))?;
-    let copied = copied(&database, &file, &partial).and_then(|bytes| {
+    let whole = fs::metadata(path).map_or(0, |found| found.len());
+    let copied = watched(&file, whole, progress, || copied(&database, &file, &partial)).and_then(|bytes| {
         publish(&partial, copy).map_err(describe)?;
         Ok(bytes)
     });
@@ -55,6 +63,21 @@ pub(super) fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
         let _ = fs::remove_file(&partial);
     }
     copied
+}
+
+/// The result of `work`, during which `progress` is told of the length of a file now and then.
+fn watched<T>(file: &File, whole: u64, mut progress: impl FnMut(u64, u64) + Send, work: impl FnOnce() -> T) -> T {
+    thread::scope(|scope| {
+        let (working, ended) = mpsc::channel::<()>();
+        scope.spawn(move || {
+            while ended.recv_timeout(POLL) == Err(RecvTimeoutError::Timeout) {
+                progress(file.metadata().map_or(0, |found| found.len()), whole);
+            }
+        });
+        let result = work();
+        drop(working);
+        result
+    })
 }
 
 fn copied(database: &Connection, file: &File, partial: &Path) -> Result<u64, String> {

@@ -126,8 +126,8 @@ impl SqliteStore {
     ///
     /// # Errors
     /// Why there is no copy, in one line.
-    pub fn backup(path: &Path, copy: &Path) -> Result<u64, String> {
-        backup::backup(path, copy)
+    pub fn backup(path: &Path, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> Result<u64, String> {
+        backup::backup(path, copy, progress)
     }
 
     /// Has the writer make a change of about `weight` rows, and returns its count when it is durable. The listeners of

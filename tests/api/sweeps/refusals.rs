@@ -17,6 +17,8 @@ fn axis(pointer: &str, key: &str, values: Value) -> Value {
 async fn every_fault_is_named_with_its_place() {
     let server = Server::start().await;
     let friction = || axis("/contact/friction", "values", json!([0.1, 0.2]));
+    let called = |name: &str| json!([{"pointer": "/contact/friction", "name": name, "values": [0.1, 0.2]}]);
+    let named = |pointer: &str, name: &str| json!({"pointer": pointer, "name": name});
     let reversals = "/path/falling_amplitude/reversals";
     let max = || json!(["/residual/max"]);
     let span = |from: f64, to: f64, count: usize| json!({"from": from, "to": to, "count": count});
@@ -71,6 +73,36 @@ async fn every_fault_is_named_with_its_place() {
         (sweep(friction(), json!(["/stress/shear/0"])), "/outputs/0", "no such member"),
         (sweep(friction(), json!(["/steps/1/force"])), "/outputs/0", "no such member"),
         (sweep(friction(), json!(["/residual/peaks/900/shear"])), "", ""),
+        // Names of columns.
+        (sweep(friction(), json!([named("/residual/max", "largest")])), "", ""),
+        (sweep(called("mu"), json!([named("/residual/max", "largest")])), "", ""),
+        (sweep(called("1st"), max()), "/axes/0/name", "a letter"),
+        (sweep(called("mu,2"), max()), "/axes/0/name", "a letter"),
+        (sweep(called("\u{3bc}"), max()), "/axes/0/name", "a letter"),
+        (sweep(called(&"m".repeat(64)), max()), "", ""),
+        (sweep(called(&"m".repeat(65)), max()), "/axes/0/name", "64"),
+        (
+            sweep(json!([{"pointer": "/contact/friction", "name": null, "values": [0.1]}]), max()),
+            "/axes/0/name",
+            "null",
+        ),
+        (sweep(friction(), json!([named("/residual/max", "")])), "/outputs/0/name", "a letter"),
+        (sweep(friction(), json!([named("/residual/max", "/residual/max")])), "/outputs/0/name", "a letter"),
+        (sweep(called("mu"), json!([named("/residual/max", "mu")])), "/outputs/0/name", "same name"),
+        (sweep(friction(), json!([{"pointer": "/residual/max"}])), "/outputs/0/name", "missing"),
+        (
+            sweep(friction(), json!([{"pointer": "/residual/max", "name": "a", "unit": "Pa"}])),
+            "/outputs/0/unit",
+            "unknown",
+        ),
+        (sweep(friction(), json!([3])), "/outputs/0", "a JSON pointer"),
+        (sweep(friction(), json!([named("residual", "largest")])), "/outputs/0/pointer", "JSON pointer"),
+        (sweep(friction(), json!([named("/residual/largest", "largest")])), "/outputs/0/pointer", "no such member"),
+        (
+            sweep(friction(), json!(["/residual/max", named("/residual/max", "b")])),
+            "/outputs/1/pointer",
+            "same pointer",
+        ),
         // The base.
         (changed("/base/contact/profile", json!({"type": "sphere"})), "/base/contact/profile/radius", "missing"),
         (changed("/base/contact/preload", json!({"normal_force": -1})), "/base/contact/preload/normal_force", "range"),

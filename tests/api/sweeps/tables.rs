@@ -6,6 +6,9 @@ use arrow_array::types::Float64Type;
 use arrow_ipc::reader::StreamReader;
 use serde_json::{Value, json};
 
+use stickslip_wire::SweepRequest;
+use stickslip_wire::client::{Options, Swept};
+
 use super::{base, small_job};
 use crate::common::{Server, ball, problem, run};
 
@@ -205,6 +208,48 @@ async fn every_format_holds_the_same_numbers_at_once_and_from_a_job() {
         let refusal = problem(server.send(method, &path, body.as_deref(), &[("accept", "image/png")]).await).await;
         assert_eq!(refusal.code, "not_acceptable");
     }
+}
+
+/// The same table twice, once with names: the same numbers under other headings, at once, from a job, and by the typed client.
+#[tokio::test]
+async fn named_columns_hold_the_numbers_of_their_pointers() {
+    let server = Server::start().await;
+    let pointers = ["/contact/friction", "/path/falling_amplitude/reversals", "/residual/max", "/residual/mean"];
+    let names = ["mu", "/path/falling_amplitude/reversals", "largest_shear", "/residual/mean"];
+    let plain = json!({"base": base(), "axes": [
+        {"pointer": pointers[0], "values": [0.1, 0.2, 0.3]}, {"pointer": pointers[1], "values": [1, 5]}
+    ], "outputs": [pointers[2], pointers[3]]});
+    let mut named = plain.clone();
+    named["axes"][0]["name"] = json!(names[0]);
+    named["outputs"][0] = json!({"pointer": pointers[2], "name": names[2]});
+    let table = |text: &str| serde_json::from_str::<Value>(text).unwrap();
+    let without = table(&server.post("/sweep", &plain).await.text().await.unwrap());
+    let mut asked = named.clone();
+    asked["job"] = json!(true);
+    let job = server.start_job(&asked).await;
+    for text in [server.post("/sweep", &named).await.text().await.unwrap(), server.job_result(&job).await] {
+        let with = table(&text);
+        assert_eq!(with["columns"].as_object().unwrap().len(), 4);
+        for (name, pointer) in names.into_iter().zip(pointers) {
+            assert_eq!(with["columns"][name], without["columns"][pointer], "{name}");
+            assert!(with["columns"][name][5].is_number());
+        }
+    }
+    let result = async |format: &str| server.get(&format!("{job}/result?format={format}")).await.bytes().await.unwrap();
+    assert!(result("csv").await.starts_with(format!("{}\n", names.join(",")).as_bytes()));
+    let first = result("ndjson").await;
+    let first: Value = serde_json::from_slice(first.split(|byte| *byte == b'\n').next().unwrap()).unwrap();
+    assert!(names.iter().all(|name| first[name].is_number()), "{first}");
+    let stream = result("arrow").await;
+    let schema = StreamReader::try_new(&stream[..], None).unwrap().schema();
+    assert_eq!(schema.fields().iter().map(|field| field.name().as_str()).collect::<Vec<_>>(), names);
+
+    let request: SweepRequest = serde_json::from_value(named.clone()).unwrap();
+    assert_eq!(serde_json::to_value(&request).unwrap()["outputs"], named["outputs"]);
+    let Swept::Table(table) = server.client.sweep(&request, &Options::default()).await.unwrap() else {
+        panic!("six points are no job")
+    };
+    assert_eq!(serde_json::to_value(&table.columns["largest_shear"]).unwrap(), without["columns"]["/residual/max"]);
 }
 
 #[tokio::test]

@@ -106,11 +106,11 @@ pub struct Report {
     pub missing: Vec<Missing>,
 }
 
-/// Measures every solver on the scenes.
+/// Measures every solver on the scenes, and names each scene once it is measured.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidInput`] for a scene that does not exist; an error of the mechanics as [`io::ErrorKind::Other`].
-pub fn measure(options: &Options) -> io::Result<Report> {
+pub fn measure(options: &Options, mut measured: impl FnMut(&str)) -> io::Result<Report> {
     let begin = Instant::now();
     let mut report = Report {
         machine: output::describe_machine(options.compiler),
@@ -128,6 +128,7 @@ pub fn measure(options: &Options) -> io::Result<Report> {
         let time_left = options.budget.map(|budget| budget.saturating_sub(begin.elapsed()));
         let share = time_left.map(|left| left / (options.scenes.len() - index) as u32);
         measure_scene(name, &scene, options, share, &mut report)?;
+        measured(name);
     }
     report.seconds = begin.elapsed().as_secs_f64();
     Ok(report)

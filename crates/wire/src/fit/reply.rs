@@ -15,7 +15,7 @@ use crate::reply::Warning;
 pub struct FitReply {
     /// What is free, and what is known with a standard error, by name.
     pub estimates: BTreeMap<FitParameter, FitEstimate>,
-    /// Their correlation coefficients, by both names; `null` where one is not determined.
+    /// Their correlation coefficients, pure numbers, by both names; `null` where one is not determined.
     pub correlations: BTreeMap<FitParameter, BTreeMap<FitParameter, Option<f64>>>,
     /// What the loops determine: names, and combinations of them where one alone is not determined.
     pub identifiable: Vec<String>,
@@ -35,11 +35,12 @@ pub struct FitReply {
 #[apply(bool => #[serde(default, skip_serializing_if = "std::ops::Not::not")])]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FitEstimate {
-    /// The value of the best fit.
+    /// The value of the best fit, in the SI unit of the quantity.
     pub value: f64,
-    /// Its standard error, if the fit were linear; `null` where it is not determined.
+    /// Its standard error, if the fit were linear, in the SI unit of the quantity; `null` where it is not determined.
     pub standard_error: Option<f64>,
-    /// Both ends of the interval that contains it with a probability of 95 %, by profile likelihood; `null` where there is no end.
+    /// Both ends of the interval that contains it with a probability of 95 %, by profile likelihood, in the SI unit of the
+    /// quantity; `null` where there is no end.
     pub interval: [Option<f64>; 2],
     /// Whether the value is at the end of its range; left out if not.
     pub at_bound: bool,
@@ -52,7 +53,7 @@ pub struct FitResidual {
     pub rms: f64,
     /// The largest magnitude without outliers, N.
     pub largest: f64,
-    /// Share of the points that were left out because they are far off.
+    /// Share of the points that were left out because they are far off, a pure number from 0 to 1.
     pub outliers: f64,
     /// Whether it looks like noise.
     pub runs: SignRuns,
@@ -63,7 +64,7 @@ pub struct FitResidual {
 pub struct SignRuns {
     /// How many there are.
     pub count: usize,
-    /// How many noise would have.
+    /// How many noise would have on average, a pure number.
     pub expected: f64,
     /// Whether the two agree.
     pub random: bool,

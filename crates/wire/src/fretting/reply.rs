@@ -16,7 +16,7 @@ pub struct FrettingReply {
     pub x: Vec<f64>,
     /// Place across it, m.
     pub y: Vec<f64>,
-    /// Depth, m.
+    /// Depth into the body, m; never negative.
     pub z: Vec<f64>,
     /// Crossland's criterion, Pa.
     pub crossland: Option<Rating>,
@@ -32,13 +32,13 @@ pub struct FrettingReply {
     pub ruiz: Option<Rating>,
     /// Ruiz's second parameter, that times the largest tension along x, N²/m³; comes with the first.
     pub ruiz_tension: Option<Rating>,
-    /// Friction work per area and cycle, J/m².
+    /// Friction work per area and cycle, J/m²; never negative.
     pub friction_work: Option<Rating>,
     /// The stresses over the cycle at the places of `stress_paths`.
     pub stress_paths: Option<Vec<StressPath>>,
     /// Instants of each move that the values are of.
     pub instants: usize,
-    /// Change of the largest values from half as many instants, relative to them.
+    /// Change of the largest values from half as many instants, relative to them, a pure number.
     pub change: f64,
     /// Solver, errors and time.
     pub accuracy: Accuracy,
@@ -50,7 +50,7 @@ pub struct FrettingReply {
 #[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Rating {
-    /// Its values, place by place; `null` where a stress is infinite.
+    /// Its values, place by place, in the unit of the criterion; `null` where a stress is infinite.
     pub values: Vec<Option<f64>>,
     /// The largest of them.
     pub largest: Option<Largest>,
@@ -62,11 +62,11 @@ pub struct Rating {
 #[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Largest {
-    /// The value.
+    /// The value, in the unit of the criterion.
     pub value: f64,
     /// Its place: x, y, z, m.
     pub point: [f64; 3],
-    /// Unit normal of the critical plane, if the criterion has one.
+    /// Unit normal of the critical plane along x, y and z, pure numbers, if the criterion has one.
     pub plane: Option<[f64; 3]>,
     /// The critical instant, if the criterion has one.
     pub at: Option<Instant>,
@@ -78,7 +78,7 @@ pub struct Instant {
     /// Index of the move.
     #[serde(rename = "move")]
     pub step: usize,
-    /// The part of the move that has been made, above 0 and up to 1.
+    /// The part of the move that has been made, a pure number above 0 and up to 1.
     pub part: f64,
 }
 
@@ -90,19 +90,19 @@ pub struct StressPath {
     /// Index of the move.
     #[serde(rename = "move")]
     pub step: Vec<usize>,
-    /// The part of the move that has been made.
+    /// The part of the move that has been made, a pure number above 0 and up to 1.
     pub part: Vec<f64>,
-    /// Normal stress along x.
+    /// Normal stress along x, Pa; tension is positive.
     pub xx: Vec<Option<f64>>,
-    /// Normal stress along y.
+    /// Normal stress along y, Pa; tension is positive.
     pub yy: Vec<Option<f64>>,
-    /// Normal stress along z.
+    /// Normal stress along z, Pa; tension is positive.
     pub zz: Vec<Option<f64>>,
-    /// Shear stress in the plane of x and y.
+    /// Shear stress in the plane of x and y, Pa.
     pub xy: Vec<Option<f64>>,
-    /// Shear stress in the plane of y and z.
+    /// Shear stress in the plane of y and z, Pa.
     pub yz: Vec<Option<f64>>,
-    /// Shear stress in the plane of x and z.
+    /// Shear stress in the plane of x and z, Pa.
     pub xz: Vec<Option<f64>>,
 }
 

@@ -30,7 +30,7 @@ pub struct ProfileFitReply {
     pub left_out: ColumnPair,
     /// The profile that was fitted, as the table of `profile`.
     pub used: ColumnPair,
-    /// The least g′(x)/x over its mean: 1 for a ball, 0 where g is about to fall or, at a flat end, constant.
+    /// The least g′(x)/x over its mean, a pure number: 1 for a ball, 0 where g is about to fall or, at a flat end, constant.
     pub g_margin: f64,
     /// The contact under `load`.
     pub contact: Option<ContactEstimate>,
@@ -38,12 +38,12 @@ pub struct ProfileFitReply {
     pub warnings: Vec<Warning>,
 }
 
-/// A value and its standard error, both in the unit of the value; `null` where it is not known.
+/// A value and its standard error, both in the unit of the quantity; `null` where it is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Estimate {
-    /// The value.
+    /// The value, in the unit of the quantity.
     pub value: Option<f64>,
-    /// Its standard error.
+    /// Its standard error, in the unit of the quantity.
     pub standard_error: Option<f64>,
 }
 
@@ -51,9 +51,9 @@ pub struct Estimate {
 #[apply(Option => #[serde(default, skip_serializing_if = "Option::is_none")] #[schema(nullable = false)])]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Axis2 {
-    /// Along x.
+    /// Along x, in the unit of the quantity.
     pub x: f64,
-    /// Along y.
+    /// Along y, in the unit of the quantity.
     pub y: Option<f64>,
 }
 

@@ -27,7 +27,7 @@ pub struct ProtocolReply {
     pub judged: JudgedReply,
     /// What remains.
     pub residual: Residual,
-    /// The largest shear stress that remains where it is measured, Pa; `null` where it is infinite.
+    /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
     pub largest: Option<f64>,
     /// The same over `judged.unit`, a pure number.
     pub relative: Option<f64>,
@@ -112,8 +112,8 @@ pub enum PressureUnit {
 /// How far a path may be from the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Gap {
-    /// By how much the smallest of the alternating extrema falls short of the largest, relative to it; `null` where they are
-    /// not all meant to be equal: with a prescribed end, or a start from a history.
+    /// By how much the smallest of the alternating extrema falls short of the largest, relative to it, a pure number; `null`
+    /// where they are not all meant to be equal: with a prescribed end, or a start from a history.
     pub spread: Option<f64>,
     /// What some point of the contact carries after gross slip and so many reversals, whatever they are, Pa: proven. `null` for
     /// other starts, and at a vertical edge.
@@ -130,11 +130,11 @@ pub struct Gap {
 pub struct RobustnessReply {
     /// How many times it was tried.
     pub samples: usize,
-    /// The mean.
+    /// The mean, a pure number.
     pub mean: Option<f64>,
-    /// The standard error of the mean.
+    /// The standard error of the mean, a pure number.
     pub standard_error: Option<f64>,
-    /// The value that 95 of 100 stay below.
+    /// The value that 95 of 100 stay below, a pure number.
     pub percentile_95: Option<f64>,
 }
 
@@ -155,7 +155,7 @@ pub struct Comparison {
 pub struct Outcome {
     /// What remains.
     pub residual: Residual,
-    /// The largest shear stress that remains where it is measured, Pa; `null` where it is infinite.
+    /// The largest magnitude of the shear stress that remains where it is measured, Pa; `null` where it is infinite.
     pub largest: Option<f64>,
     /// The same over `judged.unit`, a pure number.
     pub relative: Option<f64>,

@@ -110,13 +110,13 @@ pub struct Subsurface {
     pub x: Vec<f64>,
     /// Place across it, m.
     pub y: Vec<f64>,
-    /// Depth, m.
+    /// Depth into the body, m; never negative.
     pub z: Vec<f64>,
-    /// Normal stress along x, Pa.
+    /// Normal stress along x, Pa; tension is positive.
     pub xx: Option<Vec<Option<f64>>>,
-    /// Normal stress along y, Pa.
+    /// Normal stress along y, Pa; tension is positive.
     pub yy: Option<Vec<Option<f64>>>,
-    /// Normal stress along z, Pa.
+    /// Normal stress along z, Pa; tension is positive.
     pub zz: Option<Vec<Option<f64>>>,
     /// Shear stress in the plane of x and y, Pa.
     pub xy: Option<Vec<Option<f64>>>,
@@ -124,17 +124,17 @@ pub struct Subsurface {
     pub yz: Option<Vec<Option<f64>>>,
     /// Shear stress in the plane of x and z, Pa.
     pub xz: Option<Vec<Option<f64>>>,
-    /// Largest principal stress, Pa.
+    /// Largest principal stress, Pa; tension is positive.
     pub principal_1: Option<Vec<Option<f64>>>,
-    /// Middle principal stress, Pa.
+    /// Middle principal stress, Pa; tension is positive.
     pub principal_2: Option<Vec<Option<f64>>>,
-    /// Smallest principal stress, Pa.
+    /// Smallest principal stress, Pa; tension is positive.
     pub principal_3: Option<Vec<Option<f64>>>,
-    /// Von Mises's equivalent stress, Pa.
+    /// Von Mises's equivalent stress, Pa; never negative.
     pub von_mises: Option<Vec<Option<f64>>>,
-    /// Largest shear stress on any plane, Pa.
+    /// Largest shear stress on any plane, Pa; never negative.
     pub max_shear: Option<Vec<Option<f64>>>,
-    /// Mean normal stress, Pa.
+    /// Mean normal stress, Pa; tension is positive.
     pub hydrostatic: Option<Vec<Option<f64>>>,
 }
 
