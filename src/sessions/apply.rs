@@ -135,7 +135,8 @@ impl Sessions {
         let work = Work { moves, curved, depth, radii, residual: false };
         let cost = work.cost(profile).saturating_add(sought);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
-        let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
+        let by = self.by.clone();
+        let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, by.as_ref(), &stop)).await?;
         match result {
             Ok(done) => Ok((live, done)),
             Err(error) => {
@@ -151,14 +152,15 @@ impl Sessions {
 fn attempt(
     mut live: Box<LoadedSession>,
     advance: &Advance,
+    by: Option<&Arc<str>>,
     stop: &Stop,
 ) -> (Box<LoadedSession>, Result<Done, SessionError>) {
-    let result = make(&mut live, advance, stop);
+    let result = make(&mut live, advance, by, stop);
     (live, result)
 }
 
 /// Makes the moves, and writes the reply: the part of the work that needs a processor.
-fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done, SessionError> {
+fn make(live: &mut LoadedSession, advance: &Advance, by: Option<&Arc<str>>, stop: &Stop) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
     let timer = Timer::start();
     let now = Timestamp::now();
@@ -179,7 +181,8 @@ fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
         let measured = observations.get(records.len()).map(|&Observation { force, at, .. }| Measured { force, at });
-        records.push(Record { sequence, step, tolerance, state: contact.state().into(), measured, at: now });
+        let state = contact.state().into();
+        records.push(Record { sequence, step, tolerance, state, measured, by: by.cloned(), at: now });
     });
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     live.replay_cost.add(records.len(), begin.elapsed());

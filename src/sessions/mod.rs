@@ -65,6 +65,8 @@ const RECOUNT_FULL: Duration = Duration::from_secs(1);
 #[derive(Clone)]
 pub struct Sessions {
     tenant: Tenant,
+    /// The name of the key that the requests come with, where keys are in use.
+    by: Option<Arc<str>>,
     common: Arc<Common>,
 }
 
@@ -97,13 +99,19 @@ impl Sessions {
             metrics,
             counted: Mutex::default(),
         };
-        Sessions { tenant: Tenant::default(), common: Arc::new(common) }
+        Sessions { tenant: Tenant::default(), by: None, common: Arc::new(common) }
     }
 
-    /// The sessions of another tenant.
+    /// The sessions of another tenant, for requests that come with the key of this name.
     #[must_use]
-    pub fn for_tenant(&self, tenant: Tenant) -> Sessions {
-        Sessions { tenant, common: Arc::clone(&self.common) }
+    pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
+        Sessions { tenant, by: Some(key), common: Arc::clone(&self.common) }
+    }
+
+    /// Whether requests come with keys, by whose names the history says who made a move.
+    #[must_use]
+    pub fn names_makers(&self) -> bool {
+        self.by.is_some()
     }
 
     /// Whether the store can serve.

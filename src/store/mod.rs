@@ -87,7 +87,7 @@ pub struct Heading {
 }
 
 /// A move as it is stored, with the state after it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// Its number, counted from 1 without a gap.
     pub sequence: u64,
@@ -99,6 +99,8 @@ pub struct Record {
     pub state: State,
     /// What was measured there, if it is an observation. A replay does not need it.
     pub measured: Option<Measured>,
+    /// The name of the key that made it, where keys were in use. A replay does not need it.
+    pub by: Option<Arc<str>>,
     /// When it was applied.
     pub at: Timestamp,
 }
@@ -110,6 +112,9 @@ impl Record {
         self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
     }
 }
+
+/// Bytes of a record in memory, with the longest name of a key.
+pub const RECORD_BYTES: usize = size_of::<Record>() + 96;
 
 /// What a bench measured at the displacement that a move goes to.
 #[derive(Clone, Copy, Debug, PartialEq)]

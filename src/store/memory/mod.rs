@@ -217,7 +217,7 @@ impl Store for MemoryStore {
         self.lock().get(id).map(|stored| {
             // Sequences count from 1, so that the sequence of the last move seen is the index of the next one.
             let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.moves.len());
-            stored.moves[start..].iter().take(limit).copied().collect()
+            stored.moves[start..].iter().take(limit).cloned().collect()
         })
     }
 
