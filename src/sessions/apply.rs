@@ -11,7 +11,7 @@ use crate::admission::{Reservation, Stop};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
-use crate::store::{Measured, Record, Reply, RequestKey, StoreError};
+use crate::store::{Measured, Receipt, Record, Reply, RequestKey, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, Steps, limits};
 
@@ -54,6 +54,8 @@ impl Sessions {
         let mut guard = self.lock(id).await?;
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
+        let move_bytes = self.common.store.move_bytes();
+        let mut room = self.room(Usage { contacts: 0, bytes: advance.plan.length() as u64 * move_bytes }).await?;
         // A cached state may be behind the store. A refusal counts only once the state has caught up.
         let mut caught_up = guard.live.is_none();
         let mut found = 0;
@@ -87,10 +89,18 @@ impl Sessions {
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
-            let stored = self.common.store.append(guard.id(), sequence, records, request.receipt(&reply));
+            let receipt = request.receipt(&reply);
+            let bytes = moves * move_bytes + receipt.as_ref().map_or(0, Receipt::bytes);
+            let added = Usage { contacts: 0, bytes };
+            if bytes > room.bytes() {
+                drop(room);
+                room = self.room(added).await?;
+            }
+            let stored = self.common.store.append(guard.id(), sequence, records, receipt);
             match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
                     self.common.metrics.moves.inc_by(moves);
+                    room.used(added);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);

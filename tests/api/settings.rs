@@ -34,6 +34,8 @@ const CASES: [(&str, [&str; 3]); 30] = [
     ("max-requests-per-client", ["10", "20", "30"]),
     ("max-streams-per-client", ["10", "20", "30"]),
     ("max-contacts-per-tenant", ["10", "20", "30"]),
+    ("max-body-bytes-per-client", ["10MiB", "20MiB", "30MiB"]),
+    ("max-store-bytes-per-tenant", ["10MiB", "20MiB", "30MiB"]),
     ("max-wait", ["1s", "2s", "500ms"]),
     ("work-bytes", ["256MiB", "300MiB", "1GiB"]),
     ("deadline", ["1s", "2s", "1h"]),

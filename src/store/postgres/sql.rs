@@ -97,7 +97,14 @@ SELECT tenant, sequence, octet_length(definition),
     (SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id)
 FROM contacts WHERE id = $1";
 
-pub(super) const COUNT: &str = "SELECT count(*) FROM contacts WHERE tenant = $1";
+/// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and its snapshot,
+/// a move `$3`, and a receipt `$4`. The lengths are known without reading what is stored apart from its row.
+pub(super) const USAGE: &str = "
+SELECT count(*), coalesce(sum($2::bigint + octet_length(definition) + $3::bigint * sequence
+        + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)), 0)::bigint
+    + (SELECT coalesce(sum($4::bigint + octet_length(body) + 2 * octet_length(key)), 0)::bigint FROM receipts
+        WHERE CASE WHEN strpos(key, ' ') > 0 THEN split_part(key, ' ', 1) ELSE '' END = $1)
+FROM contacts WHERE tenant = $1";
 
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 
