@@ -269,6 +269,8 @@ impl Sessions {
             match (deleted.await, expected) {
                 (Ok(()), _) => {
                     guard.live = None;
+                    let bytes = CONTACT_BYTES + at * self.common.store.move_bytes();
+                    self.common.accounts.give_back(&self.tenant, Usage { contacts: 1, bytes });
                     return Ok(());
                 }
                 (Err(StoreError::Stale { found }), Some(expected)) => {

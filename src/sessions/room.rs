@@ -103,6 +103,21 @@ impl Accounts {
     }
 }
 
+impl Accounts {
+    /// A tenant has deleted so much.
+    pub(super) fn give_back(&self, tenant: &Tenant, deleted: Usage) {
+        let account = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(tenant).cloned();
+        let Some(account) = account else { return };
+        // A count under way may know of it already, and the next one does.
+        let Ok(_counting) = account.counting.try_lock() else { return };
+        let mut known = account.known();
+        known.usage = known.usage.map(|usage| Usage {
+            contacts: usage.contacts.saturating_sub(deleted.contacts),
+            bytes: usage.bytes.saturating_sub(deleted.bytes),
+        });
+    }
+}
+
 impl Account {
     fn known(&self) -> MutexGuard<'_, Known> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)

@@ -11,7 +11,7 @@ use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 30] = [
+const CASES: [(&str, [&str; 3]); 32] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
     ("keys", ["a.keys", "b.keys", "c.keys"]),
     ("insecure", ["true", "true", "true"]),

@@ -31,7 +31,9 @@ use uuid::Uuid;
 
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
-use super::{Changes, Commits, Extent, Heading, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
+use super::{
+    Changes, Commits, Extent, Heading, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
+};
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
 use fault::Fault;

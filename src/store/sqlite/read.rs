@@ -45,8 +45,8 @@ pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
     found.optional()?.ok_or_else(|| missing(database, id))
 }
 
-/// Bytes that a move takes in the file, with the unused part of its page.
-pub(super) const MOVE_BYTES: u64 = 240;
+/// Bytes that a move takes in the file, with the longest name of a key and the unused part of its page.
+pub(super) const MOVE_BYTES: u64 = 220;
 
 pub(super) fn usage(database: &Connection, tenant: &Tenant) -> Result<Usage, Fault> {
     // The length of a text or blob is in the head of its row. SQLite reads no more for it.
