@@ -7,11 +7,8 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use tracing::Instrument as _;
-
 use crate::admission::{Pool, PoolError, Quota};
-use crate::otlp;
-use crate::store::{Store, Tenant, Usage};
+use crate::store::{Store, StoreError, Tenant, Usage};
 
 use super::SessionError;
 
@@ -42,6 +39,8 @@ struct Known {
     usage: Option<Usage>,
     /// When it was counted, and how long that took.
     counted: Option<(Instant, Duration)>,
+    /// When the store last failed to count, if it has not counted since.
+    failed: Option<Instant>,
     /// What has been stored since a count began that has not ended.
     meanwhile: Usage,
     /// What changes under way will add at most.
@@ -69,7 +68,7 @@ impl Accounts {
     ) -> Result<Room, SessionError> {
         let account =
             Arc::clone(self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(tenant.clone()).or_default());
-        let refused = match account.reserve(pool, wanted) {
+        match account.reserve(pool, wanted) {
             Some(Ok(room)) => {
                 if account.is_older_than(RECOUNT)
                     && let Ok(counting) = Arc::clone(&account.counting).try_lock_owned()
@@ -84,16 +83,19 @@ impl Accounts {
                 }
                 return Ok(room);
             }
-            Some(Err(refused)) if !account.is_older_than(RECOUNT_FULL) => Some(refused),
-            _ => None,
-        };
-        if let Some(quota) = refused {
-            return Err(PoolError::Quota(pool.quotas().exceeded(quota)).into());
+            Some(Err(quota)) if !account.is_older_than(RECOUNT_FULL) => {
+                return Err(PoolError::Quota(pool.quotas().exceeded(quota)).into());
+            }
+            _ => {}
         }
+        let begin = Instant::now();
         let _counting = pool.wait(account.counting.lock()).await?;
-        // Whoever had the lock before may have counted.
+        // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
+        if account.has_failed_since(begin) {
+            return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
+        }
         if account.is_older_than(RECOUNT_FULL) {
-            account.count(&**store, tenant).instrument(otlp::part!("store")).await?;
+            account.count(&**store, tenant).await?;
         }
         match account.reserve(pool, wanted) {
             Some(Ok(room)) => Ok(room),
@@ -101,9 +103,7 @@ impl Accounts {
             None => Err(SessionError::Broken("what a tenant has stored is not known".to_owned())),
         }
     }
-}
 
-impl Accounts {
     /// A tenant has deleted so much.
     pub(super) fn give_back(&self, tenant: &Tenant, deleted: Usage) {
         let account = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(tenant).cloned();
@@ -128,6 +128,10 @@ impl Account {
         self.known().counted.is_none_or(|(at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
     }
 
+    fn has_failed_since(&self, begin: Instant) -> bool {
+        self.known().failed.is_some_and(|at| at >= begin)
+    }
+
     /// Room by the last count, or the quota that there is none in; nothing if there has been no count.
     fn reserve(self: &Arc<Account>, pool: &Pool, wanted: Usage) -> Option<Result<Room, Quota>> {
         let limits = pool.quotas().limits();
@@ -147,8 +151,10 @@ impl Account {
     async fn count(&self, store: &dyn Store, tenant: &Tenant) -> Result<(), SessionError> {
         let begin = Instant::now();
         self.known().meanwhile = Usage::default();
-        let counted = store.usage(tenant).await?;
+        let counted = store.usage(tenant).await;
         let mut known = self.known();
+        known.failed = counted.is_err().then(Instant::now);
+        let counted = counted?;
         // The store may have counted some of it: rather too much than too little.
         known.usage = Some(sum(counted, known.meanwhile));
         known.counted = Some((begin, begin.elapsed()));
