@@ -1,5 +1,7 @@
 //! The bytes that count against a quota, beside those that a file and a database take.
 
+use std::path::Path;
+
 use stickslip::store::{PostgresStore, SqliteStore, Store, Tenant};
 use tempfile::tempdir;
 use tokio_postgres::NoTls;
@@ -26,15 +28,14 @@ fn agree(counted: u64, taken: u64, moves: u64) {
 #[tokio::test]
 async fn what_is_counted_is_what_a_file_takes() {
     let folder = tempdir().unwrap();
-    let path = folder.path().join("contacts.db");
-    let size = || std::fs::metadata(&path).unwrap().len();
-    drop(SqliteStore::open(&path).unwrap());
-    let empty = size();
-    let store = SqliteStore::open(&path).unwrap();
+    let [empty, full] = ["empty.db", "full.db"].map(|name| folder.path().join(name));
+    let size = |path: &Path| std::fs::metadata(path).unwrap().len();
+    drop(SqliteStore::open(&empty).unwrap());
+    let store = SqliteStore::open(&full).unwrap();
     fill(&store).await;
     let counted = store.usage(&Tenant::default()).await.unwrap().bytes;
     drop(store);
-    agree(counted, size() - empty, MOVES);
+    agree(counted, size(&full) - size(&empty), MOVES);
 }
 
 #[tokio::test]
