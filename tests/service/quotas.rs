@@ -159,17 +159,14 @@ async fn bodies_that_do_not_arrive_take_no_more_than_the_share_of_their_client()
     const QUOTA: &str = "max-body-bytes-per-client";
     let service = Service::start(&["--max-body-bytes-per-client", "8MiB", "--log", "warn"]);
     let whole = post("/simulate", &" ".repeat(4 * MIB as usize));
-    // Each of these holds room for its 4 MiB, and sends no more.
-    let mut stalled: Vec<TcpStream> = Vec::new();
-    for _ in 0..2 {
-        let mut stream = service.connect_from(GREEDY).await.unwrap();
-        stream.write_all(&whole.as_bytes()[..3 * MIB as usize]).await.unwrap();
-        stalled.push(stream);
-    }
     let ask = async |source: &str| service.ask(source, &whole).await.unwrap();
+    // Each of these holds room for its 4 MiB, and sends no more. One may be refused beside a whole one: then another takes its place.
+    let mut stalled: Vec<TcpStream> = Vec::new();
     let refused = async {
-        // Until both have arrived as far as they do.
         loop {
+            let mut stream = service.connect_from(GREEDY).await.unwrap();
+            stream.write_all(&whole.as_bytes()[..3 * MIB as usize]).await.unwrap();
+            stalled.push(stream);
             let answer = ask(GREEDY).await;
             if answer.statuses == [429] {
                 return answer;
@@ -197,14 +194,13 @@ async fn requests_of_one_client_beyond_its_quota_are_refused_and_those_of_others
     const QUOTA: &str = "max-requests-per-client";
     let service = Service::start(&["--max-requests-per-client", "3", "--log", "warn"]);
     let sound = post("/simulate", &json!({"contact": ball(), "path": {"displacement": [1e-7]}}).to_string());
+    // These wait for the end of their bodies. One may be refused beside a whole one: then another takes its place.
     let mut waiting = Vec::new();
-    for _ in 0..3 {
-        let mut stream = service.connect_from(GREEDY).await.unwrap();
-        stream.write_all(&sound.as_bytes()[..sound.len() - 1]).await.unwrap();
-        waiting.push(stream);
-    }
     let refused = async {
         loop {
+            let mut stream = service.connect_from(GREEDY).await.unwrap();
+            stream.write_all(&sound.as_bytes()[..sound.len() - 1]).await.unwrap();
+            waiting.push(stream);
             let answer = service.ask(GREEDY, &sound).await.unwrap();
             if answer.statuses == [429] {
                 return answer;
