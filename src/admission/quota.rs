@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use bytesize::ByteSize;
 use prometheus::{IntCounterVec, Opts};
 
 use super::Client;
@@ -15,6 +16,10 @@ pub const REQUESTS_PER_CLIENT: usize = super::REQUESTS / 2;
 pub const STREAMS_PER_CLIENT: usize = 200;
 /// Contacts of one tenant by default.
 pub const CONTACTS_PER_TENANT: usize = 100_000;
+/// The divisor of the bytes of work that gives those of the bodies of one client that are arriving, by default.
+pub const BODY_SHARE: usize = 4;
+/// Bytes of one tenant in the store by default.
+pub const STORE_BYTES_PER_TENANT: usize = 16 * 1024 * 1024 * 1024;
 
 /// What is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,11 +30,15 @@ pub enum Quota {
     Streams,
     /// Contacts in the store.
     Contacts,
+    /// Bytes in the store.
+    StoreBytes,
+    /// Bytes of memory for bodies that are arriving.
+    BodyBytes,
 }
 
 impl Quota {
     /// All of them.
-    pub const ALL: [Quota; 3] = [Quota::Requests, Quota::Streams, Quota::Contacts];
+    pub const ALL: [Quota; 5] = [Quota::Requests, Quota::Streams, Quota::Contacts, Quota::StoreBytes, Quota::BodyBytes];
 
     /// Its name: that of its setting, without the dashes in front.
     #[must_use]
@@ -38,6 +47,8 @@ impl Quota {
             Quota::Requests => "max-requests-per-client",
             Quota::Streams => "max-streams-per-client",
             Quota::Contacts => "max-contacts-per-tenant",
+            Quota::StoreBytes => "max-store-bytes-per-tenant",
+            Quota::BodyBytes => "max-body-bytes-per-client",
         }
     }
 }
@@ -51,11 +62,21 @@ pub struct QuotaLimits {
     pub streams: usize,
     /// Contacts of its tenant.
     pub contacts: usize,
+    /// Bytes that its tenant takes in the store.
+    pub store_bytes: usize,
+    /// Bytes of its bodies that are arriving.
+    pub body_bytes: usize,
 }
 
 impl Default for QuotaLimits {
     fn default() -> Self {
-        QuotaLimits { requests: REQUESTS_PER_CLIENT, streams: STREAMS_PER_CLIENT, contacts: CONTACTS_PER_TENANT }
+        QuotaLimits {
+            requests: REQUESTS_PER_CLIENT,
+            streams: STREAMS_PER_CLIENT,
+            contacts: CONTACTS_PER_TENANT,
+            store_bytes: STORE_BYTES_PER_TENANT,
+            body_bytes: super::BYTES / BODY_SHARE,
+        }
     }
 }
 
@@ -67,6 +88,8 @@ impl QuotaLimits {
             Quota::Requests => self.requests,
             Quota::Streams => self.streams,
             Quota::Contacts => self.contacts,
+            Quota::StoreBytes => self.store_bytes,
+            Quota::BodyBytes => self.body_bytes,
         }
     }
 }
@@ -87,6 +110,20 @@ impl fmt::Display for QuotaExceeded {
             Quota::Requests => write!(f, "you have {limit} requests in progress, as many as `{name}` allows"),
             Quota::Streams => write!(f, "you follow {limit} streams of events, as many as `{name}` allows"),
             Quota::Contacts => write!(f, "you have {limit} contacts, as many as `{name}` allows: delete some"),
+            Quota::BodyBytes => {
+                let limit = ByteSize::b(limit as u64);
+                write!(
+                    f,
+                    "bodies that are arriving from you would take more than the {limit} that `{name}` allows: send fewer at a time"
+                )
+            }
+            Quota::StoreBytes => {
+                let limit = ByteSize::b(limit as u64);
+                write!(
+                    f,
+                    "beyond the {limit} in the store that `{name}` allows your contacts: delete some, or do with fewer moves"
+                )
+            }
         }
     }
 }
@@ -100,11 +137,12 @@ pub struct Quotas {
     refused: IntCounterVec,
 }
 
-/// One of what a quota counts, until dropped.
+/// A client's share of what a quota counts, until dropped.
 #[derive(Debug)]
 pub struct Share {
     quotas: Quotas,
     of: (Quota, Client),
+    amount: usize,
 }
 
 impl Quotas {
@@ -134,32 +172,25 @@ impl Quotas {
         &self.refused
     }
 
+    /// A share of nothing yet, for the client that this task serves.
+    #[must_use]
+    pub fn no_share(&self, quota: Quota) -> Share {
+        Share { quotas: self.clone(), of: (quota, Client::current()), amount: 0 }
+    }
+
     /// One more for the client that this task serves. The server itself has no quotas.
     ///
     /// # Errors
     /// [`QuotaExceeded`] if it has as many as it may.
     pub fn share(&self, quota: Quota) -> Result<Share, QuotaExceeded> {
-        let of = (quota, Client::current());
-        let mut used = self.used();
-        let count = used.entry(of.clone()).or_default();
-        if *count >= self.limits.of(quota) && of.1 != Client::Server {
-            drop(used);
-            return Err(self.exceeded(quota));
-        }
-        *count += 1;
-        drop(used);
-        Ok(Share { quotas: self.clone(), of })
+        let mut share = self.no_share(quota);
+        share.resize(1)?;
+        Ok(share)
     }
 
-    /// Checks a count that is kept elsewhere.
-    ///
-    /// # Errors
-    /// [`QuotaExceeded`] if there is no room for one more.
-    pub fn check(&self, quota: Quota, count: usize) -> Result<(), QuotaExceeded> {
-        if count < self.limits.of(quota) { Ok(()) } else { Err(self.exceeded(quota)) }
-    }
-
-    fn exceeded(&self, quota: Quota) -> QuotaExceeded {
+    /// The refusal of what is beyond a quota whose count is kept elsewhere.
+    #[must_use]
+    pub fn exceeded(&self, quota: Quota) -> QuotaExceeded {
         self.refused.with_label_values(&[quota.name()]).inc();
         QuotaExceeded { quota, limit: self.limits.of(quota) }
     }
@@ -169,14 +200,33 @@ impl Quotas {
     }
 }
 
+impl Share {
+    /// Grows or shrinks the share.
+    ///
+    /// # Errors
+    /// [`QuotaExceeded`] if the client would have more than it may; the share is unchanged then.
+    pub fn resize(&mut self, amount: usize) -> Result<(), QuotaExceeded> {
+        let (quota, client) = &self.of;
+        let mut used = self.quotas.used();
+        let others = used.get(&self.of).map_or(0, |count| count - self.amount);
+        let all = others.saturating_add(amount);
+        if amount > self.amount && all > self.quotas.limits.of(*quota) && *client != Client::Server {
+            drop(used);
+            return Err(self.quotas.exceeded(*quota));
+        }
+        if all == 0 {
+            used.remove(&self.of);
+        } else {
+            used.insert(self.of.clone(), all);
+        }
+        self.amount = amount;
+        Ok(())
+    }
+}
+
 impl Drop for Share {
     fn drop(&mut self) {
-        let mut used = self.quotas.used();
-        if let Some(count) = used.get_mut(&self.of) {
-            *count -= 1;
-            if *count == 0 {
-                used.remove(&self.of);
-            }
-        }
+        // Giving back is never refused.
+        let _ = self.resize(0);
     }
 }

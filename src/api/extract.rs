@@ -12,20 +12,19 @@ use futures::StreamExt as _;
 use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 
-use crate::admission::{INLINE, Place, Pool, Reservation};
+use crate::admission::{INLINE, Place, Pool, PoolError, Quota, Reservation, UNCOUNTED};
 use crate::otlp;
 use crate::server::connections::SlowBody;
 use crate::simulation::cost;
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
 
+use super::limits::BODY_LIMIT;
 use super::params::IdempotencyKey;
 use super::problem::{Code, Problem};
 use super::reply;
 use super::state::App;
 
-/// Bytes of a body.
-pub const BODY_LIMIT: usize = 8 * 1024 * 1024;
 /// Bytes of a body above the limit that are read and discarded, so that the client can read the answer.
 const DRAIN_LIMIT: usize = 8 * BODY_LIMIT;
 
@@ -129,13 +128,18 @@ async fn read(body: Body, expects: bool, pool: &Pool) -> Result<(Vec<u8>, Reserv
     let mut stream = body.into_data_stream();
     let (mut bytes, mut length) = (Vec::new(), 0_usize);
     let mut memory = Reservation::default();
+    // Until the body has arrived: however slowly it does, others have room for theirs.
+    let mut share = pool.quotas().no_share(Quota::BodyBytes);
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(broken)?;
         length = length.saturating_add(chunk.len());
         if length <= BODY_LIMIT {
             // Reserved as it arrives: a length that is declared but not sent takes no memory from others.
             if length > bytes.capacity() {
-                let room = (2 * length).min(declared).max(length);
+                let room = (2 * length).min(declared).min(BODY_LIMIT).max(length);
+                if room > UNCOUNTED {
+                    share.resize(room).map_err(PoolError::Quota)?;
+                }
                 pool.resize(&mut memory, room).await?;
                 bytes.reserve_exact(room - bytes.len());
             }

@@ -7,12 +7,11 @@ use axum::http::HeaderValue;
 use axum::http::request::Parts;
 use tokio::sync::watch;
 
-use crate::access::Keys;
+use crate::access::{Holder, Keys};
 use crate::admission::Pool;
 use crate::jobs::Jobs;
 use crate::server::OwnHosts;
 use crate::sessions::Sessions;
-use crate::store::Tenant;
 
 /// The state that all handlers share.
 pub struct App {
@@ -44,8 +43,10 @@ impl FromRequestParts<Arc<App>> for TenantApp {
     type Rejection = std::convert::Infallible;
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Self::Rejection> {
-        let scoped = parts.extensions.get::<Tenant>().map(|tenant| {
-            let (sessions, jobs) = (app.sessions.for_tenant(tenant.clone()), app.jobs.for_tenant(tenant.clone()));
+        let scoped = parts.extensions.get::<Arc<Holder>>().map(|holder| {
+            let Holder { name, tenant, .. } = &**holder;
+            let sessions = app.sessions.for_tenant(tenant.clone(), Arc::clone(name));
+            let jobs = app.jobs.for_tenant(tenant.clone());
             Arc::new(App { sessions, jobs, pool: app.pool.clone(), access: app.access.clone() })
         });
         Ok(TenantApp(scoped.unwrap_or_else(|| Arc::clone(app))))

@@ -5,7 +5,8 @@ use std::time::Duration;
 use bytesize::ByteSize;
 use clap::Args;
 use stickslip::admission;
-use stickslip::admission::{Capacity, QuotaLimits};
+use stickslip::admission::{BODY_SHARE, Capacity, QuotaLimits};
+use stickslip::api::limits::BODY_LIMIT;
 use stickslip::server::connections::DEFAULT_CONNECTIONS;
 use stickslip::server::fd_limit::room_for;
 use stickslip::server::{ConnectionLimits, Network};
@@ -44,6 +45,13 @@ pub struct Limits {
     #[arg(long, env = "STICKSLIP_MAX_CONTACTS_PER_TENANT", default_value_t = admission::CONTACTS_PER_TENANT,
         value_parser = at_least_one)]
     max_contacts_per_tenant: usize,
+    /// Most bytes that the contacts of one tenant take in the store, with their moves and the replies kept for retries.
+    #[arg(long, env = "STICKSLIP_MAX_STORE_BYTES_PER_TENANT",
+        default_value_t = ByteSize::b(admission::STORE_BYTES_PER_TENANT as u64))]
+    max_store_bytes_per_tenant: ByteSize,
+    /// Most bytes of memory for bodies that are arriving from one client [default: a quarter of --work-bytes].
+    #[arg(long, env = "STICKSLIP_MAX_BODY_BYTES_PER_CLIENT", value_parser = body_bytes)]
+    max_body_bytes_per_client: Option<ByteSize>,
     /// How long a request waits before it is refused.
     #[arg(long, env = "STICKSLIP_MAX_WAIT", default_value = "10s", value_parser = duration)]
     max_wait: Duration,
@@ -83,11 +91,13 @@ impl Limits {
             queue: self.max_queue,
             wait: self.max_wait,
             deadline: self.deadline,
-            bytes: usize::try_from(self.work_bytes.as_u64()).unwrap_or(usize::MAX),
+            bytes: bytes(self.work_bytes),
             quotas: QuotaLimits {
                 requests: self.max_requests_per_client.unwrap_or(self.max_requests.div_ceil(2)),
                 streams: self.max_streams_per_client,
                 contacts: self.max_contacts_per_tenant,
+                store_bytes: bytes(self.max_store_bytes_per_tenant),
+                body_bytes: self.max_body_bytes_per_client.map_or(bytes(self.work_bytes) / BODY_SHARE, bytes),
             },
             ..Capacity::default()
         }
@@ -106,6 +116,10 @@ impl Limits {
     }
 }
 
+fn bytes(size: ByteSize) -> usize {
+    usize::try_from(size.as_u64()).unwrap_or(usize::MAX)
+}
+
 fn duration(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
     let (least, most) = (SHORTEST_TIME, LONGEST_TIME);
@@ -115,6 +129,11 @@ fn duration(text: &str) -> Result<Duration, String> {
 fn work_bytes(text: &str) -> Result<ByteSize, String> {
     let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(admission::LARGEST as u64));
     if size < least { Err(format!("at least {least}: one request can take as much")) } else { Ok(size) }
+}
+
+fn body_bytes(text: &str) -> Result<ByteSize, String> {
+    let (size, least) = (text.parse::<ByteSize>()?, ByteSize::b(BODY_LIMIT as u64));
+    if size < least { Err(format!("at least {least}: one body can take as much")) } else { Ok(size) }
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

@@ -17,7 +17,7 @@ use stickslip::api::{self, Access, App};
 use stickslip::jobs::{self, Jobs};
 use stickslip::otlp;
 use stickslip::server::tls::{Tls, TlsFiles};
-use stickslip::server::{ConnectionLimiter, OwnHosts, memory_budget};
+use stickslip::server::{ConnectionLimiter, OwnHosts, machine_memory, memory_budget};
 use stickslip::sessions::{self, Sessions};
 use stickslip::store::{self, Store};
 use tokio::net::TcpListener;
@@ -295,6 +295,14 @@ async fn listen(
     let limiter = ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies().into());
     let memory_bound = memory_budget::memory(limiter.limits(), pool.capacity(), options.cache_bytes.as_u64());
     let memory_bound = memory_bound.saturating_add(tls.as_ref().map_or(0, |_| memory_budget::tls(limiter.limits())));
+    if let Some(memory) = machine_memory::available().filter(|memory| memory_bound > *memory) {
+        tracing::warn!(
+            memory_bound = %ByteSize::b(memory_bound),
+            memory = %ByteSize::b(memory),
+            "the memory bound is above the memory of this machine or of its control group: lower --work-bytes, --cache-bytes or \
+             --max-connections"
+        );
+    }
     let capacity = usize::try_from(options.cache_bytes.as_u64()).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(store, pool.clone(), capacity);

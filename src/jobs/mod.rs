@@ -297,6 +297,7 @@ fn job_reply(job: &Job) -> JobReply {
         id: job.id,
         state,
         progress: JobProgress { points: job.points, done: job.done, failed: job.failed },
+        point_time: Duration::from_nanos(job.cost / job.points.max(1)).as_secs_f64(),
         created_at: job.created_at,
         finished_at: job.finished_at,
         expires_at: job.expires_at(),

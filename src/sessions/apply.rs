@@ -11,7 +11,7 @@ use crate::admission::{Reservation, Stop};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
-use crate::store::{Measured, Record, Reply, RequestKey, StoreError};
+use crate::store::{Measured, Receipt, Record, Reply, RequestKey, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, Steps, limits};
 
@@ -54,6 +54,8 @@ impl Sessions {
         let mut guard = self.lock(id).await?;
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
+        let move_bytes = self.common.store.move_bytes();
+        let mut room = self.room(Usage { contacts: 0, bytes: advance.plan.length() as u64 * move_bytes }).await?;
         // A cached state may be behind the store. A refusal counts only once the state has caught up.
         let mut caught_up = guard.live.is_none();
         let mut found = 0;
@@ -87,10 +89,18 @@ impl Sessions {
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
-            let stored = self.common.store.append(guard.id(), sequence, records, request.receipt(&reply));
+            let receipt = request.receipt(&reply);
+            let bytes = moves * move_bytes + receipt.as_ref().map_or(0, Receipt::bytes);
+            let added = Usage { contacts: 0, bytes };
+            if bytes > room.bytes() {
+                drop(room);
+                room = self.room(added).await?;
+            }
+            let stored = self.common.store.append(guard.id(), sequence, records, receipt);
             match stored.instrument(otlp::part!("store")).await {
                 Ok(()) => {
                     self.common.metrics.moves.inc_by(moves);
+                    room.used(added);
                     self.offer_snapshot(&mut live);
                     guard.live = Some(live);
                     return Ok(reply);
@@ -135,7 +145,8 @@ impl Sessions {
         let work = Work { moves, curved, depth, radii, residual: false };
         let cost = work.cost(profile).saturating_add(sought);
         let (advance, stop) = (Arc::clone(advance), stop.clone());
-        let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, &stop)).await?;
+        let by = self.by.clone();
+        let (live, result) = self.common.pool.run(cost, move || attempt(live, &advance, by.as_ref(), &stop)).await?;
         match result {
             Ok(done) => Ok((live, done)),
             Err(error) => {
@@ -151,14 +162,15 @@ impl Sessions {
 fn attempt(
     mut live: Box<LoadedSession>,
     advance: &Advance,
+    by: Option<&Arc<str>>,
     stop: &Stop,
 ) -> (Box<LoadedSession>, Result<Done, SessionError>) {
-    let result = make(&mut live, advance, stop);
+    let result = make(&mut live, advance, by, stop);
     (live, result)
 }
 
 /// Makes the moves, and writes the reply: the part of the work that needs a processor.
-fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done, SessionError> {
+fn make(live: &mut LoadedSession, advance: &Advance, by: Option<&Arc<str>>, stop: &Stop) -> Result<Done, SessionError> {
     let solving = otlp::part!("solve").entered();
     let timer = Timer::start();
     let now = Timestamp::now();
@@ -179,7 +191,8 @@ fn make(live: &mut LoadedSession, advance: &Advance, stop: &Stop) -> Result<Done
         largest = largest.max(contact.contact_radius());
         error = error.max(contact.path_error() - error_before);
         let measured = observations.get(records.len()).map(|&Observation { force, at, .. }| Measured { force, at });
-        records.push(Record { sequence, step, tolerance, state: contact.state().into(), measured, at: now });
+        let state = contact.state().into();
+        records.push(Record { sequence, step, tolerance, state, measured, by: by.cloned(), at: now });
     });
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     live.replay_cost.add(records.len(), begin.elapsed());

@@ -9,7 +9,7 @@ use uuid::Uuid;
 use crate::admission::{Interrupted, Nanoseconds, Stop};
 use crate::simulation::Failure;
 use crate::simulation::cost::Work;
-use crate::store::Record;
+use crate::store::RECORD_BYTES;
 use stickslip_mechanics::cycle::SteadyCycle;
 use stickslip_mechanics::{Contact, Move, Normal};
 use stickslip_wire::reply::finite;
@@ -79,7 +79,7 @@ impl CycleLog {
     /// Bytes that it and so many records take while they are looked at.
     pub(super) fn bytes_with(&self, records: usize) -> usize {
         let newest = 2 * limits::CYCLES.end() * size_of::<ClosedCycle>();
-        self.scan.heap_bytes_after(records) + newest + records * size_of::<Record>()
+        self.scan.heap_bytes_after(records) + newest + records * RECORD_BYTES
     }
 }
 

@@ -19,7 +19,7 @@ use super::{SessionError, Sessions};
 /// Clients that may listen at a time.
 pub const STREAMS: usize = 1_000;
 /// Moves that a listener reads at a time.
-const PAGE: usize = 100;
+const PAGE: usize = 80;
 /// How long a listener waits for an unreachable store before it tries again.
 const RETRY_DELAY: Duration = Duration::from_secs(1);
 

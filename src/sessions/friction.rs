@@ -114,8 +114,7 @@ impl Sessions {
         if moves >= *limits::PATH_MOVES.end() {
             return Ok(unknown);
         }
-        let _held =
-            self.common.pool.reserve(cost::bytes_of_friction(moves) + PAGE * size_of::<store::Record>()).await?;
+        let _held = self.common.pool.reserve(cost::bytes_of_friction(moves) + PAGE * store::RECORD_BYTES).await?;
         let mut cycle = MeasuredCycle::default();
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::simulation::{self, cost::bytes_of_shape, present_warnings};
-use crate::store::{Reply, Session};
+use crate::store::{CONTACT_BYTES, Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
 use stickslip_wire::{ContactSummary, Faults, JsonPath, NewSession, SessionReply, Warning};
@@ -15,6 +15,10 @@ use super::{SessionError, written};
 
 /// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache.
 const FIXED: usize = 2 * 1024;
+
+/// Bytes of a definition as JSON besides its tables, and of a number in these.
+const DEFINITION: usize = 256;
+const NUMBER: usize = 20;
 
 /// A session with its state.
 #[derive(Clone)]
@@ -71,6 +75,11 @@ impl LoadedSession {
             + warnings
             + cycles
             + bytes_of_shape(&self.session.definition.profile)
+    }
+
+    /// Bytes that its definition takes in the store, roughly, without its moves.
+    pub(super) fn stored_bytes(&self) -> u64 {
+        CONTACT_BYTES + (DEFINITION + NUMBER * 2 * table_points(&self.session.definition.profile)) as u64
     }
 
     /// The reply that presents a session.

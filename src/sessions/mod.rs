@@ -28,21 +28,22 @@ mod observe;
 mod read;
 mod relax;
 mod replay;
+mod room;
 mod snapshot;
 mod trace;
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
 
 use jiff::Timestamp;
 use tokio::sync::Semaphore;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use crate::admission::{Pool, PoolError, Quota};
+use crate::admission::Pool;
 use crate::otlp;
-use crate::store::{IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant};
+use crate::store::{
+    CONTACT_BYTES, IdempotentRequest, Listeners, Receipt, Reply, RequestKey, Session, Store, StoreError, Tenant, Usage,
+};
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
 
@@ -53,18 +54,17 @@ pub use error::SessionError;
 pub use events::STREAMS;
 use loaded::LoadedSession;
 pub use metrics::{Readings, SessionMetrics};
+use room::{Accounts, Room};
 
 /// How often a change is tried if other processes move the contact first. Each time, one of them has made progress.
 const ATTEMPTS: usize = 100;
-
-/// How long a count of contacts is taken to hold, and how long one that fills its quota is.
-const RECOUNT: Duration = Duration::from_secs(60);
-const RECOUNT_FULL: Duration = Duration::from_secs(1);
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
 pub struct Sessions {
     tenant: Tenant,
+    /// The name of the key that the requests come with, where keys are in use.
+    by: Option<Arc<str>>,
     common: Arc<Common>,
 }
 
@@ -77,9 +77,7 @@ struct Common {
     snapshots: Arc<Semaphore>,
     listeners: Listeners,
     metrics: SessionMetrics,
-    // How many contacts each tenant has, and since when that is known: counted now and then, because others on the same store
-    // create and delete too. A std mutex: held for a lookup, never across an await.
-    counted: Mutex<HashMap<Tenant, (usize, Instant)>>,
+    accounts: Accounts,
 }
 
 impl Sessions {
@@ -95,15 +93,21 @@ impl Sessions {
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
             listeners: Listeners::new(STREAMS),
             metrics,
-            counted: Mutex::default(),
+            accounts: Accounts::default(),
         };
-        Sessions { tenant: Tenant::default(), common: Arc::new(common) }
+        Sessions { tenant: Tenant::default(), by: None, common: Arc::new(common) }
     }
 
-    /// The sessions of another tenant.
+    /// The sessions of another tenant, for requests that come with the key of this name.
     #[must_use]
-    pub fn for_tenant(&self, tenant: Tenant) -> Sessions {
-        Sessions { tenant, common: Arc::clone(&self.common) }
+    pub fn for_tenant(&self, tenant: Tenant, key: Arc<str>) -> Sessions {
+        Sessions { tenant, by: Some(key), common: Arc::clone(&self.common) }
+    }
+
+    /// Whether requests come with keys, by whose names the history says who made a move.
+    #[must_use]
+    pub fn names_makers(&self) -> bool {
+        self.by.is_some()
     }
 
     /// Whether the store can serve.
@@ -125,33 +129,9 @@ impl Sessions {
         IdempotentRequest::new(&*self.common.store, &self.tenant, key)
     }
 
-    /// Checks that the tenant may have another session.
-    async fn check_room(&self) -> Result<(), SessionError> {
-        let quotas = self.common.pool.quotas();
-        let known = self.counted().get(&self.tenant).copied().filter(|(count, since)| {
-            let full = *count >= quotas.limits().contacts;
-            since.elapsed() < if full { RECOUNT_FULL } else { RECOUNT }
-        });
-        let count = match known {
-            Some((count, _)) => count,
-            None => {
-                let count = usize::try_from(self.common.store.count(&self.tenant).await?).unwrap_or(usize::MAX);
-                self.counted().insert(self.tenant.clone(), (count, Instant::now()));
-                count
-            }
-        };
-        Ok(quotas.check(Quota::Contacts, count).map_err(PoolError::Quota)?)
-    }
-
-    /// Counts a session that was made.
-    fn count_new(&self) {
-        if let Some((count, _)) = self.counted().get_mut(&self.tenant) {
-            *count += 1;
-        }
-    }
-
-    fn counted(&self) -> MutexGuard<'_, HashMap<Tenant, (usize, Instant)>> {
-        self.common.counted.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Room in the store for what a change will add, within the quotas of the tenant.
+    async fn room(&self, wanted: Usage) -> Result<Room, SessionError> {
+        self.common.accounts.room(&self.common.store, &self.common.pool, &self.tenant, wanted).await
     }
 
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
@@ -168,7 +148,6 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        self.check_room().await?;
         let now = Timestamp::now();
         let session = Session {
             id: Uuid::now_v7(),
@@ -181,13 +160,16 @@ impl Sessions {
         };
         let live = LoadedSession::start(session, creation.setup)?;
         let reply = live.created_reply()?;
+        let receipt = request.receipt(&reply);
+        let added = Usage { contacts: 1, bytes: live.stored_bytes() + receipt.as_ref().map_or(0, Receipt::bytes) };
+        let room = self.room(added).await?;
         // A request that finds the new session in the store waits until it is cached.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
-        let stored = self.common.store.create(live.session.clone(), request.receipt(&reply));
+        let stored = self.common.store.create(live.session.clone(), receipt);
         if let Err(error) = stored.instrument(otlp::part!("store")).await {
             return Ok(request.after_refusal(error).await?);
         }
-        self.count_new();
+        room.used(added);
         guard.live = Some(Box::new(live));
         Ok(reply)
     }
@@ -201,7 +183,8 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        self.check_room().await?;
+        // A tenant that has no room for another one is refused before its past is read.
+        drop(self.room(Usage { contacts: 1, bytes: CONTACT_BYTES }).await?);
         let mut guard = self.lock(id).await?;
         let (mut copy, _held) = self.after(&mut guard, wanted.sequence).await?;
         let now = Timestamp::now();
@@ -213,12 +196,18 @@ impl Sessions {
             ..copy.session
         };
         let reply = copy.created_reply()?;
+        let receipt = request.receipt(&reply);
+        let extent = self.common.store.extent(id).await.map_err(|error| self.store_failure(&mut guard, error))?;
+        let moves = copy.session.sequence * self.common.store.move_bytes();
+        let bytes = copy.stored_bytes() + moves + extent.snapshot + receipt.as_ref().map_or(0, Receipt::bytes);
+        let added = Usage { contacts: 1, bytes };
+        let room = self.room(added).await?;
         let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
         // The original may have moved on meanwhile in another process: its past stays what it was.
-        let stored = self.common.store.fork(id, copy.session.clone(), request.receipt(&reply));
+        let stored = self.common.store.fork(id, copy.session.clone(), receipt);
         match stored.instrument(otlp::part!("store")).await {
             Ok(()) => {
-                self.count_new();
+                room.used(added);
                 new.live = Some(copy);
                 Ok(reply)
             }
@@ -250,9 +239,15 @@ impl Sessions {
         }
         let renamed = SessionReply { label: label.clone(), ..now };
         let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
-        let stored = self.common.store.rename(id, label, request.receipt(&reply));
+        let receipt = request.receipt(&reply);
+        let added = Usage { contacts: 0, bytes: receipt.as_ref().map_or(0, Receipt::bytes) };
+        let room = self.room(added).await?;
+        let stored = self.common.store.rename(id, label, receipt);
         match stored.instrument(otlp::part!("store")).await {
-            Ok(()) => Ok(reply),
+            Ok(()) => {
+                room.used(added);
+                Ok(reply)
+            }
             Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => Err(self.store_failure(&mut guard, error)),
             Err(error) => Ok(request.after_refusal(error).await?),
         }
@@ -274,6 +269,8 @@ impl Sessions {
             match (deleted.await, expected) {
                 (Ok(()), _) => {
                     guard.live = None;
+                    let bytes = CONTACT_BYTES + at * self.common.store.move_bytes();
+                    self.common.accounts.give_back(&self.tenant, Usage { contacts: 1, bytes });
                     return Ok(());
                 }
                 (Err(StoreError::Stale { found }), Some(expected)) => {

@@ -215,6 +215,7 @@ impl Sessions {
             state: record.state,
             cycle: None,
             observation: record.observation(),
+            by: record.by.filter(|_| self.names_makers()).as_deref().map(str::to_owned),
             at: record.at,
         });
         Ok(HistoryPage { items: items.collect(), next })

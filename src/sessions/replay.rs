@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use crate::admission::Reservation;
 use crate::simulation::cost::{EXPANSION, Work};
-use crate::store::{Extent, Record, Session, StoreError};
+use crate::store::{Extent, RECORD_BYTES, Record, Session, StoreError};
 use stickslip_wire::limits;
 
 use super::cache::Guard;
@@ -219,7 +219,7 @@ impl Sessions {
 fn bytes_to_load(extent: &Extent) -> usize {
     let number = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
     let pieces = number(extent.sequence).saturating_mul(PIECES).min(limits::MEMORY_DEPTH);
-    let page = number(extent.sequence).min(PAGE) * size_of::<Record>();
+    let page = number(extent.sequence).min(PAGE) * RECORD_BYTES;
     // A definition of more than a few lines is a table, of which each point becomes a series.
     let definition = if extent.definition > SHORT_DEFINITION { number(extent.definition) } else { 0 };
     (COPIES * PIECE_BYTES * pieces)

@@ -87,7 +87,7 @@ pub struct Heading {
 }
 
 /// A move as it is stored, with the state after it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// Its number, counted from 1 without a gap.
     pub sequence: u64,
@@ -99,6 +99,8 @@ pub struct Record {
     pub state: State,
     /// What was measured there, if it is an observation. A replay does not need it.
     pub measured: Option<Measured>,
+    /// The name of the key that made it, where keys were in use. A replay does not need it.
+    pub by: Option<Arc<str>>,
     /// When it was applied.
     pub at: Timestamp,
 }
@@ -110,6 +112,9 @@ impl Record {
         self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
     }
 }
+
+/// Bytes of a record in memory, with the longest name of a key.
+pub const RECORD_BYTES: usize = size_of::<Record>() + 96;
 
 /// What a bench measured at the displacement that a move goes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,6 +143,12 @@ impl RequestKey {
             name => RequestKey { key: format!("{name} {}", self.key), ..self },
         }
     }
+
+    /// Whether it is a key of this tenant.
+    #[must_use]
+    pub fn is_of(&self, tenant: &Tenant) -> bool {
+        self.key.split_once(' ').map_or("", |(name, _)| name) == tenant.name()
+    }
 }
 
 /// The reply to a request that changed something.
@@ -158,6 +169,14 @@ pub struct Receipt {
     pub request: RequestKey,
     /// The reply.
     pub reply: Reply,
+}
+
+impl Receipt {
+    /// Bytes that it takes in the store.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        RECEIPT_OVERHEAD + self.reply.body.len() as u64 + 2 * self.request.key.len() as u64
+    }
 }
 
 /// A packed state for a replay to begin at: a cache that can always be rebuilt from the moves.
@@ -181,6 +200,21 @@ pub struct Extent {
     /// Bytes of its snapshot, if there is one.
     pub snapshot: u64,
 }
+
+/// What is stored for a tenant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Usage {
+    /// Contacts.
+    pub contacts: u64,
+    /// Bytes of its contacts, of their moves and snapshots, and of the replies that are kept for retries: as many as the storage
+    /// takes for them, within a factor of two.
+    pub bytes: u64,
+}
+
+/// Bytes that a contact takes besides its definition, its moves and its snapshot, roughly.
+pub const CONTACT_BYTES: u64 = 512;
+/// Bytes that a reply kept for retries takes besides its body and its key, roughly.
+pub const RECEIPT_OVERHEAD: u64 = 256;
 
 /// Why a call to a store failed. Nothing has changed then, except perhaps after
 /// [`StoreError::Unavailable`] and [`StoreError::Failed`].
@@ -242,8 +276,11 @@ pub trait Store: JobStore {
     /// What can be known of a session without reading it.
     async fn extent(&self, id: Uuid) -> Result<Extent>;
 
-    /// How many sessions a tenant has.
-    async fn count(&self, tenant: &Tenant) -> Result<u64>;
+    /// What is stored for a tenant. It reads a row or two of each contact, and no moves.
+    async fn usage(&self, tenant: &Tenant) -> Result<Usage>;
+
+    /// Bytes that a move takes in the storage, with its share of the indexes; rather too many than too few.
+    fn move_bytes(&self) -> u64;
 
     /// The session.
     async fn find(&self, id: Uuid) -> Result<Session>;

@@ -77,7 +77,7 @@ pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
 }
 
 /// Sequence, time, the four targets, whether they are relative, the tolerance, the state in the order of [`State`], and
-/// the columns of [`measured`].
+/// the columns of [`measured`], and the name of the key that made the move.
 pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
     Ok(Record {
         sequence: row.count()?,
@@ -103,6 +103,7 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             memory_depth: usize::try_from(row.count()?).map_err(|error| row.invalid(error))?,
         },
         measured: measured(row)?,
+        by: row.next::<Option<String>>()?.map(Arc::from),
     })
 }
 

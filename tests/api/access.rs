@@ -5,6 +5,7 @@ use crate::common;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use common::postgres::Cluster;
 use common::process::Process;
 use common::{ball, problem, until};
 use reqwest::{Method, Response};
@@ -589,4 +590,93 @@ fn an_entry_that_is_wrong_is_refused_by_its_line_and_not_shown() {
         assert_eq!(wrong.line, 3);
         assert!(wrong.why.contains(why) && !wrong.to_string().contains(&hash[8..]), "{entry}: {wrong}");
     }
+}
+
+#[tokio::test]
+async fn the_history_names_the_key_that_made_a_move_where_keys_are_in_use() {
+    let folder = tempdir().unwrap();
+    let cluster = Cluster::shared();
+    for store in [format!("sqlite:{}", folder.path().join("contacts.db").display()), cluster.database().await] {
+        let keys: [(&'static str, &[Role], &str); 3] =
+            [("bench-1", &[Role::Write], ""), ("desk", &[Role::Write], ""), ("reader", &[Role::Read], "")];
+        let server = Guarded::start(&store, &[], &keys).await;
+        // On a database that several servers share, another one shows the same.
+        let replica = store.starts_with("postgres").then_some(Guarded::start(&store, &[], &keys[2..]));
+        let id = server.contact("desk").await;
+        let moves = json!({"path": {"displacement": [2e-8, 1e-8]}});
+        let seen = json!({"observations": [{"displacement": 3e-8, "force": 0.1}]});
+        for (who, call, body) in [
+            ("bench-1", "move", json!({"displacement": 1e-8})),
+            ("desk", "path", moves),
+            ("bench-1", "observations", seen),
+            ("desk", "relax", json!({"reversals": 2})),
+        ] {
+            let response = server.send(Some(who), "POST", &format!("/contacts/{id}/{call}"), Some(&body), &[]).await;
+            assert!(response.status().is_success(), "{call}: {}", response.text().await.unwrap());
+        }
+        let fork = server.send(Some("bench-1"), "POST", &format!("/contacts/{id}/fork"), None, &[]).await;
+        let fork = fork.json::<Value>().await.unwrap()["id"].as_str().unwrap().to_owned();
+        let moved = json!({"force": 0.0});
+        server.send(Some("bench-1"), "POST", &format!("/contacts/{fork}/move"), Some(&moved), &[]).await;
+
+        let mut servers = vec![server];
+        if let Some(replica) = replica {
+            servers.push(replica.await);
+        }
+        let first = ["bench-1", "desk", "desk", "bench-1"];
+        let mut sequences = Vec::new();
+        for server in &servers {
+            let get = async |path: &str| server.send(Some("reader"), "GET", path, None, &[]).await;
+            for (id, last) in [(id.to_string(), "desk"), (fork.clone(), "bench-1")] {
+                let page: Value = get(&format!("/contacts/{id}/history")).await.json().await.unwrap();
+                let by: Vec<&str> =
+                    page["items"].as_array().unwrap().iter().map(|item| item["by"].as_str().unwrap()).collect();
+                assert_eq!((&by[..4], by[by.len() - 1]), (&first[..], last));
+                assert!(by[4..by.len() - 1].iter().all(|name| *name == "desk"), "{by:?}");
+                sequences.push(by.len());
+                for choice in ["", "&limit=100"] {
+                    let csv = get(&format!("/contacts/{id}/history?format=csv{choice}")).await.text().await.unwrap();
+                    let column: Vec<&str> = csv.lines().map(|line| line.rsplit_once(',').unwrap().1).collect();
+                    assert_eq!((column[0], &column[1..]), ("by", &by[..]));
+                }
+                let rows: Value = get(&format!("/contacts/{id}/history?format=rows")).await.json().await.unwrap();
+                assert_eq!(rows.as_array().unwrap().last().unwrap()["by"], last);
+                let arrow = get(&format!("/contacts/{id}/history?format=arrow")).await.bytes().await.unwrap();
+                let batches = arrow_ipc::reader::StreamReader::try_new(&arrow[..], None).unwrap();
+                let names = batches.flat_map(|batch| {
+                    let batch = batch.unwrap();
+                    let names = batch.column_by_name("by").unwrap().clone();
+                    let names = names.as_any().downcast_ref::<arrow_array::StringArray>().unwrap().clone();
+                    names.iter().map(|name| name.unwrap().to_owned()).collect::<Vec<_>>()
+                });
+                assert_eq!(names.collect::<Vec<_>>(), by);
+            }
+        }
+        assert!(sequences.iter().all(|count| *count > 5), "relaxing moves the contact: {sequences:?}");
+        drop(servers);
+
+        // Without keys nobody has a name, and there is no field and no column for one; with keys what was made meanwhile has none.
+        let open = Process::start(&store).await;
+        let path = format!("{}/contacts/{id}", open.base);
+        let moved = server_free_move(&path).await;
+        assert!(moved.status().is_success());
+        let page: Value = reqwest::get(format!("{path}/history")).await.unwrap().json().await.unwrap();
+        assert!(page["items"].as_array().unwrap().iter().all(|item| item.get("by").is_none()), "{page}");
+        let csv = reqwest::get(format!("{path}/history?format=csv")).await.unwrap().text().await.unwrap();
+        assert!(csv.lines().next().unwrap().ends_with("innovation"), "{csv}");
+        drop(open);
+        let server = Guarded::start(&store, &[], &keys).await;
+        let page = server.send(Some("reader"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;
+        let page: Value = page.json().await.unwrap();
+        let items = page["items"].as_array().unwrap();
+        assert!(items[0]["by"] == "bench-1" && items[items.len() - 1].get("by").is_none(), "{page}");
+        let rows = server.send(Some("reader"), "GET", &format!("/contacts/{id}/history?format=rows"), None, &[]).await;
+        assert_eq!(rows.json::<Value>().await.unwrap().as_array().unwrap().last().unwrap()["by"], Value::Null);
+    }
+}
+
+/// A move of a contact on a server without keys.
+async fn server_free_move(contact: &str) -> Response {
+    let body = json!({"displacement": 0.0});
+    reqwest::Client::new().post(format!("{contact}/move")).json(&body).send().await.unwrap()
 }

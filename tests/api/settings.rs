@@ -11,7 +11,7 @@ use common::process::ended;
 use tempfile::tempdir;
 
 /// Three values of every setting, none of them its default.
-const CASES: [(&str, [&str; 3]); 31] = [
+const CASES: [(&str, [&str; 3]); 33] = [
     ("listen", ["127.0.0.1:1", "127.0.0.1:2", "127.0.0.1:3"]),
     ("keys", ["a.keys", "b.keys", "c.keys"]),
     ("first-key", ["a.keys", "b.keys", "c.keys"]),
@@ -35,6 +35,8 @@ const CASES: [(&str, [&str; 3]); 31] = [
     ("max-requests-per-client", ["10", "20", "30"]),
     ("max-streams-per-client", ["10", "20", "30"]),
     ("max-contacts-per-tenant", ["10", "20", "30"]),
+    ("max-body-bytes-per-client", ["10MiB", "20MiB", "30MiB"]),
+    ("max-store-bytes-per-tenant", ["10MiB", "20MiB", "30MiB"]),
     ("max-wait", ["1s", "2s", "500ms"]),
     ("work-bytes", ["256MiB", "300MiB", "1GiB"]),
     ("deadline", ["1s", "2s", "1h"]),

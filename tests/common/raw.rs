@@ -33,10 +33,15 @@ pub struct Answer {
 impl Service {
     /// Starts it in memory and with these arguments, and waits until it listens. The log goes to a file.
     pub fn start(arguments: &[&str]) -> Service {
+        Service::start_on("memory:", arguments)
+    }
+
+    /// The same with a store.
+    pub fn start_on(store: &str, arguments: &[&str]) -> Service {
         let folder = tempfile::tempdir().unwrap();
         let log = File::create(folder.path().join("log")).unwrap();
         let mut child = Command::new(env!("CARGO_BIN_EXE_stickslip"))
-            .args(["serve", "--listen", "127.0.0.1:0", "--store", "memory:"])
+            .args(["serve", "--listen", "127.0.0.1:0", "--store", store])
             .args(arguments)
             // Not settings of the service, which refuses unknown ones.
             .env_remove("STICKSLIP_FUZZ_CASES")
@@ -61,6 +66,11 @@ impl Service {
     /// The most memory that the process has had so far, bytes.
     pub fn peak(&self) -> usize {
         self.status("VmHWM:")
+    }
+
+    /// The memory that the process has now, bytes.
+    pub fn resident(&self) -> usize {
+        self.status("VmRSS:")
     }
 
     fn status(&self, name: &str) -> usize {

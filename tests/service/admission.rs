@@ -2,8 +2,8 @@
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::pin::pin;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
 use stickslip::admission::{
@@ -12,7 +12,10 @@ use stickslip::admission::{
 use stickslip::simulation::cost::Work;
 use stickslip_mechanics::profile::Cone;
 use stickslip_mechanics::{Profile, Sphere};
+use tokio::task::JoinHandle;
 use tokio::time::{sleep, timeout};
+
+use crate::common::raw::PATIENCE;
 
 /// Bytes are reserved in units of this size.
 const UNIT: usize = 1024;
@@ -146,6 +149,91 @@ async fn long_work_of_some_gives_way_to_short_work_of_others_on_a_single_thread(
         assert_eq!(work.await.unwrap(), Ok(true));
     }
     assert_eq!((pool.taken().threads, pool.meters().waiting.get()), (0, 0));
+}
+
+/// Work is asked for one after the other, and says its name when it is its turn.
+#[derive(Clone, Default)]
+struct Order(Arc<Mutex<Vec<&'static str>>>);
+
+impl Order {
+    /// Asks for work that takes some time, and waits until it is in the queue.
+    async fn ask(&self, pool: &Pool, who: u8, cost: Nanoseconds, name: &'static str, time: Duration) -> Asked {
+        let (said, queued) = (self.clone(), pool.meters().waiting.get() + 1);
+        let work = move || {
+            said.0.lock().unwrap().push(name);
+            std::thread::sleep(time);
+        };
+        let asked = client(who).serve({
+            let pool = pool.clone();
+            async move { pool.run(cost, work).await }
+        });
+        let asked = tokio::spawn(asked);
+        let is_queued = async {
+            // Or has had its turn already, where this machine is slow.
+            while pool.meters().waiting.get() < queued && !self.0.lock().unwrap().contains(&name) {
+                sleep(Duration::from_millis(1)).await;
+            }
+        };
+        timeout(PATIENCE, is_queued).await.expect("it waits for the only thread");
+        asked
+    }
+
+    /// The order in which all of it was done.
+    async fn done(self, all: Vec<Asked>) -> Vec<&'static str> {
+        for asked in all {
+            asked.await.unwrap().unwrap();
+        }
+        std::mem::take(&mut *self.0.lock().unwrap())
+    }
+}
+
+type Asked = JoinHandle<Result<(), PoolError>>;
+
+/// Takes the only thread of a pool until the sender is used, and a little longer.
+async fn occupy(pool: &Pool, who: u8, cost: Nanoseconds, longer: Duration) -> (mpsc::Sender<()>, Asked) {
+    let (release, held) = mpsc::channel();
+    let busy = pool.clone();
+    let work = move || {
+        held.recv().unwrap();
+        std::thread::sleep(longer);
+    };
+    let asked = tokio::spawn(client(who).serve(async move { busy.run(cost, work).await }));
+    let begun = async {
+        while pool.meters().running.get() == 0 {
+            sleep(Duration::from_millis(1)).await;
+        }
+    };
+    timeout(PATIENCE, begun).await.expect("the thread is free");
+    (release, asked)
+}
+
+#[tokio::test]
+async fn a_client_that_has_had_the_thread_waits_for_one_that_came_later() {
+    const LONG: Nanoseconds = 100_000_000_000;
+    let pool = Pool::new(Capacity { threads: 1, ..Capacity::default() });
+    let (release, first) = occupy(&pool, 1, LONG, Duration::from_millis(5)).await;
+    let (order, none) = (Order::default(), Duration::ZERO);
+    let mut all = vec![first];
+    for (who, name) in [(1, "one"), (1, "one again"), (2, "two")] {
+        all.push(order.ask(&pool, who, LONG, name, none).await);
+    }
+    release.send(()).unwrap();
+    assert_eq!(order.done(all).await, ["two", "one", "one again"]);
+}
+
+#[tokio::test]
+async fn interactive_work_may_take_more_time_than_long_work_before_it_waits() {
+    const LONG: Nanoseconds = 100_000_000_000;
+    let pool = Pool::new(Capacity { threads: 1, ..Capacity::default() });
+    let (release, first) = occupy(&pool, 1, LONG, Duration::from_millis(10)).await;
+    let (order, none) = (Order::default(), Duration::ZERO);
+    // It has taken three times what the long work has, which counts eight times.
+    let mut all = vec![first, order.ask(&pool, 1, LONG, "long", none).await];
+    for (name, time) in [("short", Duration::from_millis(30)), ("short again", none)] {
+        all.push(order.ask(&pool, 2, 2 * INLINE, name, time).await);
+    }
+    release.send(()).unwrap();
+    assert_eq!(order.done(all).await, ["short", "short again", "long"]);
 }
 
 #[tokio::test]

@@ -7,6 +7,8 @@ mod admission;
 mod drain;
 mod fairness;
 mod hostile_http;
+mod memory;
 mod overload;
+mod quotas;
 mod soak;
 mod soak_round;

@@ -212,8 +212,19 @@ async fn a_flood_of_ten_times_the_capacity_is_survived() {
 
 #[tokio::test]
 async fn large_bodies_wait_for_memory_or_are_refused() {
-    let service =
-        Service::start(&["--work-bytes", "256MiB", "--cache-bytes", "16MiB", "--max-wait", "1s", "--log", "off"]);
+    let service = Service::start(&[
+        "--work-bytes",
+        "256MiB",
+        "--cache-bytes",
+        "16MiB",
+        "--max-wait",
+        "1s",
+        "--log",
+        "off",
+        // They are all of one client, and are to fill the memory.
+        "--max-body-bytes-per-client",
+        "1GiB",
+    ]);
     // Each becomes some 200 MiB while it is parsed.
     let moves = vec!["{}"; 2_700_000].join(",");
     let body = format!("{{\"contact\":{},\"path\":{{\"moves\":[{moves}]}}}}", ball());

@@ -52,7 +52,7 @@ pub fn session(label: Option<&str>) -> Session {
 }
 
 /// A move whose numbers differ from those of every other; of three the last is an observation, every other one with its
-/// time.
+/// time, and of four the last was made without a key.
 pub fn record(sequence: u64) -> Record {
     let number = sequence as f64 + 0.1;
     Record {
@@ -76,6 +76,7 @@ pub fn record(sequence: u64) -> Record {
             at: (sequence.is_multiple_of(2))
                 .then(|| Timestamp::UNIX_EPOCH + SignedDuration::from_nanos(sequence as i64)),
         }),
+        by: (!sequence.is_multiple_of(4)).then(|| format!("key_{}.a-B", sequence % 4).into()),
         at: Timestamp::now() + SignedDuration::from_nanos(sequence as i64),
     }
 }

@@ -17,3 +17,4 @@ mod postgres;
 mod replicas;
 mod sessions;
 mod sqlite_file;
+mod usage;

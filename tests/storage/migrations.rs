@@ -141,45 +141,58 @@ async fn connect(url: &str) -> Client {
     client
 }
 
-/// A contact at version 1 of the tables, which knew no observations, with one move to a force.
+/// A contact at an earlier version of the tables, with one move to a force: version 1 knew no observations, and version 2 not
+/// by which key a move was made.
 #[tokio::test]
-async fn what_the_first_version_has_stored_is_read() {
+async fn what_earlier_versions_have_stored_is_read() {
     let folder = tempdir().unwrap();
-    let path = folder.path().join("first.db");
-    let made = session(None);
-    let definition = serde_json::to_string(&*made.definition).unwrap();
-    let mut database = Connection::open(&path).unwrap();
-    sqlite::schema::migrate(&mut database, &sqlite::schema::MIGRATIONS[..1]).unwrap();
-    let contact = "INSERT INTO contacts VALUES (1, ?1, NULL, '', 5, 5, 0, ?2)";
-    database.execute(contact, [made.id.to_string(), definition.clone()]).unwrap();
-    let moved =
-        "INSERT INTO moves VALUES (1, 1, 7, NULL, 0.0, NULL, NULL, 0, 1e-10, 1, 0, 3, 4, 5, 6, 'stick', 7, 8, 9, 66)";
-    database.execute(moved, []).unwrap();
-    drop(database);
-    let store = SqliteStore::open(&path).unwrap();
-    reads_first_version(&store, made.id).await;
+    for (version, observed) in [(1, ""), (2, ", 0.5, 12")] {
+        let path = folder.path().join(format!("{version}.db"));
+        let made = session(None);
+        let definition = serde_json::to_string(&*made.definition).unwrap();
+        let mut database = Connection::open(&path).unwrap();
+        sqlite::schema::migrate(&mut database, &sqlite::schema::MIGRATIONS[..version]).unwrap();
+        let contact = "INSERT INTO contacts VALUES (1, ?1, NULL, '', 5, 5, 0, ?2)";
+        database.execute(contact, [made.id.to_string(), definition.clone()]).unwrap();
+        let moved = format!(
+            "INSERT INTO moves VALUES
+            (1, 1, 7, NULL, 0.0, NULL, NULL, 0, 1e-10, 1, 0, 3, 4, 5, 6, 'stick', 7, 8, 9, 66{observed})"
+        );
+        database.execute(&moved, []).unwrap();
+        drop(database);
+        let store = SqliteStore::open(&path).unwrap();
+        reads_earlier_version(&store, made.id, version).await;
+        let named = |sql: &str| -> Vec<Option<String>> {
+            let database = Connection::open(&path).unwrap();
+            let mut query = database.prepare(sql).unwrap();
+            query.query_map([], |row| row.get(0)).unwrap().map(Result::unwrap).collect()
+        };
+        assert_eq!(named("SELECT made_by FROM history ORDER BY sequence"), [None, Some("key_3.a-B".to_owned())]);
 
-    let url = Cluster::shared().database().await;
-    let mut client = connect(&url).await;
-    postgres::schema::migrate(&mut client, &postgres::schema::MIGRATIONS[..1]).await.unwrap();
-    let contact = "INSERT INTO contacts VALUES ($1, NULL, '', $2, 1, now(), 0, now(), 0)";
-    client.execute(contact, &[&made.id, &definition]).await.unwrap();
-    let moved = "INSERT INTO moves VALUES
-        ($1, 1, NULL, '-0', NULL, NULL, false, 1e-10, 1, '-0', 3, 4, 5, 6, 'stick', 7, 8, 9, now(), 0, 11)";
-    client.execute(moved, &[&made.id]).await.unwrap();
-    reads_first_version(&PostgresStore::open(&url).await.unwrap(), made.id).await;
+        let url = Cluster::shared().database().await;
+        let mut client = connect(&url).await;
+        postgres::schema::migrate(&mut client, &postgres::schema::MIGRATIONS[..version]).await.unwrap();
+        let contact = "INSERT INTO contacts VALUES ($1, NULL, '', $2, 1, now(), 0, now(), 0)";
+        client.execute(contact, &[&made.id, &definition]).await.unwrap();
+        let moved = format!(
+            "INSERT INTO moves VALUES
+            ($1, 1, NULL, '-0', NULL, NULL, false, 1e-10, 1, '-0', 3, 4, 5, 6, 'stick', 7, 8, 9, now(), 0, 11{observed})"
+        );
+        client.execute(&moved, &[&made.id]).await.unwrap();
+        reads_earlier_version(&PostgresStore::open(&url).await.unwrap(), made.id, version).await;
+    }
 }
 
-async fn reads_first_version(store: &dyn Store, id: Uuid) {
+async fn reads_earlier_version(store: &dyn Store, id: Uuid, version: usize) {
     let [read] = store.history(id, 0, 10).await.unwrap().try_into().unwrap();
     assert_eq!(
-        (read.measured, exact(&read.step.force), exact(&read.state.force)),
-        (None, exact(&Some(-0.0)), exact(&-0.0))
+        (read.measured.map(|measured| measured.force), exact(&read.step.force), exact(&read.state.force)),
+        ((version > 1).then_some(0.5), exact(&Some(-0.0)), exact(&-0.0))
     );
-    assert_eq!((read.state.memory_depth, read.state.elastic_energy), (9, 8.0));
+    assert_eq!((read.state.memory_depth, read.state.elastic_energy, read.by), (9, 8.0, None));
     let next = record(3);
     let next = stickslip::store::Record { sequence: 2, ..next };
-    store.append(id, 1, vec![next], None).await.unwrap();
+    store.append(id, 1, vec![next.clone()], None).await.unwrap();
     assert_eq!(exact(&store.history(id, 1, 10).await.unwrap()), exact(&[next]));
 }
 

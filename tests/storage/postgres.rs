@@ -47,6 +47,7 @@ fn record(sequence: u64, displacement: f64) -> Record {
             memory_depth: 3,
         },
         measured: None,
+        by: None,
         at: Timestamp::from_nanosecond(1_700_000_001_000_000_001 + i128::from(sequence)).unwrap(),
     }
 }

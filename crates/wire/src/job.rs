@@ -18,6 +18,9 @@ pub struct JobReply {
     pub state: JobState,
     /// Its progress.
     pub progress: JobProgress,
+    /// Time that the solver is estimated to take for a point, on one thread, s.
+    #[schema(example = 0.012)]
+    pub point_time: f64,
     /// When it was asked for (ISO 8601, UTC).
     pub created_at: Timestamp,
     /// When it ended (ISO 8601, UTC).

@@ -264,6 +264,10 @@ pub struct HistoryItem {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub observation: Option<ObservedForce>,
+    /// The name of the key that made it. Left out of a move that was made without a key, and where no keys are in use.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub by: Option<String>,
     /// When it was applied (ISO 8601, UTC).
     pub at: Timestamp,
 }

@@ -54,6 +54,8 @@ pub enum Cells<'a> {
     Times(ByRow<'a, Timestamp>),
     /// Words without commas and quotes.
     Words(ByRow<'a, &'static str>),
+    /// Names without commas and quotes, where there is one.
+    SomeNames(ByRow<'a, Option<&'a str>>),
 }
 
 impl<'a> Column<'a> {
@@ -89,6 +91,10 @@ impl<'a> Column<'a> {
             },
             Cells::Times(at) => write!(text, "{quote}{}{quote}", at(row)),
             Cells::Words(at) => write!(text, "{quote}{}{quote}", at(row)),
+            Cells::SomeNames(at) => match at(row) {
+                Some(name) => write!(text, "{quote}{name}{quote}"),
+                None => text.write_str(none),
+            },
         }
     }
 
@@ -99,6 +105,7 @@ impl<'a> Column<'a> {
             Cells::SomeCounts(_) => (DataType::UInt64, true),
             Cells::Times(_) => (DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())), true),
             Cells::Words(_) => (DataType::Utf8, false),
+            Cells::SomeNames(_) => (DataType::Utf8, true),
         };
         let unit = self.unit.map(|unit| ("unit".to_owned(), unit.to_owned()));
         Field::new(&self.name, data_type, nullable).with_metadata(HashMap::from_iter(unit))
@@ -116,6 +123,7 @@ impl<'a> Column<'a> {
                 Arc::new(rows.map(since).collect::<TimestampNanosecondArray>().with_timezone("UTC"))
             }
             Cells::Words(at) => Arc::new(rows.map(|row| Some(at(row))).collect::<StringArray>()),
+            Cells::SomeNames(at) => Arc::new(rows.map(at).collect::<StringArray>()),
         }
     }
 }

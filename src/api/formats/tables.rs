@@ -121,9 +121,9 @@ pub fn loop_fit(reply: &FitReply) -> Table<'_> {
     flat(reply.curve.iter().map(|curve| curve.force.len()).sum(), columns)
 }
 
-/// A page of a history: the states with their numbers and times.
+/// A page of a history: the states with their numbers and times, and who made them if `names_makers`.
 #[must_use]
-pub fn history(page: &HistoryPage) -> Table<'_> {
+pub fn history(page: &HistoryPage, names_makers: bool) -> Table<'_> {
     let items = &page.items;
     let state = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(&items[row].state));
     let cycle = |name, unit, of: fn(&Cycle) -> Option<f64>| {
@@ -133,7 +133,7 @@ pub fn history(page: &HistoryPage) -> Table<'_> {
     let observed = |name, of: fn(&ObservedForce) -> f64| {
         Column::floats(name, "N", move |row| items[row].observation.as_ref().map_or(f64::NAN, of))
     };
-    let columns = vec![
+    let mut columns = vec![
         Column::counts("sequence", |row| items[row].sequence),
         Column::new("at", Some("UTC"), Cells::Times(Box::new(|row| items[row].at))),
         state("displacement", "m", |state| state.displacement),
@@ -160,6 +160,9 @@ pub fn history(page: &HistoryPage) -> Table<'_> {
         observed("predicted_force", |observed| observed.predicted),
         observed("innovation", |observed| observed.innovation),
     ];
+    if names_makers {
+        columns.push(Column::new("by", Some(""), Cells::SomeNames(Box::new(|row| items[row].by.as_deref()))));
+    }
     flat(items.len(), columns)
 }
 

@@ -119,7 +119,7 @@ pub async fn admit(
         // Only set here.
         let _ = caller.set(Arc::clone(holder));
     }
-    request.extensions_mut().insert(holder.tenant.clone());
+    request.extensions_mut().insert(Arc::clone(holder));
     let client = Client::Tenant(holder.tenant.clone());
     let share = client.within(|| pool.share_of(Quota::Requests)).map_err(Problem::from);
     let mut response = match &share {

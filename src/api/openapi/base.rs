@@ -4,7 +4,7 @@ use utoipa::OpenApi;
 
 use stickslip_wire::{EndEvent, JobEndEvent, ProblemDocument, limits, profile};
 
-use crate::api::extract::BODY_LIMIT;
+use crate::api::limits::BODY_LIMIT;
 use crate::api::problem::MEDIA_TYPE;
 use crate::api::query::PAGE;
 

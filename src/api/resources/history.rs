@@ -18,7 +18,7 @@ use crate::api::reply;
 use crate::api::state::{App, TenantApp};
 
 /// Bytes of an item of a history.
-pub(super) const ITEM_BYTES: usize = 1_792;
+pub(super) const ITEM_BYTES: usize = 2_048;
 
 /// Which moves to list.
 #[derive(IntoParams)]
@@ -88,7 +88,8 @@ pub async fn get_history(
         app.sessions.mark(id, &mut page).await?;
     }
     let next = page.next;
-    let write = move || format.write(&page, || plots::history(id, &page), || tables::history(&page));
+    let names_makers = app.sessions.names_makers();
+    let write = move || format.write(&page, || plots::history(id, &page), || tables::history(&page, names_makers));
     let response = reply::tagged(format.reply(app.pool.run(format.cost(), write).await??), &tag);
     let choice = if cycles { "" } else { "&cycles=false" };
     let query = |next| format!("after={next}&limit={limit}{choice}&format={}", format.name());
@@ -112,7 +113,7 @@ async fn write_page(
     if cycles {
         app.sessions.mark(id, &mut page).await?;
     }
-    let block = table.push(&tables::history(&page)).map_err(unwritable)?;
+    let block = table.push(&tables::history(&page, app.sessions.names_makers())).map_err(unwritable)?;
     Ok((table, block))
 }
 

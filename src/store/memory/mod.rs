@@ -17,13 +17,12 @@ use jobs::StoredJob;
 
 use super::jobs::ChunkQueue;
 use super::{
-    Changes, Extent, Heading, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+    CONTACT_BYTES, Changes, Extent, Heading, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, RECORD_BYTES, Receipt, Record, Result,
+    Session, Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 /// Bytes of replies kept for retries. Beyond that the oldest are deleted early, because memory is bounded.
 const RECEIPT_BYTES: usize = 256 * 1024 * 1024;
-/// Estimated bytes of a receipt besides its body and key.
-const RECEIPT_OVERHEAD: usize = 256;
 
 /// Sessions in a map.
 #[derive(Default)]
@@ -45,6 +44,8 @@ struct Inner {
 
 struct Stored {
     session: Session,
+    // Bytes of its definition as JSON.
+    definition: u64,
     // Forks share the moves until one of them moves on.
     moves: Arc<Vec<Record>>,
     snapshot: Option<Snapshot>,
@@ -121,7 +122,7 @@ impl Receipts {
 }
 
 fn size(receipt: &Receipt) -> usize {
-    RECEIPT_OVERHEAD + receipt.reply.body.len() + 2 * receipt.request.key.len()
+    RECEIPT_OVERHEAD as usize + receipt.reply.body.len() + 2 * receipt.request.key.len()
 }
 
 fn summary(session: &Session) -> SessionSummary {
@@ -136,9 +137,10 @@ impl Store for MemoryStore {
     }
 
     async fn create(&self, session: Session, receipt: Option<Receipt>) -> Result<()> {
+        let definition = serde_json::to_vec(&*session.definition).map_or(0, |text| text.len() as u64);
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
-        inner.sessions.insert(session.id, Stored { session, moves: Arc::default(), snapshot: None });
+        inner.sessions.insert(session.id, Stored { session, definition, moves: Arc::default(), snapshot: None });
         inner.receipts.insert(receipt);
         Ok(())
     }
@@ -153,8 +155,20 @@ impl Store for MemoryStore {
         })
     }
 
-    async fn count(&self, tenant: &Tenant) -> Result<u64> {
-        Ok(self.lock().sessions.values().filter(|stored| stored.session.tenant == *tenant).count() as u64)
+    async fn usage(&self, tenant: &Tenant) -> Result<Usage> {
+        let inner = self.lock();
+        let own = inner.sessions.values().filter(|stored| stored.session.tenant == *tenant);
+        let usage = own.fold(Usage::default(), |Usage { contacts, bytes }, stored| {
+            let snapshot = stored.snapshot.as_ref().map_or(0, |snapshot| snapshot.state.len() as u64);
+            let moves = stored.session.sequence * self.move_bytes();
+            Usage { contacts: contacts + 1, bytes: bytes + CONTACT_BYTES + stored.definition + moves + snapshot }
+        });
+        let receipts = inner.receipts.by_key.values().filter(|receipt| receipt.request.is_of(tenant));
+        Ok(Usage { bytes: usage.bytes + receipts.map(|receipt| size(receipt) as u64).sum::<u64>(), ..usage })
+    }
+
+    fn move_bytes(&self) -> u64 {
+        RECORD_BYTES as u64
     }
 
     async fn find(&self, id: Uuid) -> Result<Session> {
@@ -217,15 +231,15 @@ impl Store for MemoryStore {
         self.lock().get(id).map(|stored| {
             // Sequences count from 1, so that the sequence of the last move seen is the index of the next one.
             let start = usize::try_from(after).unwrap_or(usize::MAX).min(stored.moves.len());
-            stored.moves[start..].iter().take(limit).copied().collect()
+            stored.moves[start..].iter().take(limit).cloned().collect()
         })
     }
 
     async fn fork(&self, id: Uuid, copy: Session, receipt: Option<Receipt>) -> Result<()> {
         let mut inner = self.lock();
         inner.receipts.check_free(receipt.as_ref())?;
-        let Stored { session, moves, snapshot } = inner.get(id)?;
-        let found = session.sequence;
+        let Stored { session, definition, moves, snapshot } = inner.get(id)?;
+        let (found, definition) = (session.sequence, *definition);
         if found < copy.sequence {
             return Err(StoreError::Stale { found });
         }
@@ -233,7 +247,7 @@ impl Store for MemoryStore {
         // All of the past is shared until one of the two moves on; a part of it is a copy.
         let moves = if count == moves.len() { Arc::clone(moves) } else { Arc::new(moves[..count].to_vec()) };
         let snapshot = snapshot.clone().filter(|snapshot| snapshot.sequence <= copy.sequence);
-        inner.sessions.insert(copy.id, Stored { session: copy, moves, snapshot });
+        inner.sessions.insert(copy.id, Stored { session: copy, definition, moves, snapshot });
         inner.receipts.insert(receipt);
         Ok(())
     }

@@ -139,6 +139,7 @@ columns!(Moves, "Moves, with the states after them.", (Uuid, i64, &Record), |req
     at_ns: i16 = split_time(request.2.at).1,
     observed_force: Option<f64> = request.2.measured.map(|measured| measured.force),
     observed_at: Option<i64> = request.2.measured.and_then(|measured| measured.at).map(to_nanoseconds),
+    made_by: Option<String> = request.2.by.as_deref().map(str::to_owned),
     stamp: i64 = request.1,
 });
 

@@ -28,6 +28,7 @@ use async_trait::async_trait;
 use jiff::Timestamp;
 use tokio::task::AbortHandle;
 use tokio::time::timeout;
+use tokio_postgres::Row;
 use uuid::Uuid;
 
 use stickslip_wire::SessionSummary;
@@ -36,8 +37,8 @@ use super::probe::Probe;
 use super::rows;
 use super::schema::SchemaError;
 use super::{
-    Changes, Commits, Extent, Heading, RECEIPT_LIFETIME, Receipt, Record, Result, Session, Snapshot, Store, StoreError,
-    Tenant,
+    CONTACT_BYTES, Changes, Commits, Extent, Heading, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Result,
+    Session, Snapshot, Store, StoreError, Tenant, Usage,
 };
 
 use client_pool::{ANSWER, ClientPool};
@@ -146,6 +147,9 @@ impl From<SchemaError<tokio_postgres::Error>> for Fault {
 }
 
 /// The definition of a session as it is stored: exactly the JSON that it was.
+/// Bytes that a move takes in the table, with the longest name of a key, and in its index.
+const MOVE_BYTES: u64 = 320;
+
 fn definition(session: &Session) -> Result<String> {
     let written = serde_json::to_string(&*session.definition);
     written.map_err(|error| StoreError::Failed(format!("a definition cannot be written: {error}")))
@@ -181,8 +185,15 @@ impl Store for PostgresStore {
         })
     }
 
-    async fn count(&self, tenant: &Tenant) -> Result<u64> {
-        Ok(self.pool.row(sql::COUNT, &[&tenant.name()]).await?.map_or(0, |row| from_bigint(row.get(0))))
+    async fn usage(&self, tenant: &Tenant) -> Result<Usage> {
+        let [each, step, reply] = [CONTACT_BYTES, MOVE_BYTES, RECEIPT_OVERHEAD].map(to_bigint);
+        let row = self.pool.row(sql::USAGE, &[&tenant.name(), &each, &step, &reply]).await?;
+        let usage = |row: Row| Usage { contacts: from_bigint(row.get(0)), bytes: from_bigint(row.get(1)) };
+        Ok(row.map(usage).unwrap_or_default())
+    }
+
+    fn move_bytes(&self) -> u64 {
+        MOVE_BYTES
     }
 
     async fn find(&self, id: Uuid) -> Result<Session> {

@@ -31,18 +31,18 @@ WITH won AS (
 ), moved AS (
     INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
         relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, stamp)
+        dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
     SELECT move.*
     FROM unnest($6::uuid[], $7::bigint[], $8::double precision[], $9::double precision[], $10::double precision[],
         $11::double precision[], $12::boolean[], $13::double precision[], $14::double precision[],
         $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
         $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
-        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::bigint[]) AS move (contact)
+        $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::text[], $29::bigint[]) AS move (contact)
     JOIN won ON won.id = move.contact
 )
 INSERT INTO receipts (key, fingerprint, created, sequence, body)
 SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
-FROM unnest($29::uuid[], $30::text[], $31::bytea[], $32::uuid[], $33::bigint[], $34::bytea[])
+FROM unnest($30::uuid[], $31::text[], $32::bytea[], $33::uuid[], $34::bigint[], $35::bytea[])
     AS receipt (contact, key, fingerprint, created, sequence, body)
 JOIN won ON won.id = receipt.contact
 ORDER BY receipt.key";
@@ -97,7 +97,14 @@ SELECT tenant, sequence, octet_length(definition),
     (SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id)
 FROM contacts WHERE id = $1";
 
-pub(super) const COUNT: &str = "SELECT count(*) FROM contacts WHERE tenant = $1";
+/// What is stored for a tenant: how many contacts and bytes. A contact takes `$2` of them besides its definition and its snapshot,
+/// a move `$3`, and a receipt `$4`. The lengths are known without reading what is stored apart from its row.
+pub(super) const USAGE: &str = "
+SELECT count(*), coalesce(sum($2::bigint + octet_length(definition) + $3::bigint * sequence
+        + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)), 0)::bigint
+    + (SELECT coalesce(sum($4::bigint + octet_length(body) + 2 * octet_length(key)), 0)::bigint FROM receipts
+        WHERE CASE WHEN strpos(key, ' ') > 0 THEN split_part(key, ' ', 1) ELSE '' END = $1)
+FROM contacts WHERE tenant = $1";
 
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
 
@@ -125,7 +132,7 @@ SELECT contacts.sequence, past.*
 FROM contacts LEFT JOIN LATERAL (
 SELECT sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, tolerance,
     displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy,
-    elastic_energy, memory_depth, observed_force, observed_at
+    elastic_energy, memory_depth, observed_force, observed_at, made_by
 FROM moves WHERE contact = $1 AND sequence > $2 ORDER BY sequence LIMIT $3) AS past ON true
 WHERE contacts.id = $1 ORDER BY past.sequence";
 
@@ -144,10 +151,10 @@ WHERE snapshots.sequence < excluded.sequence";
 pub(super) const COPY_PAST: &str = "
 INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, stamp)
+    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp)
 SELECT $1::uuid, sequence, target_displacement, target_force, target_indentation, target_normal_force,
     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime,
-    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, stamp
+    dissipated_energy, elastic_energy, memory_depth, at, at_ns, observed_force, observed_at, made_by, stamp
 FROM moves WHERE contact = $2 AND sequence <= $3";
 
 pub(super) const COPY_SNAPSHOT: &str = "

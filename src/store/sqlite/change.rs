@@ -86,7 +86,7 @@ impl Transaction<'_> {
         let mut insert = self.database.prepare_cached(&format!(
             "INSERT INTO moves (contact, {MOVE_COLUMNS})
              VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20,
-                ?21, ?22)"
+                ?21, ?22, ?23)"
         ))?;
         records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
         insert_receipt(self.database, receipt)?;

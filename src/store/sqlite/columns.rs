@@ -13,7 +13,7 @@ use crate::store::rows::{self, RowReader, Scalar};
 /// The columns of a move beside its contact, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, relative, \
      tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, dissipated_energy, \
-     elastic_energy, memory_depth, observed_force, observed_at, negative_zeros";
+     elastic_energy, memory_depth, observed_force, observed_at, made_by, negative_zeros";
 
 /// The columns of [`rows::summary`], of [`CONTACTS`].
 pub(super) const SUMMARY_COLUMNS: &str = "c.id, c.label, coalesce(m.sequence, 0), c.created_at, \
@@ -73,7 +73,7 @@ impl RowReader for Reader<'_, '_> {
 
 /// Writes a move of the contact with a number.
 pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, record: &Record) -> rusqlite::Result<()> {
-    let Record { sequence, step, tolerance, state, measured, at } = record;
+    let Record { sequence, step, tolerance, state, measured, by, at } = record;
     statement.execute(params![
         number,
         to_integer(*sequence)?,
@@ -96,6 +96,7 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         to_integer(state.memory_depth as u64)?,
         measured.map(|measured| measured.force),
         measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?,
+        by.as_deref(),
         negative_zeros(record),
     ])?;
     Ok(())
@@ -139,7 +140,7 @@ fn numbers(record: &mut Record) -> [Option<&mut f64>; 14] {
 
 /// Which numbers of a move are -0.0, bit by bit: SQLite stores -0.0 as 0.0.
 fn negative_zeros(record: &Record) -> i64 {
-    let mut copy = *record;
+    let mut copy = record.clone();
     let flag = |number: Option<&mut f64>| number.is_some_and(|number| number.to_bits() == (-0.0_f64).to_bits());
     numbers(&mut copy).into_iter().enumerate().map(|(index, number)| i64::from(flag(number)) << index).sum()
 }

@@ -31,7 +31,9 @@ use uuid::Uuid;
 
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
-use super::{Changes, Commits, Extent, Heading, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant};
+use super::{
+    Changes, Commits, Extent, Heading, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
+};
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
 use fault::Fault;
@@ -177,9 +179,13 @@ impl Store for SqliteStore {
         self.readers.read(move |database| read::extent(database, id)).await
     }
 
-    async fn count(&self, tenant: &Tenant) -> Result<u64> {
+    async fn usage(&self, tenant: &Tenant) -> Result<Usage> {
         let tenant = tenant.clone();
-        self.readers.read(move |database| read::count(database, &tenant)).await
+        self.readers.read(move |database| read::usage(database, &tenant)).await
+    }
+
+    fn move_bytes(&self) -> u64 {
+        read::MOVE_BYTES
     }
 
     async fn find(&self, id: Uuid) -> Result<Session> {

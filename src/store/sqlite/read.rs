@@ -5,7 +5,9 @@ use rusqlite::{Connection, OptionalExtension as _, Row, params};
 use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
-use crate::store::{Extent, Heading, Receipt, Record, Session, Snapshot, Tenant};
+use crate::store::{
+    CONTACT_BYTES, Extent, Heading, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot, Tenant, Usage,
+};
 use stickslip_wire::SessionSummary;
 
 use super::change::{missing, number_and_sequence};
@@ -43,10 +45,35 @@ pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
     found.optional()?.ok_or_else(|| missing(database, id))
 }
 
-pub(super) fn count(database: &Connection, tenant: &Tenant) -> Result<u64, Fault> {
-    let mut statement = database.prepare_cached("SELECT count(*) FROM contacts WHERE tenant = ?1")?;
-    let count: i64 = statement.query_row([tenant.name()], |row| row.get(0))?;
-    Ok(u64::try_from(count).unwrap_or(0))
+/// Bytes that a move takes in the file, with the longest name of a key and the unused part of its page.
+pub(super) const MOVE_BYTES: u64 = 220;
+
+pub(super) fn usage(database: &Connection, tenant: &Tenant) -> Result<Usage, Fault> {
+    // The length of a text or blob is in the head of its row. SQLite reads no more for it.
+    let sql = format!(
+        "SELECT count(*), coalesce(sum({CONTACT_BYTES} + octet_length(definition)
+             + {MOVE_BYTES} * coalesce((SELECT max(sequence) FROM moves WHERE contact = number), 0)
+             + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = number), 0)), 0)
+         FROM contacts WHERE tenant = ?1"
+    );
+    let mut statement = database.prepare_cached(&sql)?;
+    let (contacts, stored) = statement.query_row([tenant.name()], |row| {
+        let mut row = reader(row);
+        Ok((row.count()?, row.count()?))
+    })?;
+    // The keys of a tenant with a name begin with it and a space, and lie together in their index.
+    let receipts = |which: &str| {
+        format!(
+            "SELECT coalesce(sum({RECEIPT_OVERHEAD} + octet_length(body) + 2 * octet_length(key)), 0) FROM receipts
+             WHERE {which}"
+        )
+    };
+    let read = |row: &Row<'_>| reader(row).count();
+    let kept = match tenant.name() {
+        "" => database.prepare_cached(&receipts("instr(key, ' ') = 0"))?.query_row([], read),
+        name => database.prepare_cached(&receipts("key > ?1 || ' ' AND key < ?1 || '!'"))?.query_row([name], read),
+    }?;
+    Ok(Usage { contacts, bytes: stored + kept })
 }
 
 pub(super) fn heading(database: &Connection, id: Uuid) -> Result<Heading, Fault> {

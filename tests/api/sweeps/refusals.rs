@@ -141,5 +141,11 @@ async fn more_work_than_a_server_takes_on_is_refused_as_such() {
     huge["base"]["path"]["falling_amplitude"]["reversals"] = json!(1000);
     let refusal = problem(server.post("/sweep", &huge).await).await;
     assert_eq!((refusal.status, refusal.code.as_str()), (422, "too_much_work"));
+    // A job of a few of its points states the time of each that the refusal states.
+    let stated = refusal.detail.split(" s a point").next().unwrap().rsplit(' ').next().unwrap();
+    huge["axes"] = axis("/contact/friction", "values", json!([0.1, 0.2, 0.15]));
+    huge["job"] = json!(true);
+    let made: Value = server.post("/sweep", &huge).await.json().await.unwrap();
+    assert_eq!(made["point_time"], stated.parse::<f64>().unwrap(), "{}", refusal.detail);
     assert_eq!(refusal.errors[0].pointer, "/axes");
 }

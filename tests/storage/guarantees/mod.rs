@@ -64,6 +64,7 @@ async fn are_given<F: Future<Output = Arc<dyn Store>>>(store: impl Fn() -> F) {
     expiry::receipts_in_their_time_survive_a_sweep(&*store().await).await;
     tenants::a_session_is_its_tenants_for_ever(&*store().await).await;
     tenants::a_request_for_an_expired_contact_gets_its_tenant(&*store().await).await;
+    tenants::what_a_tenant_takes_is_counted_apart_and_given_back(&*store().await).await;
     jobs::each_chunk_is_given_once_and_heard_once(&*store().await).await;
     jobs::a_taken_key_or_a_full_tenant_takes_no_job(&*store().await).await;
     wake_ups::a_waiting_listener_is_woken_by_a_change(&*store().await).await;

@@ -1,0 +1,189 @@
+//! What each tenant takes in the store, against its quotas.
+//!
+//! What a tenant takes is counted by the store at the first change after the start, and again from time to time, because others
+//! on the same store change it too. In between, this process adds what it stores itself.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::admission::{Pool, PoolError, Quota};
+use crate::store::{Store, StoreError, Tenant, Usage};
+
+use super::SessionError;
+
+/// How long a count is taken to hold.
+const RECOUNT: Duration = Duration::from_secs(60);
+/// How old a count must at least be for another one, where a quota is full.
+const RECOUNT_FULL: Duration = Duration::from_secs(1);
+/// A count that takes long is repeated less often: it may take one part in so many of the time.
+const COUNTING_SHARE: u32 = 20;
+
+/// What the tenants take. Each has an account from its first change on.
+#[derive(Default)]
+pub(super) struct Accounts(Mutex<HashMap<Tenant, Arc<Account>>>);
+
+/// What a tenant takes.
+#[derive(Default)]
+struct Account {
+    // Held while the store counts, so that it counts once for all who wait.
+    counting: Arc<tokio::sync::Mutex<()>>,
+    // A std mutex: held for a moment, never across an await.
+    known: Mutex<Known>,
+}
+
+/// What is known of it.
+#[derive(Default)]
+struct Known {
+    /// As it was counted, with what has been stored since.
+    usage: Option<Usage>,
+    /// When it was counted, and how long that took.
+    counted: Option<(Instant, Duration)>,
+    /// When the store last failed to count, if it has not counted since.
+    failed: Option<Instant>,
+    /// What has been stored since a count began that has not ended.
+    meanwhile: Usage,
+    /// What changes under way will add at most.
+    pending: Usage,
+}
+
+/// Room in the store for a change under way, given back when dropped.
+pub(super) struct Room {
+    account: Arc<Account>,
+    reserved: Usage,
+}
+
+impl Accounts {
+    /// Room for what a change will add to what a tenant has stored.
+    ///
+    /// # Errors
+    /// [`PoolError::Quota`] if it would have more than it may, by a count that is a second old or little more; or a failure of the
+    /// store.
+    pub(super) async fn room(
+        &self,
+        store: &Arc<dyn Store>,
+        pool: &Pool,
+        tenant: &Tenant,
+        wanted: Usage,
+    ) -> Result<Room, SessionError> {
+        let account =
+            Arc::clone(self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(tenant.clone()).or_default());
+        match account.reserve(pool, wanted) {
+            Some(Ok(room)) => {
+                if account.is_older_than(RECOUNT)
+                    && let Ok(counting) = Arc::clone(&account.counting).try_lock_owned()
+                {
+                    let (store, tenant) = (Arc::clone(store), tenant.clone());
+                    tokio::spawn(async move {
+                        let _counting = counting;
+                        if let Err(error) = account.count(&*store, &tenant).await {
+                            tracing::debug!(%error, "what a tenant has stored could not be counted");
+                        }
+                    });
+                }
+                return Ok(room);
+            }
+            Some(Err(quota)) if !account.is_older_than(RECOUNT_FULL) => {
+                return Err(PoolError::Quota(pool.quotas().exceeded(quota)).into());
+            }
+            _ => {}
+        }
+        let begin = Instant::now();
+        let _counting = pool.wait(account.counting.lock()).await?;
+        // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
+        if account.has_failed_since(begin) {
+            return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
+        }
+        if account.is_older_than(RECOUNT_FULL) {
+            account.count(&**store, tenant).await?;
+        }
+        match account.reserve(pool, wanted) {
+            Some(Ok(room)) => Ok(room),
+            Some(Err(quota)) => Err(PoolError::Quota(pool.quotas().exceeded(quota)).into()),
+            None => Err(SessionError::Broken("what a tenant has stored is not known".to_owned())),
+        }
+    }
+
+    /// A tenant has deleted so much.
+    pub(super) fn give_back(&self, tenant: &Tenant, deleted: Usage) {
+        let account = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(tenant).cloned();
+        let Some(account) = account else { return };
+        // A count under way may know of it already, and the next one does.
+        let Ok(_counting) = account.counting.try_lock() else { return };
+        let mut known = account.known();
+        known.usage = known.usage.map(|usage| Usage {
+            contacts: usage.contacts.saturating_sub(deleted.contacts),
+            bytes: usage.bytes.saturating_sub(deleted.bytes),
+        });
+    }
+}
+
+impl Account {
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether the last count is older than this, or there is none. It counts as younger if counting takes long.
+    fn is_older_than(&self, age: Duration) -> bool {
+        self.known().counted.is_none_or(|(at, took)| at.elapsed() >= age.max(took * COUNTING_SHARE))
+    }
+
+    fn has_failed_since(&self, begin: Instant) -> bool {
+        self.known().failed.is_some_and(|at| at >= begin)
+    }
+
+    /// Room by the last count, or the quota that there is none in; nothing if there has been no count.
+    fn reserve(self: &Arc<Account>, pool: &Pool, wanted: Usage) -> Option<Result<Room, Quota>> {
+        let limits = pool.quotas().limits();
+        let mut known = self.known();
+        let all = sum(sum(known.usage?, known.pending), wanted);
+        let fits = |most: usize, all: u64, wanted: u64| wanted == 0 || all <= most as u64;
+        if !fits(limits.contacts, all.contacts, wanted.contacts) {
+            return Some(Err(Quota::Contacts));
+        }
+        if !fits(limits.store_bytes, all.bytes, wanted.bytes) {
+            return Some(Err(Quota::StoreBytes));
+        }
+        known.pending = sum(known.pending, wanted);
+        Some(Ok(Room { account: Arc::clone(self), reserved: wanted }))
+    }
+
+    async fn count(&self, store: &dyn Store, tenant: &Tenant) -> Result<(), SessionError> {
+        let begin = Instant::now();
+        self.known().meanwhile = Usage::default();
+        let counted = store.usage(tenant).await;
+        let mut known = self.known();
+        known.failed = counted.is_err().then(Instant::now);
+        let counted = counted?;
+        // The store may have counted some of it: rather too much than too little.
+        known.usage = Some(sum(counted, known.meanwhile));
+        known.counted = Some((begin, begin.elapsed()));
+        Ok(())
+    }
+}
+
+impl Room {
+    /// Bytes that it has room for.
+    pub(super) fn bytes(&self) -> u64 {
+        self.reserved.bytes
+    }
+
+    /// The change has been stored, and has added so much.
+    pub(super) fn used(self, added: Usage) {
+        let mut known = self.account.known();
+        known.usage = known.usage.map(|usage| sum(usage, added));
+        known.meanwhile = sum(known.meanwhile, added);
+    }
+}
+
+impl Drop for Room {
+    fn drop(&mut self) {
+        let mut known = self.account.known();
+        known.pending.contacts -= self.reserved.contacts;
+        known.pending.bytes -= self.reserved.bytes;
+    }
+}
+
+fn sum(one: Usage, other: Usage) -> Usage {
+    Usage { contacts: one.contacts.saturating_add(other.contacts), bytes: one.bytes.saturating_add(other.bytes) }
+}
