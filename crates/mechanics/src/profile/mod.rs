@@ -391,6 +391,13 @@ impl Profile {
         Shape::kernel_falls(self)
     }
 
+    /// A lower bound, 1/m, of -2 v dK(r, c)/d(r^2) for all r from `inner` up to c = `outer`, m, v = sqrt(c^2 - r^2): above zero the
+    /// kernel up to `outer` falls there. With q = g'/x as a function of x^2 it is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v. Minus
+    /// infinity where nothing is known.
+    pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        Shape::least_fall(self, inner, outer)
+    }
+
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip of a
     /// cone, a rim where the slope jumps. The vertical edge of a punch is not among them.
     ///
@@ -483,6 +490,7 @@ dispatch! {
     flat_radius() -> f64;
     cancellation(x: f64) -> f64;
     kernel_falls() -> bool;
+    least_fall(inner: f64, outer: f64) -> f64;
     singular_radii() -> Vec<f64>;
     smooth_centre() -> bool;
     interpolation_error(radius: f64) -> InterpolationError;

@@ -272,6 +272,14 @@ impl Shape for PowerLaw {
         self.exponent <= 2.0
     }
 
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // q is a power of x^2, whose slope is largest at one end.
+        let (power, share) = (0.5 * self.exponent - 1.0, inner / outer * (inner / outer));
+        let steepest = if power < 1.0 { share.powf(power - 1.0) } else { 1.0 };
+        let rise = if power > 0.0 { 2.0 * power * (1.0 - share) * steepest } else { 0.0 };
+        self.slope(outer) / outer * (1.0 - rise)
+    }
+
     fn singular_radii(&self) -> Vec<f64> {
         if self.exponent <= 1.0 { vec![0.0] } else { Vec::new() }
     }

@@ -76,6 +76,17 @@ impl SmoothCoordinate for RoundedPunch {
 }
 
 flat_core!(RoundedPunch {
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        let (low, high) = (smooth_coordinate::t_of(self, inner), smooth_coordinate::t_of(self, outer));
+        if low <= 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        // dq/dt = (t gamma' - gamma)/t^2 <= 1/(R x), and the int dt/sqrt(t^2 - t_r^2) that goes with it is arcosh(t/t_r).
+        let width = ((outer - inner) * (outer + inner)).sqrt();
+        let rise = width * ((width + high) / low).ln() / (self.edge_radius * inner);
+        self.slope(outer) / outer - rise
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }

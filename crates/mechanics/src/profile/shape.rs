@@ -223,6 +223,11 @@ pub(super) trait Shape {
         false
     }
 
+    /// See [`Profile::least_fall`](super::Profile).
+    fn least_fall(&self, _inner: f64, outer: f64) -> f64 {
+        if self.kernel_falls() { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+    }
+
     /// Radii at which f' jumps by a finite amount, so that stresses are log-infinite, increasing.
     fn singular_radii(&self) -> Vec<f64> {
         Vec::new()

@@ -300,6 +300,10 @@ impl Shape for Sum {
         self.parts.iter().all(Profile::kernel_falls)
     }
 
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        self.total(|part| part.least_fall(inner, outer))
+    }
+
     fn singular_radii(&self) -> Vec<f64> {
         let mut radii: Vec<f64> = self.parts.iter().flat_map(Profile::singular_radii).collect();
         radii.sort_by(f64::total_cmp);

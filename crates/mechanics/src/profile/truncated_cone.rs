@@ -62,6 +62,11 @@ impl SmoothCoordinate for TruncatedCone {
 }
 
 flat_core!(TruncatedCone {
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // g'/x falls from the rim on.
+        if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         if r > self.flat_radius { self.slope } else { 0.0 }
     }

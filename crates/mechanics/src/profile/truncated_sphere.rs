@@ -72,6 +72,11 @@ impl SmoothCoordinate for TruncatedSphere {
 }
 
 flat_core!(TruncatedSphere {
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // g'/x falls from the rim on.
+        if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
     }

@@ -120,6 +120,12 @@ impl Panel {
         self.slope.first().copied().unwrap_or(0.0) + u * b1 - b2
     }
 
+    /// A bound of |dq/dt|: that of a Chebyshev polynomial of the order k is k^2 at most.
+    pub(super) fn steepest(&self) -> f64 {
+        let orders = self.slope.iter().enumerate().map(|(order, a)| (order * order) as f64 * a.abs());
+        orders.sum::<f64>() * 2.0 / (self.high - self.low)
+    }
+
     /// The square of the radius where it ends, and that radius.
     pub(super) fn end(&self) -> (DoubleDouble, f64) {
         let square = DoubleDouble::square_of(self.base) + DoubleDouble::square_of(self.high);
