@@ -79,7 +79,7 @@ impl Contact {
         let knots = self.profile.knots_below(edge.radius);
         let singular = self.profile.singular_radii();
         let pace = Pace { keep_going: &keep_going, stopped: Cell::new(false), terms: Cell::new(0) };
-        let mut search = Search { contact: self, pace: &pace, sign: 0.0, peaks: Vec::new() };
+        let mut search = Search { contact: self, pace: &pace, sign: 0.0, places: Vec::new() };
         for (index, &bend) in bends.iter().enumerate() {
             if !pace.goes_on() {
                 return None;
@@ -138,9 +138,11 @@ impl Contact {
         if pace.stopped.get() {
             return None;
         }
-        let spike = |peak: &Peak| singular.contains(&peak.radius) || peak.radius >= edge.radius;
-        search.peaks.retain(|peak| !spike(peak) && peak.radius > 0.0);
-        Some(search.peaks)
+        let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
+        search.places.retain(|place| !spike(place) && place.radius > 0.0);
+        let shears = self.shears_at(&search.places);
+        let peaks = search.places.iter().zip(shears).map(|(place, shear)| Peak { radius: place.radius, shear });
+        Some(peaks.collect())
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
@@ -170,12 +172,12 @@ struct Search<'a> {
     pace: &'a Pace<'a>,
     /// The sign that the derivative had last, zero before the first.
     sign: f64,
-    peaks: Vec<Peak>,
+    places: Vec<StressRadius>,
 }
 
 impl Search<'_> {
     fn record(&mut self, at: &StressRadius) {
-        self.peaks.push(Peak { radius: at.radius, shear: self.contact.shear_at(at) });
+        self.places.push(*at);
     }
 
     /// Crosses a radius beyond which the derivative has the sign of `value`.
@@ -206,7 +208,7 @@ impl Search<'_> {
         for (index, pair) in samples.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
-                self.bisect(interval, before, after.place);
+                self.find_root(interval, before, after);
             } else if let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
                 && before.place.is_finite()
@@ -215,8 +217,8 @@ impl Search<'_> {
                 && let Some(dip) = self.dip(interval, before, next)
             {
                 // Two roots between samples of one sign.
-                self.bisect(interval, before, dip.place);
-                self.bisect(interval, dip, next.place);
+                self.find_root(interval, before, dip);
+                self.find_root(interval, dip, next);
             }
         }
     }
@@ -242,19 +244,30 @@ impl Search<'_> {
         None
     }
 
-    /// Bisects for the change of sign between a sample and a place. The derivative ends in an inverse root, for which
-    /// faster methods need special care, and there are few of these searches.
-    fn bisect(&mut self, interval: &SmoothInterval, from: Sample, to: f64) {
-        let (mut low, mut high) = (from.place.max(-MAX_PLACE), to.min(MAX_PLACE));
-        loop {
+    /// Finds the change of sign between a sample and a place: false position with the weight of an end halved that stays (Illinois),
+    /// and every third step halves the interval, since the derivative can be as steep as an inverse root. There is no value at an end
+    /// that is infinitely far.
+    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample) {
+        let finite = |sample: Sample| if sample.place.is_finite() { sample.value.abs() } else { 0.0 };
+        let (mut low, mut high) = (from.place.max(-MAX_PLACE), to.place.min(MAX_PLACE));
+        let (mut at_low, mut at_high) = (finite(from), finite(to));
+        for step in 1.. {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
                 break;
             }
-            if self.contact.scaled_derivative(&interval.at(middle), self.pace) * from.value.signum() > 0.0 {
-                low = middle;
+            let chord = low + (high - low) * (at_low / (at_low + at_high));
+            let known = at_low > 0.0 && at_high > 0.0;
+            let place = if known && step % 3 != 0 && chord > low && chord < high { chord } else { middle };
+            let value = self.sample(interval, place).value * from.value.signum();
+            if value > 0.0 {
+                (low, at_low, at_high) = (place, value, 0.5 * at_high);
             } else {
-                high = middle;
+                (high, at_high, at_low) = (place, -value, 0.5 * at_low);
+            }
+            if value.abs() <= 0.0 {
+                // Beyond this it is lost in round-off.
+                break;
             }
         }
         self.sign = -from.value.signum();

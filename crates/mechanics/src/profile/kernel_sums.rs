@@ -18,13 +18,18 @@ impl Profile {
     /// `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
+        self.kernel_sums_at(rings, &StressRadius::of_all(radii))
+    }
+
+    /// [`Profile::kernel_sums`] at radii whose squares have all their digits.
+    pub(crate) fn kernel_sums_at(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Vec<f64> {
         let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
         if let Some(series) = Shape::slope_series(self, edge).filter(|_| edge > 0.0) {
             return SeriesRings::new(&series, edge, rings, |ring| self.gap_of(ring)).sums(radii);
         }
         Shape::kernel_sums(self, rings, radii).unwrap_or_else(|| {
             let sources = Sources::new(self, rings, rings.len() * radii.len() > FEW);
-            radii.iter().map(|&radius| sources.sum(&StressRadius::new(radius))).collect()
+            radii.iter().map(|at| sources.sum(at)).collect()
         })
     }
 }

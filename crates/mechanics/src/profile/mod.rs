@@ -481,7 +481,7 @@ dispatch! {
     kernel(at: &StressRadius, span: &Span) -> f64;
     kernel_slope(at: &StressRadius, span: &Span) -> f64;
     slope_series(a: f64) -> Option<Vec<f64>>;
-    kernel_sums(rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>>;
+    kernel_sums(rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>>;
     surface_slope(r: f64) -> f64;
     curvature_radius() -> Option<f64>;
     limit() -> Option<End>;

@@ -181,7 +181,7 @@ pub(super) trait Shape {
     }
 
     /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than ring by ring.
-    fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[f64]) -> Option<Vec<f64>> {
+    fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[StressRadius]) -> Option<Vec<f64>> {
         None
     }
 

@@ -17,11 +17,11 @@ struct WeightedPanels<'a> {
     shares: Vec<Share>,
 }
 
-/// The sums at each radius, m, of the kernels of rings times their weights; `None` with levels at a vertical edge.
-pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+/// The sums at each radius of the kernels of rings times their weights; `None` with levels at a vertical edge.
+pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
     let panels = WeightedPanels::new(table, rings)?;
     let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
-    let sum = |&radius: &f64| if radius > edge { 0.0 } else { panels.sum(&StressRadius::new(radius)) };
+    let sum = |at: &StressRadius| if at.radius > edge { 0.0 } else { panels.sum(at) };
     Some(radii.iter().map(sum).collect())
 }
 

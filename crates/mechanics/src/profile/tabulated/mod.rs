@@ -387,7 +387,7 @@ impl Shape for Tabulated {
         )
     }
 
-    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
         if rings.len() * radii.len() > FEW { kernel_sums::sums(self, rings, radii) } else { None }
     }
 
