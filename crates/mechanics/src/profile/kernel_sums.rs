@@ -6,6 +6,7 @@
 use super::far_field::FarField;
 use super::shape::Shape;
 use super::slope_series::SeriesRings;
+use super::smooth_pieces::SmoothPieces;
 use super::{Profile, Ring, StressRadius, gauss};
 
 /// Fewer kernels than this, rings times radii, are summed sooner than clusters are made.
@@ -27,10 +28,29 @@ impl Profile {
         if let Some(series) = Shape::slope_series(self, edge).filter(|_| edge > 0.0) {
             return SeriesRings::new(&series, edge, rings, |ring| self.gap_of(ring)).sums(radii);
         }
+        if let Some(sums) = self.sums_by_pieces(rings, radii) {
+            return sums;
+        }
         Shape::kernel_sums(self, rings, radii).unwrap_or_else(|| {
             let sources = Sources::new(self, rings, rings.len() * radii.len() > FEW);
             radii.iter().map(|at| sources.sum(at)).collect()
         })
+    }
+}
+
+impl Profile {
+    /// The sums by [`SmoothPieces`], and ring by ring where they do not reach.
+    fn sums_by_pieces(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
+        if rings.len() * radii.len() <= FEW {
+            return None;
+        }
+        let least = radii.iter().map(|at| at.radius).filter(|&radius| radius > 0.0).fold(f64::INFINITY, f64::min);
+        let mut sums = SmoothPieces::new(self, rings, least)?.sums(radii);
+        let alone = Sources::new(self, rings, false);
+        for (sum, at) in sums.iter_mut().zip(radii).filter(|(sum, _)| sum.is_nan()) {
+            *sum = alone.sum(at);
+        }
+        Some(sums)
     }
 }
 

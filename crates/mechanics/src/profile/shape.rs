@@ -1,5 +1,6 @@
 //! The functions that a family must provide, and those that follow for all families.
 
+use super::power_series::{KinkSeries, Place, Series};
 use super::ring_quadrature::{self, RingNodes};
 use super::roots::increasing;
 use super::smooth_interval::{Node, SmoothInterval};
@@ -177,6 +178,17 @@ pub(super) trait Shape {
     /// The coefficients of g'(a xi) = sum of c_k xi^k, `a` being a radius, m, none of them negative; `None` where that is no series
     /// of at most [`MOST_POWERS`](super::slope_series::MOST_POWERS).
     fn slope_series(&self, _a: f64) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the family: constant below
+    /// all kinks where stresses are smooth at the centre.
+    fn slope_over_radius_series(&self, _place: &Place) -> Option<Series> {
+        None
+    }
+
+    /// dg/dt (pure number) above the kink b, m, as a power series of t = sqrt(x^2 - b^2) up to `top`, m.
+    fn kink_series(&self, _b: f64, _top: f64) -> Option<KinkSeries> {
         None
     }
 

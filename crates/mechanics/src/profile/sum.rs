@@ -4,6 +4,7 @@
 //! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
 //! the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or falls.
 
+use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
 use super::roots::increasing;
 use super::shape::{End, Shape};
 use super::{DoubleDouble, Error, InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated, range};
@@ -270,6 +271,25 @@ impl Shape for Sum {
             sum.resize(sum.len().max(series.len()), 0.0);
             sum.iter_mut().zip(series).for_each(|(sum, c)| *sum += c);
             Some(sum)
+        })
+    }
+
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        let mut parts = self.parts.iter().map(|part| part.slope_over_radius_series(place));
+        let first = parts.next()??;
+        parts.try_fold(first, |sum, part| Some(sum.plus(&part?)))
+    }
+
+    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
+        let place = Place { middle: DoubleDouble::square_of(b), half: top * top, terms: KINK_TERMS };
+        self.parts.iter().try_fold(KinkSeries::default(), |sum, part| {
+            let own = part.kink_below(b * (1.0 + f64::EPSILON)).to_bits() == b.to_bits();
+            let series = if own {
+                part.kink_series(b, top)?
+            } else {
+                KinkSeries::smooth(&part.slope_over_radius_series(&place)?, top)
+            };
+            Some(sum.plus(&series))
         })
     }
 

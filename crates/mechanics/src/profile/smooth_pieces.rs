@@ -1,0 +1,453 @@
+//! The kernels of adjoining rings, weighted and summed, at many radii, where g'/x is a power series between any two of its kinks.
+//!
+//! With v = sqrt(x^2 - r^2) a kernel is int q dv, q = g'/x. The rings are cut at the kinks b of g, and so that no piece of x^2 is wider than
+//! half its distance from the singularity beneath it. Over a piece X - h..X + h let q = sum of c_k Y^k, x^2 = X + h Y; it is of one of
+//! three forms for a radius:
+//!
+//! - Near: with s = (r^2 - X)/h and I_k = int Y^k dv it holds that (2k + 1) I_k = [Y^k v] + 2 k s I_(k-1), so that the antiderivative is
+//!   v A(Y), and by the even and the odd part of A the kernel is (v_1 - v_0) E + (v_1 + v_0) O: what a thin ring has is not lost.
+//!   |c_k| falls as the k-th power of h over the distance of X from the singularity, of which |s| is no more than the inverse: no term
+//!   is large.
+//! - Far, where D = X - r^2 >= 5 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg. What lies beyond a
+//!   singularity is far from all that is inside it.
+//! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2 - b^2 it is
+//!   int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t ends at a quarter of its
+//!   distance from the next singularity there, and what is inside that is far.
+//!
+//! All series end where their terms no longer count, so that the error is that of rounding.
+
+#[cfg(test)]
+use super::call_count;
+use super::logarithm::ln_1p;
+use super::power_series::{KINK_TERMS, KinkSeries, Place, TERMS};
+use super::shape::Shape as _;
+use super::{DoubleDouble, Profile, Ring, StressRadius};
+
+/// Radii that are summed for side by side.
+const LANES: usize = 8;
+/// From this h/D on a piece is near.
+const FAR: f64 = 0.2;
+/// A piece is no wider than this share of its distance from a singularity.
+const WIDEST: f64 = 0.5;
+/// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
+const KINK: f64 = 1.0 / 16.0;
+/// Terms whose size is below this share of the largest do not count.
+const NEGLIGIBLE: f64 = 1e-18;
+/// The smallest radius, over that of the edge, that pieces reach down to at a tip where stresses are not smooth.
+const INNERMOST: f64 = 1e-3;
+/// With more pieces than this within a ring, others are quicker.
+const MOST_CUTS: f64 = 48.0;
+/// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
+const THIN: f64 = 1e-3;
+
+/// The pieces of a profile's rings, from the edge inward.
+pub(super) struct SmoothPieces {
+    pieces: Vec<Piece>,
+    /// Radii below this one, m, are not served.
+    innermost: f64,
+    /// 1/a^2, m^-2: lengths are in units of the edge.
+    unit: f64,
+}
+
+struct Piece {
+    /// The squares of the radii of its ends, m^2, in two parts each.
+    inner: (f64, f64),
+    outer: (f64, f64),
+    /// Their difference, in units of the edge.
+    gap: f64,
+    /// Whether that has digits that the squares have lost.
+    thin: bool,
+    weight: f64,
+    near: Near,
+    /// The coefficients of z^k for far radii.
+    far: Vec<f64>,
+}
+
+/// What serves near radii.
+enum Near {
+    /// c_k.
+    Smooth(Vec<f64>),
+    /// g_k times the k-th power of the t where the piece ends, for even and for odd k.
+    Kink { even: Vec<f64>, odd: Vec<f64> },
+}
+
+/// Kernels, and their derivatives with respect to r^2 in units of the edge.
+type Kernels<const N: usize> = ([f64; N], [f64; N]);
+
+impl SmoothPieces {
+    /// The pieces of rings and their weights for radii of at least `least`, m, of which those in the utmost tip are not served; `None` if
+    /// the profile has no such series, or levels at a vertical edge.
+    pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces> {
+        let edge = rings.last()?.0.outer.radius;
+        let innermost = if profile.smooth_centre() { 0.0 } else { least.max(INNERMOST * edge) };
+        let mut made = SmoothPieces { pieces: Vec::new(), innermost, unit: 1.0 / (edge * edge) };
+        for (ring, weight) in rings.iter().rev() {
+            if profile.edge_depth(ring) > 0.0 {
+                return None;
+            }
+            made.cut(profile, ring, *weight)?;
+        }
+        Some(made)
+    }
+
+    /// Adds the pieces of a ring, from its outer end inward.
+    fn cut(&mut self, profile: &Profile, ring: &Ring, weight: f64) -> Option<()> {
+        let plain = (ring.outer.square - ring.inner.square).value();
+        let thin = plain <= THIN * ring.outer.square.value();
+        let (mut outer, mut radius) = (ring.outer.square, ring.outer.radius);
+        let floor = larger(ring.inner.square, DoubleDouble::square_of(self.innermost));
+        while outer > floor {
+            let kink = profile.kink_below(radius);
+            let base = DoubleDouble::square_of(kink);
+            let low = larger(floor, base);
+            let gap = if thin && low == ring.inner.square && outer == ring.outer.square {
+                profile.gap_of(ring)
+            } else {
+                (outer - low).value()
+            };
+            let above = (low - base).value();
+            if kink > 0.0 && above <= 0.0 {
+                let next = DoubleDouble::square_of(profile.kink_below(kink));
+                let reach = KINK * (base - next).value();
+                let top = if gap <= reach { gap } else { reach };
+                let from = if gap <= reach { outer } else { base + DoubleDouble::from(reach) };
+                if gap > reach {
+                    self.smooth(profile, (from, outer), (gap - reach, false), (reach, weight))?;
+                }
+                let KinkSeries { even, odd } = profile.kink_series(kink, top.sqrt())?;
+                let (even, odd) = (counted(&even, 1.0), counted(&odd, 1.0));
+                let far = kink_moments(&even, &odd, (top * self.unit).sqrt());
+                self.push((base, from), (top, thin && gap <= reach), weight, (Near::Kink { even, odd }, far));
+            } else {
+                let above = if kink > 0.0 || !profile.smooth_centre() { above } else { f64::INFINITY };
+                self.smooth(profile, (low, outer), (gap, thin), (above, weight))?;
+            }
+            (outer, radius) = (low, kink);
+        }
+        Some(())
+    }
+
+    /// Adds pieces between two squares that differ by `gap`, and of which the inner is `above` a singularity.
+    fn smooth(
+        &mut self,
+        profile: &Profile,
+        (low, high): (DoubleDouble, DoubleDouble),
+        (gap, thin): (f64, bool),
+        (above, weight): (f64, f64),
+    ) -> Option<()> {
+        let growth = gap / above;
+        let cuts = (growth.ln_1p() / WIDEST.ln_1p()).ceil().max(1.0);
+        if !(cuts <= MOST_CUTS) {
+            return None;
+        }
+        let step = growth.ln_1p() / cuts;
+        let mut outer = high;
+        for index in (0..cuts as u32).rev() {
+            let last = index == 0;
+            let inner = if last { low } else { low + DoubleDouble::from(above * (step * f64::from(index)).exp_m1()) };
+            let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
+            let half = 0.5 * gap;
+            let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
+            // Each term is smaller than the one before by half over half + below.
+            let terms = (-NEGLIGIBLE.ln() / (below / half).ln_1p()).min(TERMS as f64).ceil();
+            let place = Place { middle: outer - DoubleDouble::from(half), half, terms: (terms as usize + 1).min(TERMS) };
+            let near = counted(&profile.slope_over_radius_series(&place)?.coefficients, self.unit.sqrt().recip());
+            let far = moments(&near, half * self.unit);
+            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (Near::Smooth(near), far));
+            outer = inner;
+        }
+        Some(())
+    }
+
+    fn push(
+        &mut self,
+        (inner, outer): (DoubleDouble, DoubleDouble),
+        (gap, thin): (f64, bool),
+        weight: f64,
+        (near, far): (Near, Vec<f64>),
+    ) {
+        let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);
+        self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
+    }
+
+    /// The sums at each radius; NaN at those that are not served.
+    pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
+        let mut order: Vec<usize> = (0..radii.len()).collect();
+        order.sort_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
+        let mut sums = vec![f64::NAN; radii.len()];
+        order.drain(..order.partition_point(|&index| radii[index].radius < self.innermost));
+        for chunk in order.chunks(LANES) {
+            // Lanes left over repeat the first.
+            let squares = std::array::from_fn(|lane| radii[*chunk.get(lane).unwrap_or(&chunk[0])].square);
+            let (kernels, _) = self.lanes::<LANES, false>(&squares, &mut |_| ());
+            for (&index, kernel) in chunk.iter().zip(kernels) {
+                sums[index] = kernel;
+            }
+        }
+        sums
+    }
+
+    /// The derivative of the sum with respect to r^2, 1/m^2, and the sum of the sizes of what it adds up from; `None` where it is not
+    /// served. Calls `count` for each piece.
+    pub(super) fn slope(&self, at: &StressRadius, count: &mut impl FnMut()) -> Option<(f64, f64)> {
+        if at.radius < self.innermost {
+            return None;
+        }
+        let mut size = 0.0;
+        let ([_], [slope]) = self.lanes::<1, true>(&[at.square], &mut |part| {
+            size += part;
+            count();
+        });
+        Some((slope * self.unit, size * self.unit))
+    }
+
+    fn lanes<const N: usize, const SLOPES: bool>(
+        &self,
+        squares: &[DoubleDouble; N],
+        each: &mut impl FnMut(f64),
+    ) -> Kernels<N> {
+        let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
+        let least = square.iter().copied().fold(f64::INFINITY, f64::min);
+        // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
+        let excess = |end: (f64, f64)| -> [f64; N] {
+            std::array::from_fn(|lane| ((end.0 - square[lane]) + (end.1 - rest[lane])) * self.unit)
+        };
+        let (mut sums, mut slopes) = ([0.0; N], [0.0; N]);
+        for piece in &self.pieces {
+            if piece.outer.0 < least {
+                break;
+            }
+            if piece.weight.abs() <= 0.0 {
+                continue;
+            }
+            #[cfg(test)]
+            call_count::add(|calls| if SLOPES { &mut calls.kernel_slope } else { &mut calls.kernel });
+            let below = excess(piece.inner);
+            let half = 0.5 * piece.gap;
+            let shares: [f64; N] = below.map(|below| half / (below + half));
+            let distant = shares.map(|z| z > 0.0 && z <= FAR);
+            let far = || far_kernels::<N, SLOPES>(&piece.far, half, &shares);
+            let (kernel, slope) = if distant.iter().all(|&distant| distant) {
+                far()
+            } else {
+                let above = piece.above(&below, excess);
+                let near = match &piece.near {
+                    Near::Smooth(series) => near_kernels::<N, SLOPES>(series, piece.gap, &below, &above),
+                    Near::Kink { even, odd } => kink_kernels::<N, SLOPES>(even, odd, piece.gap, &below, &above),
+                };
+                if distant.iter().any(|&distant| distant) {
+                    let far = far();
+                    let pick = |near: [f64; N], far: [f64; N]| {
+                        std::array::from_fn(|lane| if distant[lane] { far[lane] } else { near[lane] })
+                    };
+                    (pick(near.0, far.0), pick(near.1, far.1))
+                } else {
+                    near
+                }
+            };
+            for lane in 0..N {
+                sums[lane] += piece.weight * kernel[lane];
+                if SLOPES {
+                    slopes[lane] += piece.weight * slope[lane];
+                }
+            }
+            each(if SLOPES { (piece.weight * slope[0]).abs() } else { 0.0 });
+        }
+        (sums, slopes)
+    }
+}
+
+impl Piece {
+    /// x^2 - r^2 at the outer end, zero where that is inside r.
+    fn above<const N: usize>(&self, below: &[f64; N], excess: impl Fn((f64, f64)) -> [f64; N]) -> [f64; N] {
+        let plain = excess(self.outer);
+        std::array::from_fn(|lane| {
+            let above = if self.thin && below[lane] > -0.5 * self.gap { below[lane] + self.gap } else { plain[lane] };
+            if above > 0.0 { above } else { 0.0 }
+        })
+    }
+}
+
+fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
+    if a > b { a } else { b }
+}
+
+/// The terms of a series that count, each times `unit`.
+fn counted(series: &[f64], unit: f64) -> Vec<f64> {
+    let size = series.iter().fold(0.0f64, |size, c| size.max(c.abs()));
+    let last = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
+    series[..last].iter().map(|c| unit * c).collect()
+}
+
+/// binom(-1/2, k) times what `moment` gives for k.
+fn binomials(moment: impl FnMut(usize) -> f64) -> Vec<f64> {
+    let shares = (0..TERMS).scan(1.0, |binomial, k| {
+        let next = *binomial * -(0.5 + k as f64) / (k + 1) as f64;
+        Some(std::mem::replace(binomial, next))
+    });
+    shares.zip((0..TERMS).map(moment)).map(|(binomial, moment)| binomial * moment).collect()
+}
+
+/// The coefficients of z^k of a smooth piece: (h/2) binom(-1/2, k) m_k.
+fn moments(series: &[f64], half: f64) -> Vec<f64> {
+    binomials(|k| {
+        let even = series.iter().enumerate().skip(k % 2).step_by(2);
+        half * even.map(|(j, c)| c / (j + k + 1) as f64).sum::<f64>()
+    })
+}
+
+/// Those of a piece at a kink that ends at the t `top`: in units of that, Y = 2 t^2 - 1.
+fn kink_moments(even: &[f64], odd: &[f64], top: f64) -> Vec<f64> {
+    let mut product = vec![0.0; 2 * (KINK_TERMS + TERMS)];
+    for (terms, first) in [(even, 0), (odd, 1)] {
+        product[first..].iter_mut().step_by(2).zip(terms).for_each(|(power, c)| *power = *c);
+    }
+    binomials(|k| {
+        if k > 0 {
+            for power in (0..product.len()).rev() {
+                product[power] = 2.0 * power.checked_sub(2).map_or(0.0, |below| product[below]) - product[power];
+            }
+        }
+        top * product.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum::<f64>()
+    })
+}
+
+fn far_kernels<const N: usize, const SLOPES: bool>(far: &[f64], half: f64, shares: &[f64; N]) -> Kernels<N> {
+    let largest = shares.iter().copied().fold(0.0, f64::max).clamp(f64::MIN_POSITIVE, FAR);
+    let terms = (NEGLIGIBLE.ln() / largest.ln()).ceil() as usize + 1;
+    let (mut sum, mut slope) = ([0.0; N], [0.0; N]);
+    for &term in far[..terms.min(far.len())].iter().rev() {
+        for lane in 0..N {
+            if SLOPES {
+                slope[lane] = slope[lane] * shares[lane] + sum[lane];
+            }
+            sum[lane] = sum[lane] * shares[lane] + term;
+        }
+    }
+    // 1/sqrt(D), D = h/z.
+    let root: [f64; N] = shares.map(|z| (z / half).sqrt());
+    let by_distance = |lane: usize| root[lane] * shares[lane] / half * (0.5 * sum[lane] + shares[lane] * slope[lane]);
+    (std::array::from_fn(|lane| root[lane] * sum[lane]), std::array::from_fn(by_distance))
+}
+
+fn near_kernels<const N: usize, const SLOPES: bool>(
+    series: &[f64],
+    gap: f64,
+    below: &[f64; N],
+    above: &[f64; N],
+) -> Kernels<N> {
+    let half = 0.5 * gap;
+    let s: [f64; N] = below.map(|below| (-1.0 - below / half).clamp(-1.0 - 1.0 / FAR, 1.0));
+    // The parts of A whose index has the parity of the term, and of the one before; and what the recursion carries.
+    let (mut this, mut other, mut carried) = ([0.0; N], [0.0; N], [0.0; N]);
+    let (mut this_slope, mut other_slope, mut carried_slope) = ([0.0; N], [0.0; N], [0.0; N]);
+    for (k, &c) in series.iter().enumerate().rev() {
+        let (share, twice) = (1.0 / (2 * k + 1) as f64, (2 * k) as f64);
+        for lane in 0..N {
+            let a = (c + carried[lane]) * share;
+            if SLOPES {
+                let slope = carried_slope[lane] * share;
+                carried_slope[lane] = twice * (a + s[lane] * slope);
+                (this_slope[lane], other_slope[lane]) = (other_slope[lane], this_slope[lane] + slope);
+            }
+            carried[lane] = twice * s[lane] * a;
+            (this[lane], other[lane]) = (other[lane], this[lane] + a);
+        }
+    }
+    // After the term 0 the even part is the other one.
+    let (even, odd, even_slope, odd_slope) = (other, this, other_slope, this_slope);
+    let v: [f64; N] = above.map(f64::sqrt);
+    let v_low: [f64; N] = below.map(|below| (if below > 0.0 { below } else { 0.0 }).sqrt());
+    let fall = |lane: usize| if v_low[lane] > 0.0 { gap / (v[lane] + v_low[lane]) } else { v[lane] };
+    let kernels = std::array::from_fn(|lane| fall(lane) * even[lane] + (v[lane] + v_low[lane]) * odd[lane]);
+    let mut slopes = [0.0; N];
+    if SLOPES {
+        for lane in 0..N {
+            let (difference, sum) = (fall(lane), v[lane] + v_low[lane]);
+            // d v/d(r^2) = -1/(2 v) at the ends of the piece; where r itself is the inner end there is nothing to fall.
+            let ends = if v_low[lane] > 0.0 {
+                (difference * even[lane] - sum * odd[lane]) / (2.0 * v_low[lane] * v[lane])
+            } else {
+                -(even[lane] + odd[lane]) / (2.0 * v[lane])
+            };
+            let inside = (difference * even_slope[lane] + sum * odd_slope[lane]) / half;
+            slopes[lane] = if v[lane] > 0.0 { ends + inside } else { 0.0 };
+        }
+    }
+    (kernels, slopes)
+}
+
+/// In units of the t where the piece ends, t^2 = `square`.
+fn kink_kernels<const N: usize, const SLOPES: bool>(
+    even: &[f64],
+    odd: &[f64],
+    square: f64,
+    below: &[f64; N],
+    above: &[f64; N],
+) -> Kernels<N> {
+    let kappa: [f64; N] = below.map(|below| if below < -square { 1.0 } else { -below / square });
+    let v: [f64; N] = above.map(|above| (above / square).sqrt());
+    let low: [f64; N] = kappa.map(|kappa| kappa.abs().sqrt());
+    let (b, b_slope, log, log_slope, ..) = chain::<N, SLOPES>(even, 2, &kappa);
+    let (a, a_slope, _, _, first, first_slope) = chain::<N, SLOPES>(odd, 1, &kappa);
+    let logarithm = ln_1p::<N>(std::array::from_fn(|lane| {
+        let (v, low) = (v[lane], low[lane]);
+        // (t + v)/tau - 1, or (t + v)/v_0 - 1 below the kink.
+        let excess = if kappa[lane] > 0.0 { v * v / (1.0 + low) + v } else { 1.0 + 1.0 / (v + low) };
+        if v > 0.0 { excess / low } else { 0.0 }
+    }));
+    let (mut kernels, mut slopes) = ([0.0; N], [0.0; N]);
+    for lane in 0..N {
+        let (v, low, kappa) = (v[lane], low[lane], kappa[lane]);
+        let inside = kappa < 0.0;
+        let rise = if inside { first[lane] / (v + low) + v * (a[lane] - first[lane]) } else { v * a[lane] };
+        // Where nothing jumps the logarithm counts for nothing, infinite though it is at the kink.
+        let curved = if log[lane].abs() > 0.0 { log[lane] * logarithm[lane] } else { 0.0 };
+        kernels[lane] = v * b[lane] + rise + curved;
+        if SLOPES && v > 0.0 {
+            let whole = v * (a_slope[lane] + b_slope[lane]) - 0.5 * (a[lane] + b[lane]) / v;
+            let start = if inside { 0.5 * first[lane] / low - low * first_slope[lane] } else { 0.0 };
+            let curved = log_slope[lane] * logarithm[lane] - 0.5 * log[lane] / (kappa * v);
+            let curved = match kappa.abs() > 0.0 {
+                true => curved,
+                false if log[lane] > 0.0 => f64::NEG_INFINITY,
+                false => 0.0,
+            };
+            slopes[lane] = (whole + start + curved) / square;
+        }
+    }
+    (kernels, slopes)
+}
+
+/// The polynomial of one parity at t = 1 and its derivative with respect to kappa; what is left for the power below the lowest; and the
+/// polynomial at t = 0, each with its derivative. `lowest` is the lowest k with a root, and an even series begins below it.
+#[allow(clippy::type_complexity)]
+fn chain<const N: usize, const SLOPES: bool>(
+    series: &[f64],
+    lowest: usize,
+    kappa: &[f64; N],
+) -> ([f64; N], [f64; N], [f64; N], [f64; N], [f64; N], [f64; N]) {
+    let skipped = lowest - 1;
+    let (mut sum, mut carried, mut last) = ([0.0; N], [0.0; N], [0.0; N]);
+    let (mut sum_slope, mut carried_slope, mut last_slope) = ([0.0; N], [0.0; N], [0.0; N]);
+    for (index, &c) in series.iter().enumerate().skip(skipped).rev() {
+        let k = (lowest + 2 * (index - skipped)) as f64;
+        let (share, less) = (1.0 / k, 1.0 - 1.0 / k);
+        for lane in 0..N {
+            let whole = c + carried[lane];
+            last[lane] = whole * share;
+            sum[lane] += last[lane];
+            if SLOPES {
+                last_slope[lane] = carried_slope[lane] * share;
+                sum_slope[lane] += last_slope[lane];
+                carried_slope[lane] = less * (whole + kappa[lane] * carried_slope[lane]);
+            }
+            carried[lane] = less * kappa[lane] * whole;
+        }
+    }
+    if skipped > 0 {
+        let first = series.first().copied().unwrap_or(0.0);
+        carried = carried.map(|carried| carried + first);
+    }
+    (sum, sum_slope, carried, carried_slope, last, last_slope)
+}
