@@ -6,70 +6,19 @@
 //! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
 //! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
 
+mod derivative;
 mod interval;
 mod settled;
 
-use std::cell::Cell;
-
 use super::profile::StressRadius;
 use super::{Contact, DoubleDouble, Peak};
+use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
 
 /// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
 const SPARSE_ABOVE: usize = 100;
 
-/// A derivative below this share of what it is the sum of is zero: the kernels of some families are good to 1e-13.
-const NOISE: f64 = 1e-12;
-
-/// Terms of the derivative between two questions whether to go on: a term takes up to a microsecond.
-const TERMS_PER_QUESTION: usize = 4096;
-
-/// Asks every so often whether the search goes on. Once it does not, derivatives are zero, and it soon ends.
-struct Pace<'a> {
-    keep_going: &'a dyn Fn() -> bool,
-    stopped: Cell<bool>,
-    terms: Cell<usize>,
-}
-
-impl Pace<'_> {
-    /// Asks now.
-    fn goes_on(&self) -> bool {
-        self.terms.set(0);
-        if !self.stopped.get() {
-            self.stopped.set(!(self.keep_going)());
-        }
-        !self.stopped.get()
-    }
-
-    /// Counts a term; asks if there have been many.
-    fn counts_on(&self) -> bool {
-        self.terms.set(self.terms.get() + 1);
-        if self.terms.get() > TERMS_PER_QUESTION { self.goes_on() } else { !self.stopped.get() }
-    }
-}
-
 impl Contact {
-    /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.
-    fn scaled_derivative(&self, at: &StressRadius, pace: &Pace<'_>) -> f64 {
-        let (mut sum, mut size) = (0.0, 0.0);
-        for (ring, line) in self.history.rings() {
-            if ring.outer.radius < at.radius {
-                break;
-            }
-            if !pace.counts_on() {
-                return 0.0;
-            }
-            let slope = line.slope.value();
-            // What is stuck since it was touched adds nothing, even where the kernel is infinite.
-            if slope.abs() > 0.0 {
-                let term = slope * self.profile.kernel_slope(at, &ring);
-                sum -= term;
-                size += term.abs();
-            }
-        }
-        if sum.is_infinite() || sum.abs() > NOISE * size { sum } else { 0.0 }
-    }
-
     /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
     pub(super) fn peaks(&self, keep_going: impl Fn() -> bool) -> Option<Vec<Peak>> {
         let edge = StressRadius::of_point(self.history.edge());
@@ -78,8 +27,9 @@ impl Contact {
         let pieces = self.history.pieces();
         let knots = self.profile.knots_below(edge.radius);
         let singular = self.profile.singular_radii();
-        let pace = Pace { keep_going: &keep_going, stopped: Cell::new(false), terms: Cell::new(0) };
-        let mut search = Search { contact: self, pace: &pace, sign: 0.0, places: Vec::new() };
+        let pace = Pace::new(&keep_going);
+        let derivative = Derivative::new(self, &pace);
+        let mut search = Search { derivative: &derivative, sign: 0.0, places: Vec::new() };
         for (index, &bend) in bends.iter().enumerate() {
             if !pace.goes_on() {
                 return None;
@@ -112,9 +62,9 @@ impl Contact {
                 // At the same distance on either side a logarithm has the same value: one sample serves both.
                 let beside = DoubleDouble::square_of(knot) * (1.0 + KNOT_FLOOR);
                 let infinite = if rim {
-                    self.scaled_derivative(&at, &pace)
+                    derivative.at(&at)
                 } else if sparse {
-                    self.scaled_derivative(&StressRadius { radius: knot, square: beside }, &pace)
+                    derivative.at(&StressRadius { radius: knot, square: beside })
                 } else {
                     0.0
                 };
@@ -125,7 +75,7 @@ impl Contact {
                     (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
             });
-            let mut start = self.start(index, &from, &knots, &pace);
+            let mut start = self.start(index, &from, &knots, &derivative);
             let mut inner = from;
             for (outer, end, next) in within.chain([(to, last, last)]) {
                 if !pace.goes_on() {
@@ -135,7 +85,7 @@ impl Contact {
                 (inner, start) = (outer, next);
             }
         }
-        if pace.stopped.get() {
+        if pace.stopped() {
             return None;
         }
         let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
@@ -146,8 +96,14 @@ impl Contact {
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
-    fn start(&self, index: usize, from: &StressRadius, knots: &[f64], pace: &Pace<'_>) -> (EndBehaviour, f64) {
-        let sign = self.scaled_derivative(from, pace);
+    fn start(
+        &self,
+        index: usize,
+        from: &StressRadius,
+        knots: &[f64],
+        derivative: &Derivative<'_>,
+    ) -> (EndBehaviour, f64) {
+        let sign = derivative.at(from);
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
             if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse }
@@ -168,8 +124,7 @@ impl Contact {
 
 /// The search on its way from the centre outward.
 struct Search<'a> {
-    contact: &'a Contact,
-    pace: &'a Pace<'a>,
+    derivative: &'a Derivative<'a>,
     /// The sign that the derivative had last, zero before the first.
     sign: f64,
     places: Vec<StressRadius>,
@@ -189,7 +144,7 @@ impl Search<'_> {
     }
 
     fn sample(&self, interval: &SmoothInterval, place: f64) -> Sample {
-        Sample { place, value: self.contact.scaled_derivative(&interval.at(place), self.pace) * interval.weight(place) }
+        Sample { place, value: self.derivative.at(&interval.at(place)) * interval.weight(place) }
     }
 
     /// Goes through an interval from its inner end to its outer.
@@ -200,7 +155,11 @@ impl Search<'_> {
         let inward = interval.places(interval.start).into_iter().rev().map(|place| -place);
         let outward = interval.places(interval.end);
         let mut samples = vec![Sample { place: -interval.limit(interval.start.0), value: interval.start.1 }];
-        samples.extend(inward.chain([0.0]).chain(outward).map(|place| self.sample(interval, place)));
+        let places: Vec<f64> = inward.chain([0.0]).chain(outward).collect();
+        let radii: Vec<StressRadius> = places.iter().map(|&place| interval.at(place)).collect();
+        let values = self.derivative.at_all(&radii);
+        let sample = |(place, value): (f64, f64)| Sample { place, value: value * interval.weight(place) };
+        samples.extend(places.into_iter().zip(values).map(sample));
         samples.push(Sample { place: interval.limit(interval.end.0), value: interval.end.1 });
         samples.retain(|sample| sample.value.abs() > 0.0);
         let Some(first) = samples.first() else { return };

@@ -47,6 +47,7 @@ mod truncated_sphere;
 
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
+pub(super) use kernel_sums::KernelSlopes;
 pub use load_curve::LoadCurve;
 pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;
@@ -498,6 +499,7 @@ dispatch! {
     least_fall(inner: f64, outer: f64) -> f64;
     singular_radii() -> Vec<f64>;
     smooth_centre() -> bool;
+    smooth_tip() -> bool;
     interpolation_error(radius: f64) -> InterpolationError;
     noise(radius: f64) -> Option<(f64, f64)>;
 }

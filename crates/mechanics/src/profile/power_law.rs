@@ -295,4 +295,8 @@ impl Shape for PowerLaw {
     fn smooth_centre(&self) -> bool {
         self.exponent.to_bits() == 2f64.to_bits()
     }
+
+    fn smooth_tip(&self) -> bool {
+        self.order.is_some_and(|order| order % 2 == 0)
+    }
 }

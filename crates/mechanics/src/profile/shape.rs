@@ -181,8 +181,7 @@ pub(super) trait Shape {
         None
     }
 
-    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the family: constant below
-    /// all kinks where stresses are smooth at the centre.
+    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the family.
     fn slope_over_radius_series(&self, _place: &Place) -> Option<Series> {
         None
     }
@@ -248,6 +247,11 @@ pub(super) trait Shape {
     /// Whether stresses are analytic in r^2 at the centre.
     fn smooth_centre(&self) -> bool {
         true
+    }
+
+    /// Whether g'/x is a polynomial in x^2 below all kinks.
+    fn smooth_tip(&self) -> bool {
+        self.smooth_centre()
     }
 
     /// The interpolation error in a contact of this radius.

@@ -20,8 +20,8 @@
 use super::call_count;
 use super::logarithm::ln_1p;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, TERMS};
-use super::shape::Shape as _;
-use super::{DoubleDouble, Profile, Ring, StressRadius};
+use super::shape::Shape;
+use super::{DoubleDouble, Profile, Ring, Span, StressRadius};
 
 /// Radii that are summed for side by side.
 const LANES: usize = 8;
@@ -33,7 +33,7 @@ const WIDEST: f64 = 0.5;
 const KINK: f64 = 1.0 / 16.0;
 /// Terms whose size is below this share of the largest do not count.
 const NEGLIGIBLE: f64 = 1e-18;
-/// The smallest radius, over that of the edge, that pieces reach down to at a tip where stresses are not smooth.
+/// The smallest radius, over that of the edge, that pieces reach down to at a tip where q is not smooth.
 const INNERMOST: f64 = 1e-3;
 /// With more pieces than this within a ring, others are quicker.
 const MOST_CUTS: f64 = 48.0;
@@ -41,10 +41,12 @@ const MOST_CUTS: f64 = 48.0;
 const THIN: f64 = 1e-3;
 
 /// The pieces of a profile's rings, from the edge inward.
-pub(super) struct SmoothPieces {
+pub(crate) struct SmoothPieces<'a> {
+    profile: &'a Profile,
     pieces: Vec<Piece>,
-    /// Radii below this one, m, are not served.
+    /// The radius, m, that the pieces reach down to, and what is left of a ring inside it, with its weight.
     innermost: f64,
+    tip: Option<(Span, f64)>,
     /// 1/a^2, m^-2: lengths are in units of the edge.
     unit: f64,
 }
@@ -74,24 +76,32 @@ enum Near {
 /// Kernels, and their derivatives with respect to r^2 in units of the edge.
 type Kernels<const N: usize> = ([f64; N], [f64; N]);
 
-impl SmoothPieces {
-    /// The pieces of rings and their weights for radii of at least `least`, m, of which those in the utmost tip are not served; `None` if
-    /// the profile has no such series, or levels at a vertical edge.
-    pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces> {
+/// Weighted sums of kernels, of their derivatives, and of the sizes of these.
+struct Sums<const N: usize> {
+    kernels: [f64; N],
+    slopes: [f64; N],
+    sizes: [f64; N],
+}
+
+impl<'a> SmoothPieces<'a> {
+    /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such series, or
+    /// levels at a vertical edge.
+    pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
         let edge = rings.last()?.0.outer.radius;
-        let innermost = if profile.smooth_centre() { 0.0 } else { least.max(INNERMOST * edge) };
-        let mut made = SmoothPieces { pieces: Vec::new(), innermost, unit: 1.0 / (edge * edge) };
+        let innermost = if profile.smooth_tip() { 0.0 } else { least.max(INNERMOST * edge) };
+        let mut made = SmoothPieces { profile, pieces: Vec::new(), innermost, tip: None, unit: 1.0 / (edge * edge) };
         for (ring, weight) in rings.iter().rev() {
             if profile.edge_depth(ring) > 0.0 {
                 return None;
             }
-            made.cut(profile, ring, *weight)?;
+            made.cut(ring, *weight)?;
         }
         Some(made)
     }
 
     /// Adds the pieces of a ring, from its outer end inward.
-    fn cut(&mut self, profile: &Profile, ring: &Ring, weight: f64) -> Option<()> {
+    fn cut(&mut self, ring: &Ring, weight: f64) -> Option<()> {
+        let profile = self.profile;
         let plain = (ring.outer.square - ring.inner.square).value();
         let thin = plain <= THIN * ring.outer.square.value();
         let (mut outer, mut radius) = (ring.outer.square, ring.outer.radius);
@@ -112,17 +122,21 @@ impl SmoothPieces {
                 let top = if gap <= reach { gap } else { reach };
                 let from = if gap <= reach { outer } else { base + DoubleDouble::from(reach) };
                 if gap > reach {
-                    self.smooth(profile, (from, outer), (gap - reach, false), (reach, weight))?;
+                    self.smooth((from, outer), (gap - reach, false), (reach, weight))?;
                 }
                 let KinkSeries { even, odd } = profile.kink_series(kink, top.sqrt())?;
                 let (even, odd) = (counted(&even, 1.0), counted(&odd, 1.0));
                 let far = kink_moments(&even, &odd, (top * self.unit).sqrt());
                 self.push((base, from), (top, thin && gap <= reach), weight, (Near::Kink { even, odd }, far));
             } else {
-                let above = if kink > 0.0 || !profile.smooth_centre() { above } else { f64::INFINITY };
-                self.smooth(profile, (low, outer), (gap, thin), (above, weight))?;
+                let above = if kink > 0.0 || !profile.smooth_tip() { above } else { f64::INFINITY };
+                self.smooth((low, outer), (gap, thin), (above, weight))?;
             }
             (outer, radius) = (low, kink);
+        }
+        if outer > ring.inner.square {
+            let left = Span::of(ring, 0.0, 0.0);
+            self.tip = left.below(outer, outer.value().sqrt()).map(|span| (span, weight));
         }
         Some(())
     }
@@ -130,7 +144,6 @@ impl SmoothPieces {
     /// Adds pieces between two squares that differ by `gap`, and of which the inner is `above` a singularity.
     fn smooth(
         &mut self,
-        profile: &Profile,
         (low, high): (DoubleDouble, DoubleDouble),
         (gap, thin): (f64, bool),
         (above, weight): (f64, f64),
@@ -149,9 +162,11 @@ impl SmoothPieces {
             let half = 0.5 * gap;
             let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
             // Each term is smaller than the one before by half over half + below.
-            let terms = (-NEGLIGIBLE.ln() / (below / half).ln_1p()).min(TERMS as f64).ceil();
-            let place = Place { middle: outer - DoubleDouble::from(half), half, terms: (terms as usize + 1).min(TERMS) };
-            let near = counted(&profile.slope_over_radius_series(&place)?.coefficients, self.unit.sqrt().recip());
+            let terms = (-NEGLIGIBLE.ln() / (below / half).ln_1p()).ceil() + 1.0;
+            // Without a singularity q is a polynomial, whose terms end by themselves.
+            let terms = if below < f64::INFINITY { TERMS.min(terms as usize) } else { TERMS };
+            let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
+            let near = counted(&self.profile.slope_over_radius_series(&place)?.coefficients, self.unit.sqrt().recip());
             let far = moments(&near, half * self.unit);
             self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (Near::Smooth(near), far));
             outer = inner;
@@ -170,49 +185,57 @@ impl SmoothPieces {
         self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
     }
 
-    /// The sums at each radius; NaN at those that are not served.
+    /// The sums at each radius.
     pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
         order.sort_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
-        let mut sums = vec![f64::NAN; radii.len()];
-        order.drain(..order.partition_point(|&index| radii[index].radius < self.innermost));
+        let mut sums = vec![0.0; radii.len()];
         for chunk in order.chunks(LANES) {
-            // Lanes left over repeat the first.
-            let squares = std::array::from_fn(|lane| radii[*chunk.get(lane).unwrap_or(&chunk[0])].square);
-            let (kernels, _) = self.lanes::<LANES, false>(&squares, &mut |_| ());
-            for (&index, kernel) in chunk.iter().zip(kernels) {
-                sums[index] = kernel;
+            let found = self.lanes::<LANES, false>(&filled(chunk, |&index| radii[index].square));
+            for (&index, kernel) in chunk.iter().zip(found.kernels) {
+                sums[index] =
+                    kernel + self.in_tip(&radii[index], |span| Shape::kernel(self.profile, &radii[index], span));
             }
         }
         sums
     }
 
-    /// The derivative of the sum with respect to r^2, 1/m^2, and the sum of the sizes of what it adds up from; `None` where it is not
-    /// served. Calls `count` for each piece.
-    pub(super) fn slope(&self, at: &StressRadius, count: &mut impl FnMut()) -> Option<(f64, f64)> {
-        if at.radius < self.innermost {
-            return None;
-        }
-        let mut size = 0.0;
-        let ([_], [slope]) = self.lanes::<1, true>(&[at.square], &mut |part| {
-            size += part;
-            count();
-        });
-        Some((slope * self.unit, size * self.unit))
+    /// A share of what lies inside all pieces, for radii there.
+    fn in_tip(&self, at: &StressRadius, share: impl Fn(&Span) -> f64) -> f64 {
+        let tip = self.tip.as_ref().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
+        tip.map_or(0.0, |(span, weight)| weight * share(span))
     }
 
-    fn lanes<const N: usize, const SLOPES: bool>(
-        &self,
-        squares: &[DoubleDouble; N],
-        each: &mut impl FnMut(f64),
-    ) -> Kernels<N> {
+    /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told of the pieces that follow; once it is false, derivatives are zero.
+    pub(super) fn slopes(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
+        let mut found = Vec::with_capacity(radii.len());
+        for chunk in radii.chunks(LANES) {
+            if !goes_on(self.pieces.len()) {
+                found.resize(found.len() + chunk.len(), (0.0, 0.0));
+            } else if let [at] = chunk {
+                found.push(self.with_tip(at, 0, &self.lanes::<1, true>(&[at.square])));
+            } else {
+                let sums = self.lanes::<LANES, true>(&filled(chunk, |at| at.square));
+                found.extend(chunk.iter().enumerate().map(|(lane, at)| self.with_tip(at, lane, &sums)));
+            }
+        }
+        found
+    }
+
+    /// The derivative in a lane and the sum of its sizes, 1/m^2, with those of the tip.
+    fn with_tip<const N: usize>(&self, at: &StressRadius, lane: usize, sums: &Sums<N>) -> (f64, f64) {
+        let tip = self.in_tip(at, |span| Shape::kernel_slope(self.profile, at, span));
+        (sums.slopes[lane] * self.unit + tip, sums.sizes[lane] * self.unit + tip.abs())
+    }
+
+    fn lanes<const N: usize, const SLOPES: bool>(&self, squares: &[DoubleDouble; N]) -> Sums<N> {
         let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
         let least = square.iter().copied().fold(f64::INFINITY, f64::min);
         // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
         let excess = |end: (f64, f64)| -> [f64; N] {
             std::array::from_fn(|lane| ((end.0 - square[lane]) + (end.1 - rest[lane])) * self.unit)
         };
-        let (mut sums, mut slopes) = ([0.0; N], [0.0; N]);
+        let mut sums = Sums { kernels: [0.0; N], slopes: [0.0; N], sizes: [0.0; N] };
         for piece in &self.pieces {
             if piece.outer.0 < least {
                 break;
@@ -246,14 +269,15 @@ impl SmoothPieces {
                 }
             };
             for lane in 0..N {
-                sums[lane] += piece.weight * kernel[lane];
+                sums.kernels[lane] += piece.weight * kernel[lane];
                 if SLOPES {
-                    slopes[lane] += piece.weight * slope[lane];
+                    let slope = piece.weight * slope[lane];
+                    sums.slopes[lane] += slope;
+                    sums.sizes[lane] += slope.abs();
                 }
             }
-            each(if SLOPES { (piece.weight * slope[0]).abs() } else { 0.0 });
         }
-        (sums, slopes)
+        sums
     }
 }
 
@@ -266,6 +290,11 @@ impl Piece {
             if above > 0.0 { above } else { 0.0 }
         })
     }
+}
+
+/// The squares of a chunk, of which lanes left over repeat the first.
+fn filled<T>(chunk: &[T], square: impl Fn(&T) -> DoubleDouble) -> [DoubleDouble; LANES] {
+    std::array::from_fn(|lane| square(chunk.get(lane).unwrap_or(&chunk[0])))
 }
 
 fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {

@@ -335,6 +335,10 @@ impl Shape for Sum {
         self.parts.iter().all(Profile::smooth_centre)
     }
 
+    fn smooth_tip(&self) -> bool {
+        self.parts.iter().all(Shape::smooth_tip)
+    }
+
     fn interpolation_error(&self, radius: f64) -> InterpolationError {
         let errors = self.parts.iter().map(|part| part.interpolation_error(radius));
         errors.fold(InterpolationError::default(), InterpolationError::and)

@@ -24,6 +24,7 @@ use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 pub use interpolation_error::InterpolationError;
+pub(super) use kernel_sums::WeightedPanels;
 use panel::Panel;
 use spline::Knot;
 
