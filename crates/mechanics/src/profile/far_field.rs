@@ -95,18 +95,27 @@ fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
     }
     // An interval of a few units in the last place has no centre of its own, and beyond its ends the shares grow fast.
     let u = ((at - 0.5 * (low + high)) / (0.5 * (high - low))).clamp(-1.0, 1.0);
-    let mut total = 0.0;
-    for (index, share) in shares.iter_mut().enumerate() {
-        let distance = u - POINTS[index];
-        if distance.abs() < 1e-300 {
-            shares = [0.0; PROXIES];
-            shares[index] = 1.0;
-            return shares;
-        }
-        *share = WEIGHTS[index] / distance;
-        total += *share;
+    let distances = POINTS.map(|point| u - point);
+    if let Some(index) = distances.iter().position(|distance| distance.abs() < 1e-300) {
+        shares[index] = 1.0;
+        return shares;
     }
-    shares.map(|share| share / total)
+    for (share, (weight, distance)) in shares.iter_mut().zip(WEIGHTS.iter().zip(distances)) {
+        *share = weight / distance;
+    }
+    let scale = 1.0 / total(&shares);
+    shares.map(|share| share * scale)
+}
+
+/// The sum of what stands for a cluster, four by four.
+pub(super) fn total(terms: &[f64; PROXIES]) -> f64 {
+    let mut sums = [0.0; 4];
+    for four in terms.chunks_exact(4) {
+        for (sum, term) in sums.iter_mut().zip(four) {
+            *sum += term;
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 impl FarField {
