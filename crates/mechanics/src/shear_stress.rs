@@ -131,8 +131,13 @@ impl Contact {
     pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
         let edge = self.history.edge().radius;
         let spikes = self.profile.singular_radii().into_iter().filter(|&radius| radius <= edge).chain([edge]);
-        let shears = self.shears(&[0.0].into_iter().chain(spikes).collect::<Vec<f64>>());
-        let bounded = shears[1..].iter().all(|shear| shear.is_finite());
-        Some(Residual::of(shears[0], self.peaks(keep_going)?, bounded))
+        let mut radii: Vec<StressRadius> = [0.0].into_iter().chain(spikes).map(StressRadius::new).collect();
+        let others = radii.len();
+        radii.extend(self.extrema(keep_going)?);
+        // All at once: what the rings add up to from afar is found once.
+        let shears = self.shears_at(&radii);
+        let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
+        let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();
+        Some(Residual::of(shears[0], peaks, shears[1..others].iter().all(|shear| shear.is_finite())))
     }
 }

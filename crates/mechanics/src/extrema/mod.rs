@@ -11,7 +11,7 @@ mod interval;
 mod settled;
 
 use super::profile::StressRadius;
-use super::{Contact, DoubleDouble, Peak};
+use super::{Contact, DoubleDouble};
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
 
@@ -19,13 +19,15 @@ use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
 const SPARSE_ABOVE: usize = 100;
 
 impl Contact {
-    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
-    pub(super) fn peaks(&self, keep_going: impl Fn() -> bool) -> Option<Vec<Peak>> {
+    /// The radii of all extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
+    pub(super) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Vec<StressRadius>> {
         let edge = StressRadius::of_point(self.history.edge());
         let bends = self.bends();
         let settled = self.settled();
         let pieces = self.history.pieces();
-        let knots = self.profile.knots_below(edge.radius);
+        // A long table has many, which no settled interval needs.
+        let searched = settled.contains(&false);
+        let knots = if searched { self.profile.knots_below(edge.radius) } else { Vec::new() };
         let singular = self.profile.singular_radii();
         let pace = Pace::new(&keep_going);
         let derivative = Derivative::new(self, &pace);
@@ -90,9 +92,7 @@ impl Contact {
         }
         let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
         search.places.retain(|place| !spike(place) && place.radius > 0.0);
-        let shears = self.shears_at(&search.places);
-        let peaks = search.places.iter().zip(shears).map(|(place, shear)| Peak { radius: place.radius, shear });
-        Some(peaks.collect())
+        Some(search.places)
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.

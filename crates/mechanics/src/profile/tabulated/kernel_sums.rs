@@ -7,7 +7,7 @@ use std::cell::RefCell;
 
 #[cfg(test)]
 use super::super::call_count;
-use super::super::far_field::Share;
+use super::super::far_field::{Uneven, total};
 use super::SmoothCoordinate as _;
 use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, gauss, smooth_coordinate};
 
@@ -18,7 +18,8 @@ pub(crate) struct WeightedPanels<'a> {
     weights: Vec<f64>,
     /// The parts of those that are cut, by their panels.
     parts: Vec<(usize, Span, f64)>,
-    shares: Vec<Share>,
+    /// The sources of the clusters of panels whose weights differ.
+    uneven: Uneven,
 }
 
 /// The sums at each radius of the kernels of rings times their weights; `None` with levels at a vertical edge.
@@ -63,13 +64,14 @@ impl WeightedPanels<'_> {
         let share = |run: std::ops::Range<usize>| {
             Some(weights[run.start]).filter(|weight| ends[run.start] >= run.end && !weight.is_nan())
         };
-        let shares = table.sources.shares(share, |index, add| {
+        let sources = |index: usize, add: &mut dyn FnMut(f64, f64)| {
             let panel = &table.panels[index];
             for (_, span, weight) in parts_of(&parts, index) {
-                sources(panel, panel.t_of(span.inner), panel.t_of(span.outer), *weight, add);
+                self::sources(panel, panel.t_of(span.inner), panel.t_of(span.outer), *weight, add);
             }
-        });
-        Some(WeightedPanels { table, weights, parts, shares })
+        };
+        let uneven = table.sources.uneven(&share, &sources);
+        Some(WeightedPanels { table, weights, parts, uneven })
     }
 
     fn sum(&self, at: &StressRadius) -> f64 {
@@ -109,9 +111,13 @@ impl WeightedPanels<'_> {
         table.sources.visit_clusters(
             table.find(at.radius)..table.panels.len(),
             (square, square),
-            &mut |cluster, places, weights| {
-                let weights = self.shares[cluster].of(weights);
-                add.borrow_mut()(places.iter().zip(weights).map(|(place, weight)| far(place - square, weight)).sum());
+            &mut |cluster, first, places, weights| {
+                let own = self.uneven.get(&cluster);
+                let (factor, weights) = own.map_or((self.weights[first], weights), |own| (1.0, own));
+                if factor.abs() > 0.0 {
+                    let terms = std::array::from_fn(|index| far(places[index] - square, weights[index]));
+                    add.borrow_mut()(factor * total(&terms));
+                }
             },
             &mut |panels| panels.for_each(|panel| self.near(panel, &near, &mut *add.borrow_mut())),
         );
