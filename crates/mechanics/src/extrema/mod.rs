@@ -18,6 +18,9 @@ use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
 /// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
 const SPARSE_ABOVE: usize = 100;
 
+/// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself.
+const RESOLUTION: f64 = 1e-14;
+
 impl Contact {
     /// The radii of all extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
     pub(super) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Vec<StressRadius>> {
@@ -212,12 +215,14 @@ impl Search<'_> {
         let (mut at_low, mut at_high) = (finite(from), finite(to));
         for step in 1.. {
             let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
+            let least = RESOLUTION * (1.0 + middle.abs());
+            if high - low <= 2.0 * least {
                 break;
             }
-            let chord = low + (high - low) * (at_low / (at_low + at_high));
-            let known = at_low > 0.0 && at_high > 0.0;
-            let place = if known && step % 3 != 0 && chord > low && chord < high { chord } else { middle };
+            let known = at_low > 0.0 && at_high > 0.0 && step % 3 != 0;
+            // No step is so short that it could leave the root just beyond its end.
+            let chord = || (low + (high - low) * (at_low / (at_low + at_high))).clamp(low + least, high - least);
+            let place = if known { chord() } else { middle };
             let value = self.sample(interval, place).value * from.value.signum();
             if value > 0.0 {
                 (low, at_low, at_high) = (place, value, 0.5 * at_high);

@@ -35,6 +35,8 @@ const KINK: f64 = 1.0 / 16.0;
 const NEGLIGIBLE: f64 = 1e-18;
 /// The smallest radius, over that of the edge, that pieces reach down to at a tip where q is not smooth.
 const INNERMOST: f64 = 1e-3;
+/// The pieces reach down to this share of the smallest radius, whose square has digits that it has lost itself.
+const CLEAR: f64 = 0.9;
 /// With more pieces than this within a ring, others are quicker.
 const MOST_CUTS: f64 = 48.0;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
@@ -88,7 +90,7 @@ impl<'a> SmoothPieces<'a> {
     /// levels at a vertical edge.
     pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
         let edge = rings.last()?.0.outer.radius;
-        let innermost = if profile.smooth_tip() { 0.0 } else { least.max(INNERMOST * edge) };
+        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
         let mut made = SmoothPieces { profile, pieces: Vec::new(), innermost, tip: None, unit: 1.0 / (edge * edge) };
         for (ring, weight) in rings.iter().rev() {
             if profile.edge_depth(ring) > 0.0 {
@@ -480,3 +482,6 @@ fn chain<const N: usize, const SLOPES: bool>(
     }
     (sum, sum_slope, carried, carried_slope, last, last_slope)
 }
+
+#[cfg(test)]
+mod tests;
