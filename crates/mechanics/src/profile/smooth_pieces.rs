@@ -152,7 +152,7 @@ impl<'a> SmoothPieces<'a> {
     ) -> Option<()> {
         let growth = gap / above;
         let cuts = (growth.ln_1p() / WIDEST.ln_1p()).ceil().max(1.0);
-        if !(cuts <= MOST_CUTS) {
+        if cuts.is_nan() || cuts > MOST_CUTS {
             return None;
         }
         let step = growth.ln_1p() / cuts;

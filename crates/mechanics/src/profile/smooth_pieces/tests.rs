@@ -31,7 +31,7 @@ fn rings(profile: &Profile) -> Vec<(Ring, f64)> {
     let depth = profile.level(EDGE);
     let shares = [0.0, 0.02, 0.3, 0.3 + 1e-9, 0.5, 0.7, 0.72, 0.9, 1.0 - 1e-7, 1.0];
     let points = shares.map(|share| profile.point(DoubleDouble::from(share * depth)));
-    let weight = |index: usize| if index % 2 == 0 { 1.0 } else { -0.7 };
+    let weight = |index: usize| if index.is_multiple_of(2) { 1.0 } else { -0.7 };
     points.windows(2).enumerate().map(|(index, pair)| (Ring::between(pair[0], pair[1]), weight(index))).collect()
 }
 
