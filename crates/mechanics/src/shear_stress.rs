@@ -69,10 +69,15 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
+        self.shears_at(&StressRadius::of_all(radii))
+    }
+
+    /// [`Contact::shears`] at radii whose squares have all their digits.
+    pub(super) fn shears_at(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut rings: Vec<_> = self.shear_rings().collect();
         rings.reverse();
         let unit = self.shear_unit();
-        self.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
+        self.profile.kernel_sums_at(&rings, radii).into_iter().map(|sum| unit * sum).collect()
     }
 
     /// The rings of the slip history from the edge inward, each with its -dw/dy.
@@ -125,8 +130,14 @@ impl Contact {
     /// ```
     pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
         let edge = self.history.edge().radius;
-        let spikes = self.profile.singular_radii().into_iter().chain([edge]);
-        let bounded = spikes.filter(|&radius| radius <= edge).all(|radius| self.shear(radius).is_finite());
-        Some(Residual::of(self.shear(0.0), self.peaks(keep_going)?, bounded))
+        let spikes = self.profile.singular_radii().into_iter().filter(|&radius| radius <= edge).chain([edge]);
+        let mut radii: Vec<StressRadius> = [0.0].into_iter().chain(spikes).map(StressRadius::new).collect();
+        let others = radii.len();
+        radii.extend(self.extrema(keep_going)?);
+        // All at once: what the rings add up to from afar is found once.
+        let shears = self.shears_at(&radii);
+        let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
+        let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();
+        Some(Residual::of(shears[0], peaks, shears[1..others].iter().all(|shear| shear.is_finite())))
     }
 }

@@ -4,6 +4,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::power_series::{Place, Series};
 use super::shape::Shape;
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -104,6 +105,10 @@ impl Shape for Cone {
         let (ends, starts) = (v * (span.outer_radius + v), v_low * (low + v_low));
         // The difference of the reciprocals, from that of v (x + v).
         self.rise * 0.5 * (dv * (span.outer_radius + v) + v_low * (dx + dv)) / (ends * starts)
+    }
+
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        Some(place.power(0.0, -0.5).scaled(self.slope(1.0)))
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {

@@ -314,6 +314,15 @@ impl Shape for ExactSphere {
         Some(series)
     }
 
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // dq/d(x^2) = (x g'' - g')/(2 x^3) only grows.
+        let (share, slope) = (self.share(outer), self.slope(outer));
+        let rest = (1.0 - share) * (1.0 + share);
+        let steepest = 2.0 * share / (rest * rest) - slope;
+        let gap = (1.0 - inner / outer) * (1.0 + inner / outer);
+        (slope - gap * steepest) / outer
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         r / ((self.radius - r) * (self.radius + r)).max(0.0).sqrt()
     }

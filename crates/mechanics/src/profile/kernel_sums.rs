@@ -6,8 +6,12 @@
 use super::far_field::FarField;
 use super::shape::Shape;
 use super::slope_series::SeriesRings;
+use super::smooth_pieces::SmoothPieces;
+use super::tabulated::WeightedPanels;
 use super::{Profile, Ring, StressRadius, gauss};
 
+/// What the derivative of a table's kernels counts for, in terms of a sum over rings.
+const PANEL_TERMS: usize = 8;
 /// Fewer kernels than this, rings times radii, are summed sooner than clusters are made.
 pub(super) const FEW: usize = 256;
 /// A ring is near if it is nearer than this, in squares of radii over that of the edge: a smaller difference has lost digits.
@@ -18,14 +22,62 @@ impl Profile {
     /// `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
+        self.kernel_sums_at(rings, &StressRadius::of_all(radii))
+    }
+
+    /// [`Profile::kernel_sums`] at radii whose squares have all their digits.
+    pub(crate) fn kernel_sums_at(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Vec<f64> {
         let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
         if let Some(series) = Shape::slope_series(self, edge).filter(|_| edge > 0.0) {
             return SeriesRings::new(&series, edge, rings, |ring| self.gap_of(ring)).sums(radii);
         }
+        if let Some(sums) = self.sums_by_pieces(rings, radii) {
+            return sums;
+        }
         Shape::kernel_sums(self, rings, radii).unwrap_or_else(|| {
             let sources = Sources::new(self, rings, rings.len() * radii.len() > FEW);
-            radii.iter().map(|&radius| sources.sum(&StressRadius::new(radius))).collect()
+            radii.iter().map(|at| sources.sum(at)).collect()
         })
+    }
+}
+
+impl Profile {
+    /// The derivatives of the weighted sum of kernels, if there is a way that is quicker than ring by ring.
+    pub(crate) fn kernel_slopes<'a>(&'a self, rings: &[(Ring, f64)]) -> Option<KernelSlopes<'a>> {
+        let pieces = SmoothPieces::new(self, rings, 0.0).map(KernelSlopes::Pieces);
+        pieces.or_else(|| match self {
+            Profile::Tabulated(table) => WeightedPanels::new(table, rings).map(KernelSlopes::Panels),
+            _ => None,
+        })
+    }
+
+    /// The sums by [`SmoothPieces`].
+    fn sums_by_pieces(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
+        if rings.len() * radii.len() <= FEW {
+            return None;
+        }
+        let least = radii.iter().map(|at| at.radius).filter(|&radius| radius > 0.0).fold(f64::INFINITY, f64::min);
+        Some(SmoothPieces::new(self, rings, least)?.sums(radii))
+    }
+}
+
+/// The derivatives of a weighted sum of kernels with respect to r^2.
+pub(crate) enum KernelSlopes<'a> {
+    Pieces(SmoothPieces<'a>),
+    Panels(WeightedPanels<'a>),
+}
+
+impl KernelSlopes<'_> {
+    /// The derivative, 1/m^2, at each radius, with the sum of the sizes of what it adds up from.
+    /// `goes_on` is told how many terms follow; once it is false, derivatives are zero.
+    pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
+        match self {
+            KernelSlopes::Pieces(pieces) => pieces.slopes(radii, goes_on),
+            KernelSlopes::Panels(panels) => {
+                let slope = |at| if goes_on(PANEL_TERMS) { panels.slope(at) } else { (0.0, 0.0) };
+                radii.iter().map(slope).collect()
+            }
+        }
     }
 }
 

@@ -25,6 +25,7 @@ mod load_curve;
 mod logarithm;
 mod moment_tree;
 mod power_law;
+mod power_series;
 mod ring;
 pub(super) mod ring_quadrature;
 mod roots;
@@ -36,6 +37,7 @@ mod shape;
 mod slope_series;
 mod smooth_coordinate;
 mod smooth_interval;
+mod smooth_pieces;
 mod span;
 mod sphere;
 mod sum;
@@ -45,6 +47,7 @@ mod truncated_sphere;
 
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
+pub(super) use kernel_sums::KernelSlopes;
 pub use load_curve::LoadCurve;
 pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;
@@ -54,6 +57,7 @@ use super::double_double::DoubleDouble;
 use super::error::Error;
 use super::range;
 use asperities::Count;
+use power_series::{KinkSeries, Place, Series};
 use ring_quadrature::RingNodes;
 use shape::{End, Shape};
 use span::Span;
@@ -391,6 +395,13 @@ impl Profile {
         Shape::kernel_falls(self)
     }
 
+    /// A lower bound, 1/m, of -2 v dK(r, c)/d(r^2) for all r from `inner` up to c = `outer`, m, v = sqrt(c^2 - r^2): above zero the
+    /// kernel up to `outer` falls there. With q = g'/x as a function of x^2 it is q(c^2) - 2 v int q'(r^2 + t^2) dt over t up to v. Minus
+    /// infinity where nothing is known.
+    pub(super) fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        Shape::least_fall(self, inner, outer)
+    }
+
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip of a
     /// cone, a rim where the slope jumps. The vertical edge of a punch is not among them.
     ///
@@ -474,7 +485,9 @@ dispatch! {
     kernel(at: &StressRadius, span: &Span) -> f64;
     kernel_slope(at: &StressRadius, span: &Span) -> f64;
     slope_series(a: f64) -> Option<Vec<f64>>;
-    kernel_sums(rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>>;
+    slope_over_radius_series(place: &Place) -> Option<Series>;
+    kink_series(b: f64, top: f64) -> Option<KinkSeries>;
+    kernel_sums(rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>>;
     surface_slope(r: f64) -> f64;
     curvature_radius() -> Option<f64>;
     limit() -> Option<End>;
@@ -483,8 +496,10 @@ dispatch! {
     flat_radius() -> f64;
     cancellation(x: f64) -> f64;
     kernel_falls() -> bool;
+    least_fall(inner: f64, outer: f64) -> f64;
     singular_radii() -> Vec<f64>;
     smooth_centre() -> bool;
+    smooth_tip() -> bool;
     interpolation_error(radius: f64) -> InterpolationError;
     noise(radius: f64) -> Option<(f64, f64)>;
 }

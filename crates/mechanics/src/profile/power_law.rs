@@ -4,6 +4,7 @@
 //! positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
 use super::gauss::Singular;
+use super::power_series::{Place, Series};
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, series_kernel};
@@ -14,6 +15,9 @@ const MOST_TERMS: u16 = 24;
 const MOST_HALVES: i32 = 16;
 /// Beyond this many r the r under the root is negligible.
 const FAR: f64 = 1e8;
+
+/// The largest exponent of which a series of few terms is made.
+const STEEPEST: f64 = 16.0;
 
 /// A body of revolution whose height is a power of the radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -264,6 +268,10 @@ impl Shape for PowerLaw {
         Some(series)
     }
 
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        (self.exponent <= STEEPEST).then(|| place.power(0.0, 0.5 * self.exponent - 1.0).scaled(self.slope(1.0)))
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         self.exponent * self.coefficient * r.powf(self.exponent - 1.0)
     }
@@ -272,11 +280,23 @@ impl Shape for PowerLaw {
         self.exponent <= 2.0
     }
 
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // q is a power of x^2, whose slope is largest at one end.
+        let (power, share) = (0.5 * self.exponent - 1.0, inner / outer * (inner / outer));
+        let steepest = if power < 1.0 { share.powf(power - 1.0) } else { 1.0 };
+        let rise = if power > 0.0 { 2.0 * power * (1.0 - share) * steepest } else { 0.0 };
+        self.slope(outer) / outer * (1.0 - rise)
+    }
+
     fn singular_radii(&self) -> Vec<f64> {
         if self.exponent <= 1.0 { vec![0.0] } else { Vec::new() }
     }
 
     fn smooth_centre(&self) -> bool {
         self.exponent.to_bits() == 2f64.to_bits()
+    }
+
+    fn smooth_tip(&self) -> bool {
+        self.order.is_some_and(|order| order % 2 == 0)
     }
 }

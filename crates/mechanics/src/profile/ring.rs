@@ -51,6 +51,11 @@ impl StressRadius {
         StressRadius { radius, square: DoubleDouble::square_of(radius) }
     }
 
+    /// The radii r, m.
+    pub(crate) fn of_all(radii: &[f64]) -> Vec<StressRadius> {
+        radii.iter().map(|&radius| StressRadius::new(radius)).collect()
+    }
+
     /// The radius of `point`, to all the digits of its square.
     #[must_use]
     pub fn of_point(point: &Point) -> StressRadius {

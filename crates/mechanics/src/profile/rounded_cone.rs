@@ -5,6 +5,7 @@
 //! (Ciavarella 1999; Popov & Hess 2015). f' bends but does not jump at b, so all stresses are finite.
 
 use super::angle::tangent_less_angle;
+use super::power_series::{KinkSeries, Place, Series};
 use super::roots::descend;
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
@@ -195,6 +196,25 @@ impl Shape for RoundedCone {
         let (tip, flank) = self.parts(span);
         tip.map_or(0.0, |span| self.tip.kernel_slope(at, &span))
             + flank.map_or(0.0, |span| smooth_coordinate::kernel_slope(&self.flank, at, &span))
+    }
+
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        let Flank { slope, tip_radius: b, .. } = self.flank;
+        if place.middle <= DoubleDouble::square_of(b) {
+            return self.tip.slope_over_radius_series(place);
+        }
+        // T (2 b/(x + t) + phi)/x.
+        let both = place.power(0.0, 0.5).plus(&place.power(b, 0.5)).inverse().scaled(2.0 * b);
+        let sum = both.plus(&place.angle(b, &place.power(b, -0.5)));
+        Some(place.power(0.0, -0.5).times(&sum).scaled(slope))
+    }
+
+    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
+        // 2 b/(x + t) = 2 (x - t)/b.
+        let slope = self.flank.slope;
+        let mut series = KinkSeries::over_radius(b, top, 0.0, -2.0 * slope / b, slope);
+        series.odd[0] = 2.0 * slope * top / b;
+        Some(series)
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

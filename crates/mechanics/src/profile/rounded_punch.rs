@@ -4,6 +4,7 @@
 //! positive through t - b phi = b (u - atan u), u = t/b.
 
 use super::angle::tangent_less_angle;
+use super::power_series::{KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -76,6 +77,33 @@ impl SmoothCoordinate for RoundedPunch {
 }
 
 flat_core!(RoundedPunch {
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        // (2 t - b phi)/(R x).
+        let b = self.flat_radius;
+        if place.middle <= DoubleDouble::square_of(b) {
+            return Some(place.constant(0.0));
+        }
+        let angle = place.angle(b, &place.power(b, -0.5)).scaled(-b);
+        let sum = place.power(b, 0.5).scaled(2.0).plus(&angle);
+        Some(place.power(0.0, -0.5).times(&sum).scaled(self.edge_radius.recip()))
+    }
+
+    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
+        let curvature = self.edge_radius.recip();
+        Some(KinkSeries::over_radius(b, top, 0.0, 2.0 * curvature, -b * curvature))
+    }
+
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        let (low, high) = (smooth_coordinate::t_of(self, inner), smooth_coordinate::t_of(self, outer));
+        if low <= 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        // dq/dt = (t gamma' - gamma)/t^2 <= 1/(R x), and the int dt/sqrt(t^2 - t_r^2) that goes with it is arcosh(t/t_r).
+        let width = ((outer - inner) * (outer + inner)).sqrt();
+        let rise = width * ((width + high) / low).ln() / (self.edge_radius * inner);
+        self.slope(outer) / outer - rise
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }

@@ -1,5 +1,6 @@
 //! The functions that a family must provide, and those that follow for all families.
 
+use super::power_series::{KinkSeries, Place, Series};
 use super::ring_quadrature::{self, RingNodes};
 use super::roots::increasing;
 use super::smooth_interval::{Node, SmoothInterval};
@@ -180,8 +181,18 @@ pub(super) trait Shape {
         None
     }
 
+    /// g'/x, 1/m, as a power series of x^2 between two kinks, if [`smooth_pieces`](super::smooth_pieces) serve the family.
+    fn slope_over_radius_series(&self, _place: &Place) -> Option<Series> {
+        None
+    }
+
+    /// dg/dt (pure number) above the kink b, m, as a power series of t = sqrt(x^2 - b^2) up to `top`, m.
+    fn kink_series(&self, _b: f64, _top: f64) -> Option<KinkSeries> {
+        None
+    }
+
     /// The weighted sums of [`Profile::kernel`](super::Profile::kernel_sums), by a family that has a faster way than ring by ring.
-    fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[f64]) -> Option<Vec<f64>> {
+    fn kernel_sums(&self, _rings: &[(Ring, f64)], _radii: &[StressRadius]) -> Option<Vec<f64>> {
         None
     }
 
@@ -223,6 +234,11 @@ pub(super) trait Shape {
         false
     }
 
+    /// See [`Profile::least_fall`](super::Profile).
+    fn least_fall(&self, _inner: f64, outer: f64) -> f64 {
+        if self.kernel_falls() { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+    }
+
     /// Radii at which f' jumps by a finite amount, so that stresses are log-infinite, increasing.
     fn singular_radii(&self) -> Vec<f64> {
         Vec::new()
@@ -231,6 +247,11 @@ pub(super) trait Shape {
     /// Whether stresses are analytic in r^2 at the centre.
     fn smooth_centre(&self) -> bool {
         true
+    }
+
+    /// Whether g'/x is a polynomial in x^2 below all kinks.
+    fn smooth_tip(&self) -> bool {
+        self.smooth_centre()
     }
 
     /// The interpolation error in a contact of this radius.

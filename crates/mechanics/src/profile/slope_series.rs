@@ -10,7 +10,7 @@
 #[cfg(test)]
 use super::call_count;
 use super::logarithm::ln_1p;
-use super::{DoubleDouble, Ring};
+use super::{DoubleDouble, Ring, StressRadius};
 
 /// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
 const LANES: usize = 8;
@@ -136,15 +136,15 @@ impl SeriesRings<'_> {
         }
     }
 
-    /// The sums at each radius, m.
-    pub(super) fn sums(&self, radii: &[f64]) -> Vec<f64> {
+    /// The sums at each radius.
+    pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut sums = Vec::with_capacity(radii.len());
         let mut antiderivative = Antiderivative::of(self.series);
         for radii in radii.chunks(LANES) {
             // Lanes left over repeat the first.
-            let mut squares = [DoubleDouble::square_of(radii[0]); LANES];
-            for (square, &radius) in squares.iter_mut().zip(radii) {
-                *square = DoubleDouble::square_of(radius);
+            let mut squares = [radii[0].square; LANES];
+            for (square, at) in squares.iter_mut().zip(radii) {
+                *square = at.square;
             }
             sums.extend_from_slice(&self.lanes(&squares, &mut antiderivative)[..radii.len()]);
         }

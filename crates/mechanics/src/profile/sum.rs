@@ -4,6 +4,7 @@
 //! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
 //! the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or falls.
 
+use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
 use super::roots::increasing;
 use super::shape::{End, Shape};
 use super::{DoubleDouble, Error, InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated, range};
@@ -273,6 +274,25 @@ impl Shape for Sum {
         })
     }
 
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        let mut parts = self.parts.iter().map(|part| part.slope_over_radius_series(place));
+        let first = parts.next()??;
+        parts.try_fold(first, |sum, part| Some(sum.plus(&part?)))
+    }
+
+    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
+        let place = Place { middle: DoubleDouble::square_of(b), half: top * top, terms: KINK_TERMS };
+        self.parts.iter().try_fold(KinkSeries::default(), |sum, part| {
+            let own = part.kink_below(b * (1.0 + f64::EPSILON)).to_bits() == b.to_bits();
+            let series = if own {
+                part.kink_series(b, top)?
+            } else {
+                KinkSeries::smooth(&part.slope_over_radius_series(&place)?, top)
+            };
+            Some(sum.plus(&series))
+        })
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         self.total(|part| part.surface_slope(r))
     }
@@ -300,6 +320,10 @@ impl Shape for Sum {
         self.parts.iter().all(Profile::kernel_falls)
     }
 
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        self.total(|part| part.least_fall(inner, outer))
+    }
+
     fn singular_radii(&self) -> Vec<f64> {
         let mut radii: Vec<f64> = self.parts.iter().flat_map(Profile::singular_radii).collect();
         radii.sort_by(f64::total_cmp);
@@ -309,6 +333,10 @@ impl Shape for Sum {
 
     fn smooth_centre(&self) -> bool {
         self.parts.iter().all(Profile::smooth_centre)
+    }
+
+    fn smooth_tip(&self) -> bool {
+        self.parts.iter().all(Shape::smooth_tip)
     }
 
     fn interpolation_error(&self, radius: f64) -> InterpolationError {

@@ -3,6 +3,7 @@
 //! gamma = dg/dt = T (phi t + b)/x, int x dg = (T/2)(x^2 phi + b t) (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure
 //! and shear are log-infinite there.
 
+use super::power_series::{KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -62,6 +63,26 @@ impl SmoothCoordinate for TruncatedCone {
 }
 
 flat_core!(TruncatedCone {
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        // T (phi + b/t)/x.
+        let b = self.flat_radius;
+        if place.middle <= DoubleDouble::square_of(b) {
+            return Some(place.constant(0.0));
+        }
+        let over_t = place.power(b, -0.5);
+        let sum = place.angle(b, &over_t).plus(&over_t.scaled(b));
+        Some(place.power(0.0, -0.5).times(&sum).scaled(self.slope))
+    }
+
+    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
+        Some(KinkSeries::over_radius(b, top, self.slope * b, 0.0, self.slope))
+    }
+
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // g'/x falls from the rim on.
+        if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         if r > self.flat_radius { self.slope } else { 0.0 }
     }

@@ -3,6 +3,7 @@
 //! gamma = dg/dt = (b^2 + 2 t^2)/(R x), int x dg = t (3 b^2 + 2 t^2)/(3R), and X follows from a quadratic in t^2 (Ejike 1981;
 //! Popov & Hess 2015). f' jumps at b: pressure and shear are log-infinite there.
 
+use super::power_series::{KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -72,6 +73,26 @@ impl SmoothCoordinate for TruncatedSphere {
 }
 
 flat_core!(TruncatedSphere {
+    fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
+        // (2 x^2 - b^2)/(R x t).
+        let b = self.flat_radius;
+        if place.middle <= DoubleDouble::square_of(b) {
+            return Some(place.constant(0.0));
+        }
+        let rest = place.power(0.0, 0.5).scaled(2.0).plus(&place.power(0.0, -0.5).scaled(-b * b));
+        Some(place.power(b, -0.5).times(&rest).scaled(self.curvature_radius.recip()))
+    }
+
+    fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
+        let curvature = self.curvature_radius.recip();
+        Some(KinkSeries::over_radius(b, top, curvature * b * b, 2.0 * curvature, 0.0))
+    }
+
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // g'/x falls from the rim on.
+        if inner >= self.flat_radius { self.slope(outer) / outer } else { f64::NEG_INFINITY }
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
     }

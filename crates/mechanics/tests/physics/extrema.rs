@@ -322,6 +322,26 @@ fn each_reversal_leaves_one_peak() {
     }
 }
 
+/// Between most of the kinks the sign of the derivative is known, and nothing is searched.
+#[test]
+fn after_many_reversals_the_extrema_are_those_that_the_stress_shows() {
+    let falling: Vec<f64> = falling_amplitude(20, 1.0).collect();
+    // Steps that grow inward and outward, so that shares of the rings rise and fall.
+    let uneven: Vec<f64> = (1..24).map(|step| f64::from(step).powf(-0.7) * (-1.0_f64).powi(step)).collect();
+    let mut seen = 0;
+    for (profile, mut notes) in profiles() {
+        if matches!(profile, Profile::FlatPunch(_)) {
+            continue;
+        }
+        notes.retain(|&note| note < 0.42);
+        for path in [&falling, &uneven] {
+            let contact = moved(profile.clone(), 0.42, path);
+            seen += check(&contact, &notes);
+        }
+    }
+    assert!(seen > 20 * 2 * 15, "{seen} seen");
+}
+
 #[test]
 fn knots_of_a_table_hide_nothing() {
     let contact = moved(table(&UNEVEN.0, &UNEVEN.1), 0.5, &[1.0]);

@@ -3,25 +3,30 @@
 //! The weight of a panel that lies in one ring is that ring's, and the few panels that rings cut are cut with them. So the tree of
 //! the kernel's sources is weighted once, and each radius goes through it once, whatever the number of rings.
 
-use super::super::far_field::Share;
+use std::cell::RefCell;
+
+#[cfg(test)]
+use super::super::call_count;
+use super::super::far_field::{Uneven, total};
 use super::SmoothCoordinate as _;
 use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, gauss, smooth_coordinate};
 
 /// The panels of a table by their weights.
-struct WeightedPanels<'a> {
+pub(crate) struct WeightedPanels<'a> {
     table: &'a Tabulated,
     /// The weight of each panel, zero outside the rings; NaN of one that is cut.
     weights: Vec<f64>,
     /// The parts of those that are cut, by their panels.
     parts: Vec<(usize, Span, f64)>,
-    shares: Vec<Share>,
+    /// The sources of the clusters of panels whose weights differ.
+    uneven: Uneven,
 }
 
-/// The sums at each radius, m, of the kernels of rings times their weights; `None` with levels at a vertical edge.
-pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+/// The sums at each radius of the kernels of rings times their weights; `None` with levels at a vertical edge.
+pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
     let panels = WeightedPanels::new(table, rings)?;
     let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
-    let sum = |&radius: &f64| if radius > edge { 0.0 } else { panels.sum(&StressRadius::new(radius)) };
+    let sum = |at: &StressRadius| if at.radius > edge { 0.0 } else { panels.sum(at) };
     Some(radii.iter().map(sum).collect())
 }
 
@@ -34,7 +39,8 @@ pub(super) fn sources(panel: &Panel, low: f64, high: f64, weight: f64, add: &mut
 }
 
 impl WeightedPanels<'_> {
-    fn new<'a>(table: &'a Tabulated, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
+    /// `None` with levels at a vertical edge.
+    pub(in super::super) fn new<'a>(table: &'a Tabulated, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
         let (mut weights, mut parts) = (vec![0.0; table.panels.len()], Vec::new());
         for (ring, weight) in rings {
             let span = table.span(ring);
@@ -58,45 +64,80 @@ impl WeightedPanels<'_> {
         let share = |run: std::ops::Range<usize>| {
             Some(weights[run.start]).filter(|weight| ends[run.start] >= run.end && !weight.is_nan())
         };
-        let shares = table.sources.shares(share, |index, add| {
+        let sources = |index: usize, add: &mut dyn FnMut(f64, f64)| {
             let panel = &table.panels[index];
             for (_, span, weight) in parts_of(&parts, index) {
-                sources(panel, panel.t_of(span.inner), panel.t_of(span.outer), *weight, add);
+                self::sources(panel, panel.t_of(span.inner), panel.t_of(span.outer), *weight, add);
             }
-        });
-        Some(WeightedPanels { table, weights, parts, shares })
+        };
+        let uneven = table.sources.uneven(&share, &sources);
+        Some(WeightedPanels { table, weights, parts, uneven })
     }
 
     fn sum(&self, at: &StressRadius) -> f64 {
+        let mut sum = 0.0;
+        let near = |panel: &Panel, span: &Span| smooth_coordinate::kernel(panel, at, span);
+        self.visit(at, |gap, weight| weight / gap.sqrt(), near, |part| sum += part);
+        sum
+    }
+
+    /// The derivative of the sum with respect to r^2, 1/m^2, and the sum of the sizes of its parts.
+    pub(in super::super) fn slope(&self, at: &StressRadius) -> (f64, f64) {
+        let (mut sum, mut size) = (0.0, 0.0);
+        let near = |panel: &Panel, span: &Span| {
+            #[cfg(test)]
+            call_count::add(|calls| &mut calls.kernel_slope);
+            smooth_coordinate::kernel_slope(panel, at, span)
+        };
+        let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
+        self.visit(at, far, near, |part| {
+            sum += part;
+            size += part.abs();
+        });
+        (sum, size)
+    }
+
+    /// Adds what clusters of panels do from afar, and each of the others by itself.
+    fn visit(
+        &self,
+        at: &StressRadius,
+        far: impl Fn(f64, f64) -> f64,
+        near: impl Fn(&Panel, &Span) -> f64,
+        add: impl FnMut(f64),
+    ) {
         let table = self.table;
         let square = at.square.value();
-        let (mut far, mut near) = (0.0, 0.0);
+        let add = RefCell::new(add);
         table.sources.visit_clusters(
             table.find(at.radius)..table.panels.len(),
             (square, square),
-            &mut |cluster, places, weights| {
-                let weights = self.shares[cluster].of(weights);
-                far += places.iter().zip(weights).map(|(place, weight)| weight / (place - square).sqrt()).sum::<f64>();
+            &mut |cluster, first, places, weights| {
+                let own = self.uneven.get(&cluster);
+                let (factor, weights) = own.map_or((self.weights[first], weights), |own| (1.0, own));
+                if factor.abs() > 0.0 {
+                    let terms = std::array::from_fn(|index| far(places[index] - square, weights[index]));
+                    add.borrow_mut()(factor * total(&terms));
+                }
             },
-            &mut |panels| near += panels.map(|panel| self.near(panel, at)).sum::<f64>(),
+            &mut |panels| panels.for_each(|panel| self.near(panel, &near, &mut *add.borrow_mut())),
         );
-        far + near
     }
 
-    /// The share of one panel.
-    fn near(&self, index: usize, at: &StressRadius) -> f64 {
+    /// The shares of one panel.
+    fn near(&self, index: usize, share: impl Fn(&Panel, &Span) -> f64, add: &mut impl FnMut(f64)) {
         let panel = &self.table.panels[index];
         let weight = self.weights[index];
         if weight.is_nan() {
-            let parts = parts_of(&self.parts, index);
-            parts.iter().map(|(_, span, weight)| weight * smooth_coordinate::kernel(panel, at, span)).sum()
+            for (_, span, weight) in parts_of(&self.parts, index) {
+                if weight.abs() > 0.0 {
+                    add(weight * share(panel, span));
+                }
+            }
         } else if weight.abs() > 0.0 {
             // Its own end is rounded, and 1/sqrt(x^2 - r^2) has no digits to spare beneath it.
             let next = self.table.panels.get(index + 1);
             let span = next.map_or_else(|| panel.span(), |next| panel.span_up_to(next));
-            weight * smooth_coordinate::kernel(panel, at, &span)
-        } else {
-            0.0
+            add(weight * share(panel, &span));
         }
     }
 }

@@ -24,8 +24,13 @@ use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 pub use interpolation_error::InterpolationError;
+pub(super) use kernel_sums::WeightedPanels;
 use panel::Panel;
 use spline::Knot;
+
+/// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the panel's end: it is
+/// ln(2 t/s), or less.
+const LOGARITHM: f64 = 40.0;
 
 /// Panels in the smallest cluster of the kernel's sources.
 const LEAF: usize = 1;
@@ -45,6 +50,8 @@ pub struct Tabulated {
     /// The kernel's sources.
     sources: FarField,
     knots: Vec<f64>,
+    /// The sums of [`Panel::steepest`] before each panel.
+    steepest: Vec<f64>,
     /// Radius, level and load at the end.
     end: (f64, f64, f64),
     /// The first radius at which g falls, if it does.
@@ -115,6 +122,8 @@ impl Tabulated {
         });
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        let steepest = panels.iter().scan(0.0, |sum, panel| Some(std::mem::replace(sum, *sum + panel.steepest())));
+        let steepest = steepest.collect();
         Ok(Tabulated {
             radii: Vec::new(),
             heights: Vec::new(),
@@ -124,6 +133,7 @@ impl Tabulated {
             tree,
             sources,
             knots,
+            steepest,
             end,
             // A curve that was cut where g falls ends there, however that radius is rounded.
             falls: falls_at.map(|radius| if whole { radius.min(end.0) } else { end.0 }),
@@ -378,13 +388,20 @@ impl Shape for Tabulated {
         )
     }
 
-    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Option<Vec<f64>> {
+    fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
         if rings.len() * radii.len() > FEW { kernel_sums::sums(self, rings, radii) } else { None }
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
         let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
         self.gather(at, span, |panel, span| smooth_coordinate::kernel_slope(panel, at, span), far)
+    }
+
+    fn least_fall(&self, inner: f64, outer: f64) -> f64 {
+        // 2 v int q' dt is v int (dq/dt) dt/sqrt(t^2 - s^2), s the t of r in the panel, summed over the panels.
+        let (first, last) = (self.find(inner), self.find(outer));
+        let steepest = self.steepest[last] + self.panels[last].steepest() - self.steepest[first];
+        self.slope(outer) / outer - ((outer - inner) * (outer + inner)).sqrt() * LOGARITHM * steepest
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

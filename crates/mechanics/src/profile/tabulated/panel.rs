@@ -12,6 +12,9 @@ pub(super) const POINTS: usize = 24;
 /// The part of P below which its terms do not count where an error is estimated that is larger.
 const NEGLIGIBLE: f64 = 1e-14;
 
+/// The part of q below which a last term of its series is the rounding of the values that fix it.
+const ROUNDED: f64 = 5e-16;
+
 /// A stretch of radii.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Panel {
@@ -53,7 +56,7 @@ fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
     };
     let mut series: Vec<f64> = (0..POINTS).map(term).collect();
     let size = series.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-    while series.last().is_some_and(|a| a.abs() <= 1e-16 * size) {
+    while series.last().is_some_and(|a| a.abs() <= ROUNDED * size) {
         series.pop();
     }
     series
@@ -118,6 +121,12 @@ impl Panel {
             (b1, b2) = (a + 2.0 * u * b1 - b2, b1);
         }
         self.slope.first().copied().unwrap_or(0.0) + u * b1 - b2
+    }
+
+    /// A bound of |dq/dt|: that of a Chebyshev polynomial of the order k is k^2 at most.
+    pub(super) fn steepest(&self) -> f64 {
+        let orders = self.slope.iter().enumerate().map(|(order, a)| (order * order) as f64 * a.abs());
+        orders.sum::<f64>() * 2.0 / (self.high - self.low)
     }
 
     /// The square of the radius where it ends, and that radius.

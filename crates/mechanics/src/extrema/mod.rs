@@ -1,0 +1,243 @@
+//! The extrema of the shear stress.
+//!
+//! Just inside a kink of the slip history, where the slope changes by gamma, tau falls off like -gamma sqrt(x - r), so
+//! that its derivative is infinite there with a known sign; where f'' of the profile jumps it is log-infinite with one
+//! sign on both sides, where f' jumps tau itself is; everywhere else tau is smooth. So the derivative is sampled
+//! between these radii, ever closer to those it is infinite at, and an extremum is where its sign changes: within a
+//! interval a root, between two the radius they meet at. Signs alternate from one to the next, so none is found twice.
+
+mod derivative;
+mod interval;
+mod settled;
+
+use super::profile::StressRadius;
+use super::{Contact, DoubleDouble};
+use derivative::{Derivative, NOISE, Pace};
+use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
+
+/// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
+const SPARSE_ABOVE: usize = 100;
+
+/// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself.
+const RESOLUTION: f64 = 1e-14;
+
+impl Contact {
+    /// The radii of all extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
+    pub(super) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Vec<StressRadius>> {
+        let edge = StressRadius::of_point(self.history.edge());
+        let bends = self.bends();
+        let settled = self.settled();
+        let pieces = self.history.pieces();
+        // A long table has many, which no settled interval needs.
+        let searched = settled.contains(&false);
+        let knots = if searched { self.profile.knots_below(edge.radius) } else { Vec::new() };
+        let singular = self.profile.singular_radii();
+        let pace = Pace::new(&keep_going);
+        let derivative = Derivative::new(self, &pace);
+        let mut search = Search { derivative: &derivative, sign: 0.0, places: Vec::new() };
+        for (index, &bend) in bends.iter().enumerate() {
+            if !pace.goes_on() {
+                return None;
+            }
+            // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
+            let from = if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) };
+            if from.square >= edge.square {
+                // The rest is at a vertical edge.
+                break;
+            }
+            let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
+            let to = StressRadius::of_point(&outer);
+            if settled[index] {
+                search.cross(&from, -bend);
+                continue;
+            }
+            let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
+            let last =
+                if to.square >= edge.square && self.history.edge().level.value() > self.profile.level(edge.radius) {
+                    (EndBehaviour::Logarithm, 0.0)
+                } else {
+                    (EndBehaviour::InverseRoot((beyond.square - outer.square).value()), -bend)
+                };
+            let begins = knots.partition_point(|&knot| knot <= from.radius);
+            let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
+            let sparse = ends - begins > SPARSE_ABOVE;
+            let within = knots[begins..ends].iter().map(|&knot| {
+                let at = StressRadius::new(knot);
+                let rim = singular.contains(&knot);
+                // At the same distance on either side a logarithm has the same value: one sample serves both.
+                let beside = DoubleDouble::square_of(knot) * (1.0 + KNOT_FLOOR);
+                let infinite = if rim {
+                    derivative.at(&at)
+                } else if sparse {
+                    derivative.at(&StressRadius { radius: knot, square: beside })
+                } else {
+                    0.0
+                };
+                if rim && infinite.is_infinite() {
+                    // Where tau is infinite its derivative has one sign on the one side and the other on the other.
+                    (at, (EndBehaviour::Inverse, -infinite), (EndBehaviour::Inverse, infinite))
+                } else {
+                    (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
+                }
+            });
+            let mut start = self.start(index, &from, &knots, &derivative);
+            let mut inner = from;
+            for (outer, end, next) in within.chain([(to, last, last)]) {
+                if !pace.goes_on() {
+                    return None;
+                }
+                search.search_interval(&SmoothInterval { inner, outer, start, end, sparse });
+                (inner, start) = (outer, next);
+            }
+        }
+        if pace.stopped() {
+            return None;
+        }
+        let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
+        search.places.retain(|place| !spike(place) && place.radius > 0.0);
+        Some(search.places)
+    }
+
+    /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
+    fn start(
+        &self,
+        index: usize,
+        from: &StressRadius,
+        knots: &[f64],
+        derivative: &Derivative<'_>,
+    ) -> (EndBehaviour, f64) {
+        let sign = derivative.at(from);
+        let end = if index == 0 {
+            let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
+            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse }
+        } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
+            return (EndBehaviour::Logarithm, 0.0);
+        } else {
+            EndBehaviour::Smooth
+        };
+        (end, sign)
+    }
+
+    /// Change of slope at each kink, from the first beyond the centre to the edge.
+    fn bends(&self) -> Vec<f64> {
+        let slope = |index: usize| self.history.pieces().get(index).map_or(0.0, |piece| piece.line.slope.value());
+        (0..self.history.pieces().len()).map(|index| slope(index + 1) - slope(index)).collect()
+    }
+}
+
+/// The search on its way from the centre outward.
+struct Search<'a> {
+    derivative: &'a Derivative<'a>,
+    /// The sign that the derivative had last, zero before the first.
+    sign: f64,
+    places: Vec<StressRadius>,
+}
+
+impl Search<'_> {
+    fn record(&mut self, at: &StressRadius) {
+        self.places.push(*at);
+    }
+
+    /// Crosses a radius beyond which the derivative has the sign of `value`.
+    fn cross(&mut self, at: &StressRadius, value: f64) {
+        if self.sign * value.signum() < 0.0 {
+            self.record(at);
+        }
+        self.sign = value.signum();
+    }
+
+    fn sample(&self, interval: &SmoothInterval, place: f64) -> Sample {
+        Sample { place, value: self.derivative.at(&interval.at(place)) * interval.weight(place) }
+    }
+
+    /// Goes through an interval from its inner end to its outer.
+    fn search_interval(&mut self, interval: &SmoothInterval) {
+        if interval.half() <= 0.0 {
+            return;
+        }
+        let inward = interval.places(interval.start).into_iter().rev().map(|place| -place);
+        let outward = interval.places(interval.end);
+        let mut samples = vec![Sample { place: -interval.limit(interval.start.0), value: interval.start.1 }];
+        let places: Vec<f64> = inward.chain([0.0]).chain(outward).collect();
+        let radii: Vec<StressRadius> = places.iter().map(|&place| interval.at(place)).collect();
+        let values = self.derivative.at_all(&radii);
+        let sample = |(place, value): (f64, f64)| Sample { place, value: value * interval.weight(place) };
+        samples.extend(places.into_iter().zip(values).map(sample));
+        samples.push(Sample { place: interval.limit(interval.end.0), value: interval.end.1 });
+        samples.retain(|sample| sample.value.abs() > 0.0);
+        let Some(first) = samples.first() else { return };
+        self.cross(&interval.inner, first.value);
+        for (index, pair) in samples.windows(2).enumerate() {
+            let (before, after) = (pair[0], pair[1]);
+            if before.value * after.value < 0.0 {
+                self.find_root(interval, before, after);
+            } else if let Some(&next) = samples.get(index + 2)
+                && after.value * next.value > 0.0
+                && before.place.is_finite()
+                && next.place.is_finite()
+                && after.value.abs() < before.value.abs().min(next.value.abs())
+                && let Some(dip) = self.dip(interval, before, next)
+            {
+                // Two roots between samples of one sign.
+                self.find_root(interval, before, dip);
+                self.find_root(interval, dip, next);
+            }
+        }
+    }
+
+    /// Where the derivative dips through zero between two samples of one sign, if it does.
+    fn dip(&self, interval: &SmoothInterval, mut low: Sample, mut high: Sample) -> Option<Sample> {
+        let sign = low.value.signum();
+        for _ in 0..48 {
+            let third = (high.place - low.place) / 3.0;
+            let (lower, upper) = (self.sample(interval, low.place + third), self.sample(interval, high.place - third));
+            if let Some(&through) = [lower, upper].iter().find(|sample| sample.value * sign < 0.0) {
+                return Some(through);
+            }
+            let [a, b, c, d] = [low, lower, upper, high].map(|sample| sample.value.abs());
+            // A curve that is bent upward stays above the lines drawn on from either side, which meet at this value.
+            let (fall, rise) = (a - b, d - c);
+            let least = if fall + rise > 0.0 { (b * rise + c * fall - fall * rise) / (fall + rise) } else { b.min(c) };
+            if least > 0.0 {
+                return None;
+            }
+            if b < c { high = upper } else { low = lower }
+        }
+        None
+    }
+
+    /// Finds the change of sign between a sample and a place: false position with the weight of an end halved that stays (Illinois),
+    /// and every third step halves the interval, since the derivative can be as steep as an inverse root. There is no value at an end
+    /// that is infinitely far.
+    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample) {
+        let finite = |sample: Sample| if sample.place.is_finite() { sample.value.abs() } else { 0.0 };
+        let (mut low, mut high) = (from.place.max(-MAX_PLACE), to.place.min(MAX_PLACE));
+        let (mut at_low, mut at_high) = (finite(from), finite(to));
+        for step in 1.. {
+            let middle = 0.5 * (low + high);
+            let least = RESOLUTION * (1.0 + middle.abs());
+            if high - low <= 2.0 * least {
+                break;
+            }
+            let known = at_low > 0.0 && at_high > 0.0 && step % 3 != 0;
+            // No step is so short that it could leave the root just beyond its end.
+            let chord = || (low + (high - low) * (at_low / (at_low + at_high))).clamp(low + least, high - least);
+            let place = if known { chord() } else { middle };
+            let value = self.sample(interval, place).value * from.value.signum();
+            if value > 0.0 {
+                (low, at_low, at_high) = (place, value, 0.5 * at_high);
+            } else {
+                (high, at_high, at_low) = (place, -value, 0.5 * at_low);
+            }
+            if value.abs() <= 0.0 {
+                // Beyond this it is lost in round-off.
+                break;
+            }
+        }
+        self.sign = -from.value.signum();
+        // An extremum this near to the centre cannot be distinguished from the centre.
+        if interval.inner.square.value() > 0.0 || low > -MAX_PLACE {
+            self.record(&interval.at(high));
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search.
+//!
+//! With s_i the slope of the piece over the ring i and r in the ring j, whose outer end is c, d tau/d(r^2) is a positive factor times
+//! s_j D - sum over i > j of s_i R_i. D = -dK(r, c)/d(r^2) falls as c grows, and R_i = int dy/(2 v^3) > 0 over the levels of the ring i,
+//! v = sqrt(x^2 - r^2), since d^2 K/(d(r^2) dc) = g'(c)/(2 v^3) > 0. The sign is that of s_j in two cases:
+//!
+//! - The bends s_(i+1) - s_i alternate in sign and do not grow outward, and the kernel up to the edge falls: by parts, the sum is an
+//!   alternating one of the D up to each kink, none of which is below that up to the edge, led by the first.
+//! - The slopes alternate in sign, their size times the depth of the ring does not grow outward beyond the ring j, and the kernel up to
+//!   c falls: v only grows outward, so each R_i outweighs the next, and the first of them has the sign of s_j D.
+//!
+//! Whether a kernel falls is known from [`Profile::least_fall`](super::super::Profile), once for all r of an interval.
+
+use super::super::Contact;
+use super::super::profile::Ring;
+
+/// How much a share may grow outward by the rounding of levels: what the search takes for zero.
+const ROUNDED: f64 = super::NOISE;
+
+/// What is known about the pieces from one of them outward.
+struct Outward {
+    /// The bends alternate and do not grow.
+    bends: bool,
+    /// The slopes alternate, and their shares do not grow beyond this piece.
+    slopes: bool,
+}
+
+impl Contact {
+    /// Whether the derivative has the sign of the piece's slope all over the ring of each piece.
+    pub(super) fn settled(&self) -> Vec<bool> {
+        let pieces = self.history.pieces();
+        let slope = |index: usize| pieces.get(index).map_or(0.0, |piece| piece.line.slope.value());
+        let bend = |index: usize| slope(index + 1) - slope(index);
+        let rings: Vec<Ring> = (0..pieces.len()).map(|index| self.history.ring(index)).collect();
+        let share = |index: usize| slope(index).abs() * rings[index].depth;
+        // At a vertical edge stresses are infinite, whatever lies inside it.
+        let upright = rings.last().is_some_and(|ring| self.profile.edge_depth(ring) > 0.0);
+        let edge = self.history.edge().radius;
+        let mut settled = vec![false; pieces.len()];
+        let mut beyond = Outward { bends: true, slopes: true };
+        for index in (0..pieces.len()).rev() {
+            let last = index + 1 == pieces.len();
+            let from = if index == 0 { 0.0 } else { rings[index].inner.radius };
+            beyond.bends &= if last {
+                // Without a bend at the edge there is no first term to lead.
+                bend(index).abs() > 0.0 && !upright
+            } else {
+                bend(index) * bend(index + 1) < 0.0 && bend(index).abs() >= bend(index + 1).abs()
+            };
+            beyond.slopes &= if last {
+                slope(index).abs() > 0.0
+            } else {
+                let falls = index + 2 >= pieces.len() || share(index + 1) * (1.0 + ROUNDED) >= share(index + 2);
+                slope(index) * slope(index + 1) < 0.0 && falls
+            };
+            let falls_to = |radius: f64| self.profile.least_fall(from, radius) > 0.0;
+            settled[index] = beyond.bends && falls_to(edge)
+                || beyond.slopes && !(last && upright) && falls_to(rings[index].outer.radius);
+        }
+        settled
+    }
+}

@@ -1,0 +1,346 @@
+//! The kernels of adjoining rings, weighted and summed, at many radii, where g'/x is a power series between any two of its kinks.
+//!
+//! With v = sqrt(x^2 - r^2) a kernel is int q dv, q = g'/x. The rings are cut at the kinks b of g, and so that no piece of x^2 is wider than
+//! half its distance from the singularity beneath it. Over a piece X - h..X + h let q = sum of c_k Y^k, x^2 = X + h Y; it is of one of
+//! three forms for a radius:
+//!
+//! - Near: with s = (r^2 - X)/h and I_k = int Y^k dv it holds that (2k + 1) I_k = [Y^k v] + 2 k s I_(k-1), so that the antiderivative is
+//!   v A(Y), and by the even and the odd part of A the kernel is (v_1 - v_0) E + (v_1 + v_0) O: what a thin ring has is not lost.
+//!   |c_k| falls as the k-th power of h over the distance of X from the singularity, of which |s| is no more than the inverse: no term
+//!   is large.
+//! - Far, where D = X - r^2 >= 5 h: with z = h/D it is sum of binom(-1/2, k) m_k z^k over sqrt D, m_k = int Y^k dg. What lies beyond a
+//!   singularity is far from all that is inside it.
+//! - At a kink, which q begins at as a power of t = sqrt(x^2 - b^2): with gamma = t q = sum of g_k t^k and kappa = r^2 - b^2 it is
+//!   int gamma dt/sqrt(t^2 - kappa), by k J_k = [t^(k-1) v] + (k - 1) kappa J_(k-2); J_0 is a logarithm. t ends at a quarter of its
+//!   distance from the next singularity there, and what is inside that is far.
+//!
+//! All series end where their terms no longer count, so that the error is that of rounding.
+
+mod kernels;
+
+#[cfg(test)]
+use super::call_count;
+use super::power_series::{KINK_TERMS, KinkSeries, Place, TERMS};
+use super::shape::Shape;
+use super::{DoubleDouble, Profile, Ring, Span, StressRadius};
+use kernels::{far_kernels, kink_kernels, near_kernels};
+
+/// Radii that are summed for side by side.
+const LANES: usize = 8;
+/// From this h/D on a piece is near.
+const FAR: f64 = 0.2;
+/// A piece is no wider than this share of its distance from a singularity.
+const WIDEST: f64 = 0.5;
+/// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
+const KINK: f64 = 1.0 / 16.0;
+/// Terms whose size is below this share of the largest do not count.
+const NEGLIGIBLE: f64 = 1e-18;
+/// The smallest radius, over that of the edge, that pieces reach down to at a tip where q is not smooth.
+const INNERMOST: f64 = 1e-3;
+/// The pieces reach down to this share of the smallest radius, whose square has digits that it has lost itself.
+const CLEAR: f64 = 0.9;
+/// With more pieces than this within a ring, others are quicker.
+const MOST_CUTS: f64 = 48.0;
+/// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
+const THIN: f64 = 1e-3;
+
+/// The pieces of a profile's rings, from the edge inward.
+pub(crate) struct SmoothPieces<'a> {
+    profile: &'a Profile,
+    pieces: Vec<Piece>,
+    /// The radius, m, that the pieces reach down to, and what is left of a ring inside it, with its weight.
+    innermost: f64,
+    tip: Option<(Span, f64)>,
+    /// 1/a^2, m^-2: lengths are in units of the edge.
+    unit: f64,
+}
+
+struct Piece {
+    /// The squares of the radii of its ends, m^2, in two parts each.
+    inner: (f64, f64),
+    outer: (f64, f64),
+    /// Their difference, in units of the edge.
+    gap: f64,
+    /// Whether that has digits that the squares have lost.
+    thin: bool,
+    weight: f64,
+    near: Near,
+    /// The coefficients of z^k for far radii.
+    far: Vec<f64>,
+}
+
+/// What serves near radii.
+enum Near {
+    /// c_k.
+    Smooth(Vec<f64>),
+    /// g_k times the k-th power of the t where the piece ends, for even and for odd k.
+    Kink { even: Vec<f64>, odd: Vec<f64> },
+}
+
+/// Weighted sums of kernels, of their derivatives, and of the sizes of these.
+struct Sums<const N: usize> {
+    kernels: [f64; N],
+    slopes: [f64; N],
+    sizes: [f64; N],
+}
+
+impl<'a> SmoothPieces<'a> {
+    /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such series, or
+    /// levels at a vertical edge.
+    pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
+        let edge = rings.last()?.0.outer.radius;
+        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
+        let mut made = SmoothPieces { profile, pieces: Vec::new(), innermost, tip: None, unit: 1.0 / (edge * edge) };
+        for (ring, weight) in rings.iter().rev() {
+            if profile.edge_depth(ring) > 0.0 {
+                return None;
+            }
+            made.cut(ring, *weight)?;
+        }
+        Some(made)
+    }
+
+    /// Adds the pieces of a ring, from its outer end inward.
+    fn cut(&mut self, ring: &Ring, weight: f64) -> Option<()> {
+        let profile = self.profile;
+        let plain = (ring.outer.square - ring.inner.square).value();
+        let thin = plain <= THIN * ring.outer.square.value();
+        let (mut outer, mut radius) = (ring.outer.square, ring.outer.radius);
+        let floor = larger(ring.inner.square, DoubleDouble::square_of(self.innermost));
+        while outer > floor {
+            let kink = profile.kink_below(radius);
+            let base = DoubleDouble::square_of(kink);
+            let low = larger(floor, base);
+            let gap = if thin && low == ring.inner.square && outer == ring.outer.square {
+                profile.gap_of(ring)
+            } else {
+                (outer - low).value()
+            };
+            let above = (low - base).value();
+            if kink > 0.0 && above <= 0.0 {
+                let next = DoubleDouble::square_of(profile.kink_below(kink));
+                let reach = KINK * (base - next).value();
+                let top = if gap <= reach { gap } else { reach };
+                let from = if gap <= reach { outer } else { base + DoubleDouble::from(reach) };
+                if gap > reach {
+                    self.smooth((from, outer), (gap - reach, false), (reach, weight))?;
+                }
+                let KinkSeries { even, odd } = profile.kink_series(kink, top.sqrt())?;
+                let (even, odd) = (counted(&even, 1.0), counted(&odd, 1.0));
+                let far = kink_moments(&even, &odd, (top * self.unit).sqrt());
+                self.push((base, from), (top, thin && gap <= reach), weight, (Near::Kink { even, odd }, far));
+            } else {
+                let above = if kink > 0.0 || !profile.smooth_tip() { above } else { f64::INFINITY };
+                self.smooth((low, outer), (gap, thin), (above, weight))?;
+            }
+            (outer, radius) = (low, kink);
+        }
+        if outer > ring.inner.square {
+            let left = Span::of(ring, 0.0, 0.0);
+            self.tip = left.below(outer, outer.value().sqrt()).map(|span| (span, weight));
+        }
+        Some(())
+    }
+
+    /// Adds pieces between two squares that differ by `gap`, and of which the inner is `above` a singularity.
+    fn smooth(
+        &mut self,
+        (low, high): (DoubleDouble, DoubleDouble),
+        (gap, thin): (f64, bool),
+        (above, weight): (f64, f64),
+    ) -> Option<()> {
+        let growth = gap / above;
+        let cuts = (growth.ln_1p() / WIDEST.ln_1p()).ceil().max(1.0);
+        if cuts.is_nan() || cuts > MOST_CUTS {
+            return None;
+        }
+        let step = growth.ln_1p() / cuts;
+        let mut outer = high;
+        for index in (0..cuts as u32).rev() {
+            let last = index == 0;
+            let inner = if last { low } else { low + DoubleDouble::from(above * (step * f64::from(index)).exp_m1()) };
+            let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
+            let half = 0.5 * gap;
+            let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
+            // Each term is smaller than the one before by half over half + below.
+            let terms = (-NEGLIGIBLE.ln() / (below / half).ln_1p()).ceil() + 1.0;
+            // Without a singularity q is a polynomial, whose terms end by themselves.
+            let terms = if below < f64::INFINITY { TERMS.min(terms as usize) } else { TERMS };
+            let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
+            let near = counted(&self.profile.slope_over_radius_series(&place)?.coefficients, self.unit.sqrt().recip());
+            let far = moments(&near, half * self.unit);
+            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (Near::Smooth(near), far));
+            outer = inner;
+        }
+        Some(())
+    }
+
+    fn push(
+        &mut self,
+        (inner, outer): (DoubleDouble, DoubleDouble),
+        (gap, thin): (f64, bool),
+        weight: f64,
+        (near, far): (Near, Vec<f64>),
+    ) {
+        let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);
+        self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
+    }
+
+    /// The sums at each radius.
+    pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
+        let mut order: Vec<usize> = (0..radii.len()).collect();
+        order.sort_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
+        let mut sums = vec![0.0; radii.len()];
+        for chunk in order.chunks(LANES) {
+            let found = self.lanes::<LANES, false>(&filled(chunk, |&index| radii[index].square));
+            for (&index, kernel) in chunk.iter().zip(found.kernels) {
+                sums[index] =
+                    kernel + self.in_tip(&radii[index], |span| Shape::kernel(self.profile, &radii[index], span));
+            }
+        }
+        sums
+    }
+
+    /// A share of what lies inside all pieces, for radii there.
+    fn in_tip(&self, at: &StressRadius, share: impl Fn(&Span) -> f64) -> f64 {
+        let tip = self.tip.as_ref().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
+        tip.map_or(0.0, |(span, weight)| weight * share(span))
+    }
+
+    /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told of the pieces that follow; once it is false, derivatives are zero.
+    pub(super) fn slopes(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
+        let mut found = Vec::with_capacity(radii.len());
+        for chunk in radii.chunks(LANES) {
+            if !goes_on(self.pieces.len()) {
+                found.resize(found.len() + chunk.len(), (0.0, 0.0));
+            } else if let [at] = chunk {
+                found.push(self.with_tip(at, 0, &self.lanes::<1, true>(&[at.square])));
+            } else {
+                let sums = self.lanes::<LANES, true>(&filled(chunk, |at| at.square));
+                found.extend(chunk.iter().enumerate().map(|(lane, at)| self.with_tip(at, lane, &sums)));
+            }
+        }
+        found
+    }
+
+    /// The derivative in a lane and the sum of its sizes, 1/m^2, with those of the tip.
+    fn with_tip<const N: usize>(&self, at: &StressRadius, lane: usize, sums: &Sums<N>) -> (f64, f64) {
+        let tip = self.in_tip(at, |span| Shape::kernel_slope(self.profile, at, span));
+        (sums.slopes[lane] * self.unit + tip, sums.sizes[lane] * self.unit + tip.abs())
+    }
+
+    fn lanes<const N: usize, const SLOPES: bool>(&self, squares: &[DoubleDouble; N]) -> Sums<N> {
+        let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
+        let least = square.iter().copied().fold(f64::INFINITY, f64::min);
+        // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
+        let excess = |end: (f64, f64)| -> [f64; N] {
+            std::array::from_fn(|lane| ((end.0 - square[lane]) + (end.1 - rest[lane])) * self.unit)
+        };
+        let mut sums = Sums { kernels: [0.0; N], slopes: [0.0; N], sizes: [0.0; N] };
+        for piece in &self.pieces {
+            if piece.outer.0 < least {
+                break;
+            }
+            if piece.weight.abs() <= 0.0 {
+                continue;
+            }
+            #[cfg(test)]
+            call_count::add(|calls| if SLOPES { &mut calls.kernel_slope } else { &mut calls.kernel });
+            let below = excess(piece.inner);
+            let half = 0.5 * piece.gap;
+            let shares: [f64; N] = below.map(|below| half / (below + half));
+            let distant = shares.map(|z| z > 0.0 && z <= FAR);
+            let far = || far_kernels::<N, SLOPES>(&piece.far, half, &shares);
+            let (kernel, slope) = if distant.iter().all(|&distant| distant) {
+                far()
+            } else {
+                let above = piece.above(&below, excess);
+                let near = match &piece.near {
+                    Near::Smooth(series) => near_kernels::<N, SLOPES>(series, piece.gap, &below, &above),
+                    Near::Kink { even, odd } => kink_kernels::<N, SLOPES>(even, odd, piece.gap, &below, &above),
+                };
+                if distant.iter().any(|&distant| distant) {
+                    let far = far();
+                    let pick = |near: [f64; N], far: [f64; N]| {
+                        std::array::from_fn(|lane| if distant[lane] { far[lane] } else { near[lane] })
+                    };
+                    (pick(near.0, far.0), pick(near.1, far.1))
+                } else {
+                    near
+                }
+            };
+            for lane in 0..N {
+                sums.kernels[lane] += piece.weight * kernel[lane];
+                if SLOPES {
+                    let slope = piece.weight * slope[lane];
+                    sums.slopes[lane] += slope;
+                    sums.sizes[lane] += slope.abs();
+                }
+            }
+        }
+        sums
+    }
+}
+
+impl Piece {
+    /// x^2 - r^2 at the outer end, zero where that is inside r.
+    fn above<const N: usize>(&self, below: &[f64; N], excess: impl Fn((f64, f64)) -> [f64; N]) -> [f64; N] {
+        let plain = excess(self.outer);
+        std::array::from_fn(|lane| {
+            let above = if self.thin && below[lane] > -0.5 * self.gap { below[lane] + self.gap } else { plain[lane] };
+            if above > 0.0 { above } else { 0.0 }
+        })
+    }
+}
+
+/// The squares of a chunk, of which lanes left over repeat the first.
+fn filled<T>(chunk: &[T], square: impl Fn(&T) -> DoubleDouble) -> [DoubleDouble; LANES] {
+    std::array::from_fn(|lane| square(chunk.get(lane).unwrap_or(&chunk[0])))
+}
+
+fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
+    if a > b { a } else { b }
+}
+
+/// The terms of a series that count, each times `unit`.
+fn counted(series: &[f64], unit: f64) -> Vec<f64> {
+    let size = series.iter().fold(0.0f64, |size, c| size.max(c.abs()));
+    let last = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
+    series[..last].iter().map(|c| unit * c).collect()
+}
+
+/// binom(-1/2, k) times what `moment` gives for k.
+fn binomials(moment: impl FnMut(usize) -> f64) -> Vec<f64> {
+    let shares = (0..TERMS).scan(1.0, |binomial, k| {
+        let next = *binomial * -(0.5 + k as f64) / (k + 1) as f64;
+        Some(std::mem::replace(binomial, next))
+    });
+    shares.zip((0..TERMS).map(moment)).map(|(binomial, moment)| binomial * moment).collect()
+}
+
+/// The coefficients of z^k of a smooth piece: (h/2) binom(-1/2, k) m_k.
+fn moments(series: &[f64], half: f64) -> Vec<f64> {
+    binomials(|k| {
+        let even = series.iter().enumerate().skip(k % 2).step_by(2);
+        half * even.map(|(j, c)| c / (j + k + 1) as f64).sum::<f64>()
+    })
+}
+
+/// Those of a piece at a kink that ends at the t `top`: in units of that, Y = 2 t^2 - 1.
+fn kink_moments(even: &[f64], odd: &[f64], top: f64) -> Vec<f64> {
+    let mut product = vec![0.0; 2 * (KINK_TERMS + TERMS)];
+    for (terms, first) in [(even, 0), (odd, 1)] {
+        product[first..].iter_mut().step_by(2).zip(terms).for_each(|(power, c)| *power = *c);
+    }
+    binomials(|k| {
+        if k > 0 {
+            for power in (0..product.len()).rev() {
+                product[power] = 2.0 * power.checked_sub(2).map_or(0.0, |below| product[below]) - product[power];
+            }
+        }
+        top * product.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum::<f64>()
+    })
+}
+
+#[cfg(test)]
+mod tests;
