@@ -49,10 +49,10 @@ const FRICTION_POINT_BYTES: usize = 256;
 const MOVE_COST: u64 = 1_000;
 /// One curved move, which is followed in many small steps.
 const CURVED_MOVE_COST: u64 = 3_000_000;
-/// The contribution of one piece of the slip history to the stress at one radius.
-const PIECE_COST: u64 = 15;
-/// The same on a sphere, where many radii are computed by SIMD.
-const SPHERE_PIECE_COST: u64 = 2;
+/// The contribution of one piece of the slip history of a sphere to the stress at one of many radii.
+const PIECE_COST: u64 = 2;
+/// The contribution of one piece to the search for extrema at another: the sums of all shapes cost much the same, once made.
+const PAIR_COST: u64 = 5;
 /// One radius, apart from the slip history, and its numbers written as JSON.
 const RADIUS_COST: u64 = 200;
 /// The search for extrema on a shape with knots, at the least.
@@ -152,23 +152,25 @@ impl Work {
     /// The cost on a shape.
     #[must_use]
     pub fn cost(&self, profile: &Profile) -> Nanoseconds {
-        match profile {
-            Profile::Sphere(_) => self.with_piece_cost(SPHERE_PIECE_COST),
-            _ => on_profile(profile, self.with_piece_cost(PIECE_COST), self.residual),
-        }
+        on_profile(profile, self.followed(), self.residual).saturating_add(self.searched())
     }
 
-    /// The cost if a piece costs `piece` at each radius.
-    fn with_piece_cost(&self, piece: Nanoseconds) -> Nanoseconds {
+    /// The cost of moves and stresses on a sphere.
+    fn followed(&self) -> Nanoseconds {
         let (moves, radii) = (self.moves as u64, self.radii as u64);
-        let pieces = (self.depth + self.moves) as u64 + 1;
-        // The search for extrema evaluates all pieces at each piece.
-        let searched = if self.residual { pieces.saturating_mul(4) } else { 0 };
         (moves * MOVE_COST)
             .saturating_add(self.curved as u64 * CURVED_MOVE_COST)
             .saturating_add(radii * RADIUS_COST)
-            .saturating_add(radii.saturating_mul(pieces * piece))
-            .saturating_add(searched.saturating_mul(pieces * PIECE_COST))
+            .saturating_add(radii.saturating_mul(self.pieces() * PIECE_COST))
+    }
+
+    /// The cost of the search for extrema, which evaluates all pieces at each piece.
+    fn searched(&self) -> Nanoseconds {
+        if self.residual { self.pieces().saturating_mul(self.pieces()).saturating_mul(PAIR_COST) } else { 0 }
+    }
+
+    fn pieces(&self) -> u64 {
+        (self.depth + self.moves) as u64 + 1
     }
 }
 
@@ -207,13 +209,14 @@ fn on_profile(profile: &Profile, sphere: Nanoseconds, residual: bool) -> Nanosec
     sphere.saturating_mul(relative_cost(profile)).saturating_add(searched)
 }
 
-/// The cost of a profile relative to a sphere: by closed forms, by quadrature, or by the sum of its parts.
+/// The cost of a profile relative to a sphere: `cargo bench -p stickslip-mechanics --bench shapes`.
 fn relative_cost(profile: &Profile) -> u64 {
     match profile {
         Profile::Sphere(_) | Profile::Ellipsoid(_) => 1,
-        Profile::Asperities(_) | Profile::Tabulated(_) | Profile::PowerLaw(_) | Profile::ExactSphere(_) => 30,
+        Profile::ExactSphere(_) | Profile::Cone(_) => 3,
+        Profile::Asperities(_) | Profile::Tabulated(_) => 40,
         Profile::Sum(sum) => sum.parts().iter().map(relative_cost).sum(),
-        _ => 5,
+        _ => 8,
     }
 }
 
@@ -288,7 +291,8 @@ fn reversals(task: &ProtocolTask, sought: usize) -> usize {
 pub fn of_protocol(profile: &Profile, task: &ProtocolTask, depth: usize) -> Nanoseconds {
     let reversals = reversals(task, ASSUMED_REVERSALS);
     let tried = task.robustness.map_or(0, |robustness| robustness.samples as u64);
-    let once = Work { moves: reversals + 1, residual: true, ..Work::default() }.with_piece_cost(SPHERE_PIECE_COST);
+    let once = Work { moves: reversals + 1, residual: true, ..Work::default() };
+    let once = once.followed().saturating_add(once.searched());
     let pairs = (reversals * (reversals + depth.min(ASSUMED_REVERSALS))) as u64;
     on_profile(profile, PROTOCOL_COST + pairs * KINK_PAIR_COST + 3 * tried.saturating_mul(once), true)
 }

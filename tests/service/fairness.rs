@@ -201,13 +201,13 @@ async fn contacts_beyond_the_quota_are_refused_by_its_name_until_some_are_delete
 #[tokio::test]
 async fn a_search_that_cannot_end_in_time_is_refused_at_once_with_what_would_fit() {
     let service = Service::start(&["--deadline", "1s", "--log", "warn"]);
-    let refused = service.ask(HONEST, &post("/simulate", &search(9_000).to_string())).await.unwrap();
+    let refused = service.ask(HONEST, &post("/simulate", &search(99_999).to_string())).await.unwrap();
     assert_eq!(refused.statuses, [422], "{}", refused.text);
     for part in ["too_much_work", "\"pointer\":\"/residual\"", "is estimated at", "pieces fit"] {
         assert!(refused.text.contains(part), "{part}: {}", refused.text);
     }
     let axes = json!([{"pointer": "/contact/friction", "values": [0.1, 0.2]}]);
-    let job = json!({"base": search(9_000), "axes": axes, "outputs": ["/residual/max"], "job": true});
+    let job = json!({"base": search(99_999), "axes": axes, "outputs": ["/residual/max"], "job": true});
     let refused = service.ask(HONEST, &post("/sweep", &job.to_string())).await.unwrap();
     assert_eq!(refused.statuses, [422], "{}", refused.text);
     assert!(refused.text.contains("a point is estimated at"), "{}", refused.text);
