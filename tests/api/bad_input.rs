@@ -2,9 +2,15 @@
 
 use crate::common;
 
+use std::sync::Arc;
+use std::time::Duration;
+
 use common::{Server, ball, problem};
 use reqwest::Method;
 use serde_json::{Value, json};
+use stickslip::admission::{Capacity, Pool};
+use stickslip::sessions::{CAPACITY, Sessions};
+use stickslip::store::MemoryStore;
 
 /// A sound simulation with the value at a pointer replaced; `null` removes it.
 fn with(pointer: &str, value: Value) -> Value {
@@ -136,6 +142,9 @@ async fn work_is_bounded() {
     body["steps"] = json!("last");
     assert_eq!(server.post("/simulate", &body).await.status(), 200);
     body["residual"] = json!(true);
+    let pool = Pool::new(Capacity { deadline: Duration::from_secs(1), ..Capacity::default() });
+    let sessions = Sessions::new(Arc::new(MemoryStore::new()), pool.clone(), CAPACITY);
+    let server = Server::over(sessions, pool).await;
     let refused = problem(server.post("/simulate", &body).await).await;
     assert_eq!((refused.status, refused.code.as_str()), (422, "too_much_work"));
 }

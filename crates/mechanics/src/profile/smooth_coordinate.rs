@@ -122,10 +122,19 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
         return high - low;
     }
     let top = high.sqrt();
-    let mut dt = (depth / family.slope_at(top)).min(0.5 * top);
+    let steep = family.slope_at(top);
+    // Where g is flat by rounding, its levels do not tell radii apart.
+    if steep <= 0.0 {
+        return high - low;
+    }
+    let mut dt = (depth / steep).min(0.5 * top);
     for _ in 0..8 {
         let t = top - dt;
-        let step = (depth - family.rise_at(t, top, dt)) / family.slope_at(t);
+        let steep = family.slope_at(t);
+        if steep <= 0.0 {
+            return high - low;
+        }
+        let step = (depth - family.rise_at(t, top, dt)) / steep;
         dt = (dt + step).clamp(0.5 * dt, top);
         if step.abs() <= 1e-9 * dt {
             break;
