@@ -142,11 +142,18 @@ impl Browser {
         }
     }
 
-    /// Writes a text into an empty field.
+    /// Writes a text in place of what a field has; again if the page has drawn the field anew meanwhile, with a state that came.
     pub async fn write(&self, css: &str, text: &str) {
-        let field = self.find(css).await;
-        field.clear().await.unwrap();
-        field.send_keys(text).await.unwrap();
+        const TRIES: usize = 5;
+        for _ in 0..TRIES {
+            let field = self.find(css).await;
+            field.clear().await.unwrap();
+            field.send_keys(text).await.unwrap();
+            // The field may be another element by now.
+            if self.value(&format!("document.querySelector({css:?})?.value")).await == json!(text) {
+                break;
+            }
+        }
     }
 
     /// Where the parts of an element across its width are, at half its height, for the mouse; the element is brought into view.
