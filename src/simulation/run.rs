@@ -230,9 +230,10 @@ pub fn follow<S: Solver>(
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
     for (index, step) in moves(plan, solver.exact(), protocol)?.enumerate() {
-        stop.check()?;
+        let ended = |interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None));
+        stop.check().map_err(ended)?;
         solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| match stop.check() {
-            Err(interrupted) => Failure::interrupted(interrupted, &plan.place_of(index, None)),
+            Err(interrupted) => ended(interrupted),
             Ok(()) => Failure::Refused { pointer: place(plan, index, Some(&step), &error), error },
         })?;
         let depth = solver.depth();
