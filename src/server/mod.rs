@@ -33,9 +33,9 @@ const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
 /// The least time between two log lines about refused connections.
 const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then `end_streams` is called, and other
-/// requests may be done within the time that the limits give; what is left then is refused. Connections that are still open
-/// [`GRACE`] later are closed.
+/// Serves on `listener`, by TLS if it is given, the connections that `limiter` admits, until `stop` is done. Then `end_streams` is
+/// called, and other requests may be done within the time that the limits give; what is left then is refused. Connections that are
+/// still open [`GRACE`] later are closed.
 ///
 /// # Errors
 /// None at present: a failure to accept a connection is waited out.

@@ -11,7 +11,7 @@ use crate::admission::{Reservation, Stop};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
 use crate::simulation::{Timer, accuracy, equal_peaks, excess_error, follow, new_warnings, stresses};
-use crate::store::{Measured, Receipt, Record, Reply, RequestKey, StoreError, Usage};
+use crate::store::{Measured, Record, Reply, RequestKey, StoreError, Usage};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, Steps, limits};
 
@@ -55,7 +55,7 @@ impl Sessions {
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
         let move_bytes = self.common.store.move_bytes();
-        let mut room = self.room(Usage { contacts: 0, bytes: advance.plan.length() as u64 * move_bytes }).await?;
+        let mut room = self.room(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
         // A cached state may be behind the store. A refusal counts only once the state has caught up.
         let mut caught_up = guard.live.is_none();
         let mut found = 0;
@@ -90,9 +90,8 @@ impl Sessions {
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
             let moves = records.len() as u64;
             let receipt = request.receipt(&reply);
-            let bytes = moves * move_bytes + receipt.as_ref().map_or(0, Receipt::bytes);
-            let added = Usage { contacts: 0, bytes };
-            if bytes > room.bytes() {
+            let added = Usage::of(0, moves * move_bytes, receipt.as_ref());
+            if added.bytes > room.bytes() {
                 drop(room);
                 room = self.room(added).await?;
             }

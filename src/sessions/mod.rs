@@ -42,7 +42,7 @@ use uuid::Uuid;
 use crate::admission::Pool;
 use crate::otlp;
 use crate::store::{
-    CONTACT_BYTES, IdempotentRequest, Listeners, Receipt, Reply, RequestKey, Session, Store, StoreError, Tenant, Usage,
+    CONTACT_BYTES, IdempotentRequest, Listeners, Reply, RequestKey, Session, Store, StoreError, Tenant, Usage,
 };
 use stickslip_wire::session::Creation;
 use stickslip_wire::{ForkRequest, SessionReply};
@@ -161,7 +161,7 @@ impl Sessions {
         let live = LoadedSession::start(session, creation.setup)?;
         let reply = live.created_reply()?;
         let receipt = request.receipt(&reply);
-        let added = Usage { contacts: 1, bytes: live.stored_bytes() + receipt.as_ref().map_or(0, Receipt::bytes) };
+        let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
         let room = self.room(added).await?;
         // A request that finds the new session in the store waits until it is cached.
         let mut guard = self.common.cache.lock(&self.tenant, live.session.id).await;
@@ -184,7 +184,7 @@ impl Sessions {
             return Ok(reply);
         }
         // A tenant that has no room for another one is refused before its past is read.
-        drop(self.room(Usage { contacts: 1, bytes: CONTACT_BYTES }).await?);
+        drop(self.room(Usage::of(1, CONTACT_BYTES, None)).await?);
         let mut guard = self.lock(id).await?;
         let (mut copy, _held) = self.after(&mut guard, wanted.sequence).await?;
         let now = Timestamp::now();
@@ -199,8 +199,7 @@ impl Sessions {
         let receipt = request.receipt(&reply);
         let extent = self.common.store.extent(id).await.map_err(|error| self.store_failure(&mut guard, error))?;
         let moves = copy.session.sequence * self.common.store.move_bytes();
-        let bytes = copy.stored_bytes() + moves + extent.snapshot + receipt.as_ref().map_or(0, Receipt::bytes);
-        let added = Usage { contacts: 1, bytes };
+        let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
         let room = self.room(added).await?;
         let mut new = self.common.cache.lock(&self.tenant, copy.session.id).await;
         // The original may have moved on meanwhile in another process: its past stays what it was.
@@ -240,7 +239,7 @@ impl Sessions {
         let renamed = SessionReply { label: label.clone(), ..now };
         let reply = Reply { created: None, sequence: renamed.sequence, body: written(&renamed)? };
         let receipt = request.receipt(&reply);
-        let added = Usage { contacts: 0, bytes: receipt.as_ref().map_or(0, Receipt::bytes) };
+        let added = Usage::of(0, 0, receipt.as_ref());
         let room = self.room(added).await?;
         let stored = self.common.store.rename(id, label, receipt);
         match stored.instrument(otlp::part!("store")).await {
@@ -270,7 +269,7 @@ impl Sessions {
                 (Ok(()), _) => {
                     guard.live = None;
                     let bytes = CONTACT_BYTES + at * self.common.store.move_bytes();
-                    self.common.accounts.give_back(&self.tenant, Usage { contacts: 1, bytes });
+                    self.common.accounts.give_back(&self.tenant, Usage::of(1, bytes, None));
                     return Ok(());
                 }
                 (Err(StoreError::Stale { found }), Some(expected)) => {

@@ -211,6 +211,14 @@ pub struct Usage {
     pub bytes: u64,
 }
 
+impl Usage {
+    /// What a change adds: contacts, bytes, and those of the reply that is kept of it.
+    #[must_use]
+    pub fn of(contacts: u64, bytes: u64, receipt: Option<&Receipt>) -> Usage {
+        Usage { contacts, bytes: bytes + receipt.map_or(0, Receipt::bytes) }
+    }
+}
+
 /// Bytes that a contact takes besides its definition, its moves and its snapshot, roughly.
 pub const CONTACT_BYTES: u64 = 512;
 /// Bytes that a reply kept for retries takes besides its body and its key, roughly.

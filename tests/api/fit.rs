@@ -3,7 +3,7 @@
 
 use crate::common;
 
-use common::{Server, ball, good, number, problem, run};
+use common::{Server, ball, good, number, problem, run, with};
 use serde_json::{Value, json};
 
 /// Displacement and force of the ball, m and N, by `/simulate`, from its first move through two cycles; the amplitude is in units
@@ -46,16 +46,6 @@ fn body([displacement, force]: &[Vec<f64>; 2]) -> Value {
         "free": ["friction", "g_star"],
         "known": {"machine_compliance": {"value": 0.0}},
     })
-}
-
-fn with(mut body: Value, pointer: &str, value: Value) -> Value {
-    let (parent, name) = pointer.rsplit_once('/').unwrap();
-    let place = body.pointer_mut(parent).unwrap();
-    match name.parse::<usize>() {
-        Ok(index) => place[index] = value,
-        Err(_) => place[name] = value,
-    }
-    body
 }
 
 fn codes(reply: &Value) -> Vec<&str> {

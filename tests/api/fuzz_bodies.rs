@@ -1,5 +1,5 @@
-//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting` and `POST /fit`: each is answered with a reply that obeys the laws, or refused with the place of the
-//! fault. None panics.
+//! Random bodies of `POST /simulate`, `POST /cycle`, `POST /fretting` and `POST /fit`: each is answered with a reply that obeys the
+//! laws, or refused with the place of the fault. None panics.
 //!
 //! The number of cases is fixed, and case n is the same on every run and every machine. `STICKSLIP_FUZZ_CASES` sets
 //! another number of each kind, `STICKSLIP_FUZZ_SEED` for other cases. `fuzz/` runs the same checks under a coverage-guided

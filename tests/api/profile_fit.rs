@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use common::{Server, ball, good, number, problem};
+use common::{Server, ball, good, number, problem, with};
 use serde_json::{Value, json};
 
 /// A line over a ball of 10 mm, in micrometres and nanometres, upside down, with a little noise that is the same every time.
@@ -11,16 +11,6 @@ fn line() -> Value {
     let noise = |index: usize| ((index * 7919) % 101) as f64 / 50.0 - 1.0;
     let z: Vec<f64> = x.iter().enumerate().map(|(index, x)| noise(index) - (x - 7.0).powi(2) / 20.0).collect();
     json!({"scan": {"line": {"x": x, "z": z}}, "units": {"lateral": "um", "height": "nm"}})
-}
-
-fn with(mut body: Value, pointer: &str, value: Value) -> Value {
-    let (parent, name) = pointer.rsplit_once('/').unwrap();
-    let place = body.pointer_mut(parent).unwrap();
-    match name.parse::<usize>() {
-        Ok(index) => place[index] = value,
-        Err(_) => place[name] = value,
-    }
-    body
 }
 
 fn loaded() -> Value {

@@ -191,6 +191,17 @@ pub fn of(contact: &Value, rest: &Value) -> Value {
     body
 }
 
+/// A body with the value at a pointer set.
+pub fn with(mut body: Value, pointer: &str, value: Value) -> Value {
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    let place = body.pointer_mut(parent).unwrap();
+    match name.parse::<usize>() {
+        Ok(index) => place[index] = value,
+        Err(_) => place[name] = value,
+    }
+    body
+}
+
 /// The document of a reply that is no refusal.
 pub async fn good(response: Response) -> Value {
     let status = response.status();

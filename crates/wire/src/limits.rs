@@ -377,8 +377,13 @@ pub fn all() -> Vec<(&'static str, &'static str, Value)> {
         { $($document:ty),* } => { [$(of::<$document>()),*].concat() };
     }
     of_all! {
-        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, CentrePlace, ContactDefinition, CreateRequest, CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody,
-        EqualPeaks, FallingAmplitude, FatemiSocie, Findley, FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, KnownValue, LineScan, LoadSpan, Machine, MapScan, Material, MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation, Observation, ObservationsRequest, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart, RelaxRequest, RenameRequest,
-        Robustness, ScanLoad, SimulateRequest, Smoothing, Span, Springs, StrainBased, StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion, SweepRequest, Weighted, WorkDensity
+        AccuracyRequest, Axis, BestLoadStudy, Bulk, BulkCycle, CentrePlace, ContactDefinition, CreateRequest,
+        CycleDrive, CycleRequest, CyclicPath, Effective, ElasticBody, EqualPeaks, FallingAmplitude, FatemiSocie,
+        Findley, FitNoise, FitRequest, ForkRequest, FrequencyResponse, FrettingRequest, KnownValue, LineScan,
+        LoadSpan, Machine, MapScan, Material, MeasuredLoop, Move, MoveRequest, NamedOutput, NormalOscillation,
+        Observation, ObservationsRequest, Path, PathRequest, PointScan, Preload, ProtocolRequest, ProtocolStart,
+        RelaxRequest, RenameRequest, Robustness, ScanLoad, SimulateRequest, Smoothing, Span, Springs, StrainBased,
+        StressRequest, SubsurfaceLine, SubsurfacePlane, SubsurfaceRequest, SubsurfaceSurface, SurfaceCriterion,
+        SweepRequest, Weighted, WorkDensity
     }
 }

@@ -207,7 +207,8 @@ impl<'a> SmoothPieces<'a> {
         tip.map_or(0.0, |(span, weight)| weight * share(span))
     }
 
-    /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told of the pieces that follow; once it is false, derivatives are zero.
+    /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told
+    /// of the pieces that follow; once it is false, derivatives are zero.
     pub(super) fn slopes(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         let mut found = Vec::with_capacity(radii.len());
         for chunk in radii.chunks(LANES) {
