@@ -18,6 +18,9 @@ use super::{
 };
 use crate::admission::{LONGEST_WORK, Stop};
 
+/// Why the solver is the one that the request names.
+const AS_ASKED: &str = "as asked for";
+
 /// Measures the time spent computing.
 #[derive(Clone, Copy, Debug)]
 pub struct Timer(Instant);
@@ -36,22 +39,29 @@ impl Timer {
 /// [`Failure`] if the mechanics has no answer to it, or the client hung up.
 pub fn simulate(simulation: &Simulation, stop: &Stop) -> Result<SimulateReply, Failure> {
     let timer = Timer::start();
-    match simulation.solver {
-        None => {
-            let reason = match simulation.plan.curved() {
-                0 => "every move of this path has an exact solution, which is also the cheapest",
-                _ => "only this solver follows moves straight in a force under changing load, to the tolerance",
-            };
-            run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, reason, stop)
-        }
-        Some(wire::Solver::Exact) => {
-            run(contact(simulation.setup.clone(), "/contact")?, simulation, timer, "as asked for", stop)
-        }
-        Some(wire::Solver::Springs(wire::Springs { count })) => {
-            let springs = spring_foundation(&simulation.setup, &simulation.plan, count)?;
-            run(springs, simulation, timer, "as asked for", stop)
-        }
+    if let Some(wire::Solver::Springs(wire::Springs { count })) = simulation.solver {
+        let springs = spring_foundation(&simulation.setup, &simulation.plan, count)?;
+        return run(springs, simulation, timer, AS_ASKED, stop);
     }
+    simulate_on(contact(simulation.setup.clone(), "/contact")?, simulation, timer, stop)
+}
+
+/// Runs a simulation with the exact solver on a virgin contact, in place of the one that the simulation defines.
+///
+/// # Errors
+/// As [`simulate`].
+pub(super) fn simulate_on(
+    contact: Contact,
+    simulation: &Simulation,
+    timer: Timer,
+    stop: &Stop,
+) -> Result<SimulateReply, Failure> {
+    let reason = match (simulation.solver, simulation.plan.curved()) {
+        (Some(_), _) => AS_ASKED,
+        (None, 0) => "every move of this path has an exact solution, which is also the cheapest",
+        (None, _) => "only this solver follows moves straight in a force under changing load, to the tolerance",
+    };
+    run(contact, simulation, timer, reason, stop)
 }
 
 /// The reply of one solver. Nothing is computed that the simulation does not request.
@@ -82,7 +92,7 @@ pub(super) fn run<S: Solver>(
         steps.push(solver.state().into());
     }
     if simulation.residual {
-        check_search(&simulation.setup.profile, solver.depth(), stop)?;
+        check_search(solver.exact().profile(), solver.depth(), stop)?;
     }
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
@@ -93,12 +103,13 @@ pub(super) fn run<S: Solver>(
     let path_error = path_error.max(estimate.path_error);
     estimate.force_error += path_error - estimate.path_error;
     let accuracy = Accuracy { subsurface_error, ..accuracy_of(&solver, &estimate, timer, reason) };
+    let (profile, elasticity) = (solver.exact().profile(), solver.exact().elasticity());
     let observed = Observed {
         contact_radius: largest,
         e_star: figures.e_star,
         // Only tables have noise, and a table has no vertical edge.
-        indentation: figures.indentation.max(simulation.setup.profile.level(largest)),
-        noise: simulation.setup.profile.noise(largest),
+        indentation: figures.indentation.max(profile.level(largest)),
+        noise: profile.noise(largest),
         excess_error: excess_error(path_error, simulation.tolerance, curved),
     };
     Ok(SimulateReply {
@@ -108,7 +119,7 @@ pub(super) fn run<S: Solver>(
         residual,
         subsurface,
         protocol,
-        warnings: warnings(&simulation.setup.profile, &simulation.setup.elasticity, &observed)
+        warnings: warnings(profile, &elasticity, &observed)
             .into_iter()
             .chain(stress_warning(simulation.stress.is_some() || simulation.residual, estimate.stress_error))
             .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))

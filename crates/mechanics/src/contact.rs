@@ -59,7 +59,30 @@ impl Contact {
     /// ```
     pub fn new(setup: Setup) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup;
-        let elasticity = match &profile {
+        Contact::with_profile(Arc::new(profile), elasticity, friction, preload)
+    }
+
+    /// The virgin contact of a profile that it shares with others, because a table is large.
+    ///
+    /// # Errors
+    /// As [`Contact::new`].
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// let profile = std::sync::Arc::new(setup.profile);
+    /// let [mild, rough] = [0.1, 0.7].map(|friction| {
+    ///     Contact::with_profile(profile.clone(), setup.elasticity, friction, setup.preload)
+    /// });
+    /// assert_eq!(mild?.contact_radius(), rough?.contact_radius());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn with_profile(
+        profile: Arc<Profile>,
+        elasticity: Elasticity,
+        friction: f64,
+        preload: Preload,
+    ) -> Result<Contact, Error> {
+        let elasticity = match &*profile {
             Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
             _ => elasticity,
         };
@@ -85,7 +108,7 @@ impl Contact {
             DoubleDouble::ZERO
         };
         Ok(Contact {
-            profile: Arc::new(profile),
+            profile,
             elasticity,
             friction,
             history,

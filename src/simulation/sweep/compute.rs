@@ -134,11 +134,12 @@ impl Sweep {
         self.checked.put(document, point);
         let request = SimulateRequest::deserialize(&*document)
             .map_err(|error| Rejection::Invalid(vec![Fault { pointer: String::new(), detail: error.to_string() }]));
-        let mut simulation = request.and_then(SimulateRequest::check).map_err(of_rejection)?;
-        if let Some((definition, setup)) = &self.contact {
-            (simulation.definition, simulation.setup) = (definition.clone(), setup.clone());
-        }
-        simulate(&simulation, stop).map_err(of_failure)
+        let simulation = request.and_then(SimulateRequest::check).map_err(of_rejection)?;
+        let reply = match &self.shared {
+            Some(shared) => shared.simulate(simulation, stop),
+            None => simulate(&simulation, stop),
+        };
+        reply.map_err(of_failure)
     }
 }
 

@@ -6,16 +6,16 @@
 mod compute;
 mod plan;
 mod result;
+mod shared;
 
 use serde_json::Value;
 
 use super::Failure;
 use crate::admission::{Nanoseconds, PoolError};
-use stickslip_mechanics::Setup;
-use stickslip_wire::ContactDefinition;
 use stickslip_wire::sweep::CheckedSweep;
 
 pub use result::SweepResult;
+use shared::Shared;
 
 /// Work of one chunk: what is stored at a time, and what a killed process loses.
 const CHUNK_COST: Nanoseconds = 1_000_000_000;
@@ -28,8 +28,8 @@ const CHUNKS: usize = 10_000;
 pub struct Sweep {
     checked: CheckedSweep,
     base: Value,
-    /// The contact, if no axis changes it, so that a table is parsed once and not for each point.
-    contact: Option<(ContactDefinition, Setup)>,
+    /// What the points share, if no axis changes the profile; the base has a sphere in its place then.
+    shared: Option<Shared>,
     cost_per_point: Nanoseconds,
     bytes: usize,
 }

@@ -1,8 +1,9 @@
 //! Checking a sweep: at its corners, where each axis is at one of its ends, its numbers are smallest and largest.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::Sweep;
+use super::shared::{self, Shared};
 use crate::simulation::cost;
 use crate::simulation::reply_template::reply_template;
 use stickslip_wire::check::{Fault, Faults, JsonPath};
@@ -24,7 +25,7 @@ impl Sweep {
     /// an output does not exist; [`Rejection::Refused`] if the mechanics takes none of the corners.
     pub fn plan(checked: CheckedSweep) -> Result<Sweep, Rejection> {
         let mut document = checked.request.base.0.clone();
-        let mut sweep = Sweep { checked, base: Value::Null, contact: None, cost_per_point: 0, bytes: 0 };
+        let mut sweep = Sweep { checked, base: Value::Null, shared: None, cost_per_point: 0, bytes: 0 };
         let mut outputs = vec![Lookup::Nothing; sweep.checked.outputs.len()];
         let (mut faults, mut accepted, mut refused) = (Vec::new(), 0, None);
         for point in sweep.corners() {
@@ -44,8 +45,8 @@ impl Sweep {
             sweep.check_outputs(&outputs)?;
         }
         let written = document.to_string().len();
-        if sweep.contact.is_some() {
-            document["contact"] = placeholder_contact();
+        if sweep.shared.is_some() {
+            document["contact"]["profile"] = shared::placeholder();
         }
         sweep.base = document;
         sweep.bytes += written * VALUE_BYTES;
@@ -72,11 +73,8 @@ impl Sweep {
                 *found = lookup(&reply, &first_peak(output));
             }
         }
-        let fixed = |axis: &stickslip_wire::sweep::AxisValues| {
-            axis.pointer.segments().first().is_none_or(|first| first != "contact")
-        };
-        if self.checked.axes.iter().all(fixed) {
-            self.contact = Some((simulation.definition, simulation.setup));
+        if self.shared.is_none() {
+            self.shared = Shared::of(simulation, &self.checked.axes);
         }
     }
 
@@ -125,12 +123,4 @@ fn first_peak(output: &Pointer) -> Pointer {
         }
         _ => output.clone(),
     }
-}
-
-/// A contact that is cheap to parse, in place of one that has been parsed already.
-fn placeholder_contact() -> Value {
-    json!({
-        "profile": {"type": "sphere", "radius": 1.0}, "material": {"effective": {"e_star": 1.0, "g_star": 1.0}},
-        "friction": 0.5, "preload": {"normal_force": 1.0}
-    })
 }

@@ -45,6 +45,13 @@ async fn compare(server: &Server, sweep: &Value) -> (usize, usize) {
     (numbers, nulls)
 }
 
+fn base_of_springs() -> Value {
+    let mut base = base();
+    base["path"] = json!({"equal_peaks": {"reversals": 4}});
+    base["solver"] = json!({"springs": {"count": 100}});
+    base
+}
+
 #[tokio::test]
 async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
     let server = Server::start().await;
@@ -74,12 +81,50 @@ async fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
     let tabulated = json!({"base": tabulated, "axes": [{"pointer": "/path/displacement/0", "linear":
         {"from": -1e-7, "to": 1e-7, "count": 5}}], "outputs": ["/steps/0/force", "/contact/max_pressure"]});
     assert_eq!(compare(&server, &tabulated).await, (10, 0));
-    let mut springs = base();
-    springs["path"] = json!({"equal_peaks": {"reversals": 4}});
-    springs["solver"] = json!({"springs": {"count": 100}});
-    let springs = json!({"base": springs, "axes": [{"pointer": "/solver/springs/count", "values": [200, 101, 150]}],
+    let springs = json!({"base": base_of_springs(), "axes": [{"pointer": "/solver/springs/count", "values": [200, 101, 150]}],
         "outputs": ["/residual/max", "/protocol/displacement/1"]});
     assert_eq!(compare(&server, &springs).await, (6, 0));
+}
+
+/// A profile that no axis changes is made once; a load curve is made anew for other bodies.
+#[tokio::test]
+async fn points_that_share_a_profile_equal_those_that_do_not() {
+    let server = Server::start().await;
+    let indentation: Vec<f64> = (0..=20).map(|index| 2e-7 * f64::from(index)).collect();
+    let force: Vec<f64> = indentation.iter().map(|d| 3e10 * d.powf(1.5)).collect();
+    let radii: Vec<f64> = (0..100).map(|index| 4e-6 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r).collect();
+    let profiles = [
+        json!({"type": "tabulated", "r": radii, "z": heights}),
+        json!({"type": "truncated_cone", "slope": 0.05, "flat_radius": 3e-5}),
+        json!({"type": "load_curve", "indentation": indentation, "normal_force": force}),
+        json!({"type": "ellipsoid", "radii": [0.01, 0.004], "direction": "y"}),
+    ];
+    let axes = json!([
+        {"pointer": "/contact/material/bodies/0/youngs_modulus", "values": [1e11, 2.1e11]},
+        {"pointer": "/contact/preload/normal_force", "values": [1, 10]},
+        {"pointer": "/contact/friction", "values": [0.0, 0.3]}
+    ]);
+    let path = json!({"moves": [{"displacement": 1e-7}, {"normal_force": 11}, {"displacement": -5e-8}]});
+    let outputs = ["/steps/2/force", "/steps/2/contact_radius", "/steps/2/dissipated_energy", "/contact/indentation"];
+    for profile in profiles {
+        let mut contact = ball();
+        contact["profile"] = profile;
+        let sweep = json!({"base": {"contact": contact, "path": path}, "axes": axes, "outputs": outputs});
+        assert_eq!(compare(&server, &sweep).await, (32, 0));
+    }
+
+    // What the rest of the request says of the bodies, and springs under a shared profile.
+    let below = json!({"body": "first", "points": [[0.0, 0.0, 1e-5]], "bulk": {"xx": 1e6}});
+    let base = json!({"contact": ball(), "path": path, "subsurface": below});
+    let sweep = json!({"base": base, "axes": [{"pointer": "/path/moves/0/displacement", "values": [1e-8, 2e-8]}],
+        "outputs": ["/steps/0/force"]});
+    assert_eq!(compare(&server, &sweep).await, (2, 0));
+    let mut base = base_of_springs();
+    base["contact"]["profile"] = json!({"type": "tabulated", "r": radii, "z": heights});
+    let sweep = json!({"base": base, "axes": [{"pointer": "/contact/friction", "values": [0.1, 0.2]}],
+        "outputs": ["/residual/max"]});
+    assert_eq!(compare(&server, &sweep).await, (2, 0));
 }
 
 #[tokio::test]
