@@ -1,0 +1,136 @@
+//! The engine: moves with the length of the path, stresses with radii and pieces of slip history, tables with their points,
+//! and sweeps with theirs.
+
+use std::hint::black_box;
+
+use serde_json::json;
+use stickslip::admission::{Stop, Turn};
+use stickslip::simulation::{Sweep, SweepResult};
+use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::{Contact, Move, Tangential};
+use stickslip_wire::{self as wire, SweepRequest};
+
+use crate::law::{fit, seconds};
+use crate::scenes::{contact, shapes, sphere, table};
+
+const LENGTHS: [usize; 4] = [10, 100, 1_000, 10_000];
+const RADII: [usize; 3] = [50, 200, 800];
+const REVERSALS: [usize; 4] = [1, 10, 100, 1_000];
+const TABLE_POINTS: [u32; 4] = [100, 300, 1_000, 10_000];
+const SWEEP_POINTS: [usize; 4] = [10, 100, 1_000, 10_000];
+
+/// Prints all of it, with the memory of a contact.
+pub fn all() {
+    println!("| shape | a move, ns | of a radius, ns | and for each piece, ns | of a piece, ns | off by |");
+    println!("|---|---|---|---|---|---|");
+    for (name, profile) in shapes() {
+        let virgin = contact(profile);
+        let ([a_move], length_error) = fit(&LENGTHS.map(|length| path(&virgin, length)));
+        let stresses: Vec<_> = REVERSALS.into_iter().flat_map(|reversals| stress(&virgin, reversals)).collect();
+        let ([radius, radius_and_piece, piece], error) = fit(&stresses);
+        println!(
+            "| {name} | {:.0} (off by {:.0} %) | {:.0} | {:.2} | {:.1} | {:.0} % |",
+            1e9 * a_move,
+            100.0 * length_error,
+            1e9 * radius,
+            1e9 * radius_and_piece,
+            1e9 * piece,
+            100.0 * error
+        );
+    }
+    tables();
+    sweeps();
+    let virgin = contact(sphere());
+    let thousand = reversed(&virgin, 1_000);
+    let pieces = thousand.memory_depth() - virgin.memory_depth();
+    let bytes = (thousand.memory_bytes() - virgin.memory_bytes()) as f64 / pieces as f64;
+    println!("\nA contact takes {} bytes, and {bytes:.0} for each piece more.", virgin.memory_bytes());
+}
+
+fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
+    for target in path {
+        let to = Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
+        contact.apply(&to).expect("a displacement has no limit");
+    }
+}
+
+/// The contact after reversals of falling amplitude: about as many pieces of slip history.
+fn reversed(virgin: &Contact, reversals: usize) -> Contact {
+    let mut contact = virgin.clone();
+    follow(&mut contact, falling_amplitude(reversals, virgin.gross_slip_displacement()));
+    contact
+}
+
+/// Random moves: their number, and the time of all of them.
+fn path(virgin: &Contact, length: usize) -> ([f64; 1], f64) {
+    let (mut random, unit) = (fastrand::Rng::with_seed(1), virgin.gross_slip_displacement());
+    let path: Vec<f64> = (0..length).map(|_| (2.0 * random.f64() - 1.0) * unit).collect();
+    let time = seconds(|| follow(black_box(&mut virgin.clone()), path.iter().copied()));
+    ([length as f64], time)
+}
+
+/// The shear stress: the radii, the radii times the pieces, the pieces, and the time.
+fn stress(virgin: &Contact, reversals: usize) -> [([f64; 3], f64); 3] {
+    let contact = reversed(virgin, reversals);
+    let (edge, pieces) = (contact.contact_radius(), contact.memory_depth() as f64);
+    RADII.map(|count| {
+        let radii: Vec<f64> = (0..count).map(|index| edge * index as f64 / count as f64).collect();
+        let time = seconds(|| drop(black_box(contact.shears(&radii))));
+        ([count as f64, count as f64 * pieces, pieces], time)
+    })
+}
+
+/// Tables with their points P: the law is a + b log2 P for a move and for the stress at 200 radii after 20 reversals.
+fn tables() {
+    println!("\n| work on a table | of no points, us | for each doubling, us | off by |\n|---|---|---|---|");
+    let contacts = TABLE_POINTS.map(|points| (f64::from(points).log2(), contact(table(points))));
+    let moves = contacts.each_ref().map(|(doublings, virgin)| ([1.0, *doublings], path(virgin, 1_000).1 / 1e3));
+    let stresses = contacts.each_ref().map(|(doublings, virgin)| {
+        let contact = reversed(virgin, 20);
+        let radii: Vec<f64> = (0..200).map(|index| contact.contact_radius() * f64::from(index) / 200.0).collect();
+        ([1.0, *doublings], seconds(|| drop(black_box(contact.shears(&radii)))))
+    });
+    for (name, samples) in [("a move", moves), ("stress at 200 radii", stresses)] {
+        let ([fixed, doubling], error) = fit(&samples);
+        println!("| {name} | {:.2} | {:.2} | {:.0} % |", 1e6 * fixed, 1e6 * doubling, 100.0 * error);
+    }
+}
+
+/// Sweeps on one thread with their points: of a sphere, and of a table of 1000 points under other friction.
+fn sweeps() {
+    println!("\n| sweep of | once, us | each point, us | off by |\n|---|---|---|---|");
+    let radii: Vec<f64> = (0..1_000).map(|index| 2e-7 * f64::from(index)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| 50.0 * r * r).collect();
+    let profiles = [
+        ("a sphere", json!({"type": "sphere", "radius": 0.01})),
+        ("a table of 1000 points", json!({"type": "tabulated", "r": radii, "z": heights})),
+    ];
+    for (name, profile) in profiles {
+        let samples = SWEEP_POINTS.map(|points| {
+            let request = json!({
+                "base": {
+                    "contact": {"profile": profile, "material": {"effective": {"e_star": 1.15e11, "g_star": 8.5e10}},
+                        "friction": 0.3, "preload": {"normal_force": 10}},
+                    "path": {"falling_amplitude": {"reversals": 20}}, "steps": "last"
+                },
+                "axes": [{"pointer": "/contact/friction", "linear": {"from": 0.1, "to": 0.6, "count": points}}],
+                "outputs": ["/steps/0/force"]
+            })
+            .to_string();
+            ([1.0, points as f64], seconds(|| drop(black_box(sweep(&request, points)))))
+        });
+        let ([once, each], error) = fit(&samples);
+        println!("| {name} | {:.0} | {:.1} | {:.0} % |", 1e6 * once, 1e6 * each, 100.0 * error);
+    }
+}
+
+fn sweep(request: &str, points: usize) -> SweepResult {
+    let draft = wire::read::<SweepRequest>(request.as_bytes()).expect("a valid sweep");
+    let sweep = Sweep::plan(draft).expect("a sweep with outputs");
+    let mut rows = SweepResult::default();
+    while rows.values.len() < points {
+        let rest = rows.values.len()..points;
+        rows.append(sweep.slice(rest, vec![Turn::alone()], &Stop::default(), None).expect("it is not stopped"));
+    }
+    rows
+}

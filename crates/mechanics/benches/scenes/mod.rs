@@ -1,0 +1,46 @@
+//! Shared by the benchmarks: a contact of each shape, under the same load.
+
+use stickslip_mechanics::profile::{
+    Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
+};
+use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup, Sphere};
+
+const BALL: f64 = 0.01;
+const VALID: &str = "valid parameters";
+
+/// The sphere in Hertz's approximation.
+pub fn sphere() -> Profile {
+    Profile::Sphere(Sphere::new(BALL).expect(VALID))
+}
+
+/// A table of so many points of an exact sphere.
+pub fn table(points: u32) -> Profile {
+    let radii: Vec<f64> = (0..points).map(|index| 2e-4 * f64::from(index) / f64::from(points - 1)).collect();
+    let heights: Vec<f64> = radii.iter().map(|r| r * r / (BALL + ((BALL - r) * (BALL + r)).sqrt())).collect();
+    Profile::Tabulated(Tabulated::new(&radii, &heights).expect(VALID))
+}
+
+/// The virgin contact of a profile under 10 N.
+pub fn contact(profile: Profile) -> Contact {
+    let elasticity = Elasticity::effective(1.15e11, 8.5e10).expect(VALID);
+    Contact::new(Setup { profile, elasticity, friction: 0.3, preload: Preload::NormalForce(10.0) }).expect(VALID)
+}
+
+/// Every shape with its name, the sphere first.
+pub fn shapes() -> Vec<(&'static str, Profile)> {
+    let power = |exponent, coefficient| Profile::PowerLaw(PowerLaw::new(exponent, coefficient).expect(VALID));
+    vec![
+        ("sphere", sphere()),
+        ("cone", Profile::Cone(Cone::new(0.05).expect(VALID))),
+        ("power 4", power(4.0, 1e6)),
+        ("power 2.7", power(2.7, 1e4)),
+        ("exact sphere", Profile::ExactSphere(ExactSphere::new(BALL).expect(VALID))),
+        ("truncated sphere", Profile::TruncatedSphere(TruncatedSphere::new(BALL, 5e-5).expect(VALID))),
+        ("truncated cone", Profile::TruncatedCone(TruncatedCone::new(0.05, 5e-5).expect(VALID))),
+        ("rounded punch", Profile::RoundedPunch(RoundedPunch::new(5e-5, BALL).expect(VALID))),
+        ("rounded cone", Profile::RoundedCone(RoundedCone::new(0.05, 5e-5).expect(VALID))),
+        ("sphere and fourth power", Profile::Sum(Sum::new(vec![sphere(), power(4.0, 1e6)]).expect(VALID))),
+        ("table of 1000 points", table(1_000)),
+        ("table of 10 000 points", table(10_000)),
+    ]
+}
