@@ -1,7 +1,7 @@
 //! The cost of a sweep, and how it scales with cores and replicas: `cargo bench --bench sweep`. Needs PostgreSQL.
 //!
-//! A million points of a sphere after 20 reversals: the simulation alone, the sweep on one thread up to one a core, and as a
-//! job that replicas share over PostgreSQL, each of them bound to one core.
+//! A million points of a sphere after 20 reversals: the simulation alone, the sweep on one thread up to one a core beside as many
+//! threads that do nothing but the simulation, and as a job that replicas share over PostgreSQL, each of them bound to one core.
 
 mod load;
 #[allow(dead_code, reason = "the benchmark uses a part of it")]
@@ -19,8 +19,8 @@ use stickslip::simulation::{Sweep, SweepResult, simulate};
 use stickslip_wire::{self as wire, SimulateRequest, SweepRequest};
 
 const POINTS: usize = 1_000_000;
-/// Number of single simulations, for comparison.
-const SIMULATIONS: u32 = 20_000;
+/// Number of single simulations of a thread, for comparison.
+const SIMULATIONS: u32 = 200_000;
 
 fn base() -> serde_json::Value {
     json!({
@@ -42,6 +42,19 @@ fn request() -> String {
 fn plan() -> Sweep {
     let draft = wire::read::<SweepRequest>(request().as_bytes()).expect("a valid sweep");
     Sweep::plan(draft).expect("a sweep with outputs")
+}
+
+/// The time of so many simulations on each of the threads at once: what the machine can do.
+fn time_of_simulations(threads: usize) -> Duration {
+    let checked = wire::read::<SimulateRequest>(base().to_string().as_bytes()).expect("a valid simulation");
+    let work = || {
+        for _ in 0..SIMULATIONS {
+            black_box(simulate(black_box(&checked), &Stop::default()).expect("an answer"));
+        }
+    };
+    let begin = Instant::now();
+    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+    begin.elapsed()
 }
 
 fn time_of_sweep(threads: usize) -> (SweepResult, Duration) {
@@ -83,21 +96,17 @@ async fn time_of_job(replicas: usize) -> Duration {
 }
 
 fn main() {
-    let checked = wire::read::<SimulateRequest>(base().to_string().as_bytes()).expect("a valid simulation");
-    let begin = Instant::now();
-    for _ in 0..SIMULATIONS {
-        black_box(simulate(black_box(&checked), &Stop::default()).expect("an answer"));
-    }
-    let alone = begin.elapsed() / SIMULATIONS;
-    println!("the simulation alone: {:.2} µs", alone.as_secs_f64() * 1e6);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let alone = time_of_simulations(1);
+    println!("the simulation alone: {:.2} µs", alone.as_secs_f64() * 1e6 / f64::from(SIMULATIONS));
     let mut first: Option<(SweepResult, Duration)> = None;
     for threads in [1, 2, 4, 8, 16].into_iter().filter(|threads| *threads <= cores) {
+        let machine = threads as f64 * alone.as_secs_f64() / time_of_simulations(threads).as_secs_f64();
         let (rows, time) = time_of_sweep(threads);
         let rate = POINTS as f64 / time.as_secs_f64();
         let speedup = first.as_ref().map_or(1.0, |(_, alone)| alone.as_secs_f64() / time.as_secs_f64());
         println!(
-            "{POINTS} points, {threads} threads: {:.1} s, {rate:.0} points/s, {speedup:.2} times one",
+            "{POINTS} points, {threads} threads: {:.1} s, {rate:.0} points/s, {speedup:.2} times one; the simulation alone {machine:.2}",
             time.as_secs_f64()
         );
         match &first {

@@ -4,7 +4,7 @@
 //! [`stickslip_mechanics::for_each_family!`]; tables of heights and sums are written out here, and contacts that are known by
 //! their load curve alone in [`curve_profiles`](super::curve_profiles).
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::LazyLock;
 
@@ -223,8 +223,8 @@ pub(super) fn accepted(shape: Result<Shape, Error>, at: JsonPath<'_>, faults: &m
 #[derive(Default)]
 struct Members {
     kind: Option<Kind>,
-    numbers: HashMap<&'static str, f64>,
-    columns: HashMap<&'static str, Vec<f64>>,
+    numbers: BTreeMap<&'static str, f64>,
+    columns: BTreeMap<&'static str, Vec<f64>>,
     direction: Option<MotionAxis>,
     parts: Option<Vec<Profile>>,
 }

@@ -20,9 +20,9 @@ use stickslip_wire::{Code, Document as _, PointFailure, Rejection, SimulateReply
 /// How long a sweep keeps its threads.
 const SLICE_TIME: Duration = Duration::from_millis(25);
 /// Work that a thread takes at a time.
-const BATCH_COST: Nanoseconds = 1_000_000;
+const BATCH_COST: Nanoseconds = 250_000;
 /// The most points that a thread takes at a time.
-const BATCH_POINTS: u64 = 64;
+const BATCH_POINTS: u64 = 16;
 /// How much lower the priority of the threads is.
 const NICE: i32 = 10;
 
