@@ -24,6 +24,7 @@ mod kernel_sums;
 mod load_curve;
 mod logarithm;
 mod moment_tree;
+mod polynomial;
 mod power_law;
 mod power_series;
 mod ring;

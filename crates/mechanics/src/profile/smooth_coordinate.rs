@@ -6,10 +6,13 @@
 //! integrand is analytic for |Im s| < pi/2 and both root singularities are gone (the substitutions are elementary; for the
 //! profiles see Popov & Hess 2015, chapter 3).
 
-use super::gauss::along_strip;
+use super::gauss::{EIGHT_POINTS, Panel, Singular, TWELVE_POINTS, TWENTY_POINTS, along_strip};
 use super::roots::{descend, increasing};
 use super::smooth_interval::SmoothInterval;
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+
+/// A difference of two t^2 above this, over the larger one, is good to five digits.
+const NEARLY: f64 = 1e-10;
 
 /// A profile for x >= b, given as a function of the coordinate t = sqrt(x^2 - b^2) in which it is smooth.
 pub(super) trait SmoothCoordinate {
@@ -33,17 +36,32 @@ pub(super) trait SmoothCoordinate {
     /// g(top) - g(t), m, to round-off of itself; `dt` = top - t.
     fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64;
 
+    /// The same at several t side by side, each with its `dt` and its radius.
+    fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
+        std::array::from_fn(|index| self.rise_at(nodes.t[index], top, nodes.dt[index]))
+    }
+
     /// A t at which g less g(b) is not below `level`.
     fn upper_bound(&self, level: f64) -> f64;
 
     /// The t of a level.
     fn solve(&self, level: f64) -> f64 {
-        descend(self.upper_bound(level), |t| (self.level_at(t) - level, self.slope_at(t)))
+        solve(self, level)
     }
 
     /// t^2 of a level, m^2, as exact as can be.
     fn square_above(&self, level: DoubleDouble) -> DoubleDouble {
         DoubleDouble::square_of(self.solve(level.value()))
+    }
+
+    /// Whether the difference of two t^2 is that of their levels to round-off.
+    fn gap_by_squares(&self, low: f64, high: f64) -> bool {
+        low < 0.8 * high
+    }
+
+    /// The moments over a span above the kink, between `low` and `high` in t, `dt` = high - low, where they are closed.
+    fn moments_over(&self, _span: &Span, _ends: (f64, f64, f64)) -> Option<Moments> {
+        None
     }
 
     /// x, m.
@@ -75,6 +93,38 @@ pub(super) trait SmoothCoordinate {
     fn jumps(&self) -> bool {
         self.slope_at(0.0) > 0.0
     }
+}
+
+/// Several places of one span.
+pub(super) struct Nodes<const N: usize> {
+    /// t, m.
+    pub(super) t: [f64; N],
+    /// How far below the outer end they are, m.
+    pub(super) dt: [f64; N],
+    /// Their radii, m.
+    pub(super) x: [f64; N],
+}
+
+/// The t of a level, from above.
+pub(super) fn solve<F: SmoothCoordinate + ?Sized>(family: &F, level: f64) -> f64 {
+    descend(family.upper_bound(level), |t| (family.level_at(t) - level, family.slope_at(t)))
+}
+
+/// The root of an increasing function from a `guess` that is good to some thousandths: `f` gives value, slope and second derivative.
+///
+/// Halley's steps cube the error, so that what is left after one of 3e-6 is below round-off. `None` if four do not get there.
+pub(super) fn near_root(guess: f64, f: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
+    let mut x = guess;
+    for _ in 0..4 {
+        let [value, slope, bend] = f(x);
+        let newton = value / slope;
+        let step = newton / (1.0 - 0.5 * newton * bend / slope);
+        x -= step;
+        if step.abs() <= 3e-6 * x {
+            return Some(x);
+        }
+    }
+    None
 }
 
 /// t at a radius.
@@ -118,16 +168,21 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
     let square = DoubleDouble::square_of(family.kink_radius());
     let low = (ring.inner.square - square).value().max(0.0);
     let high = (ring.outer.square - square).value().max(0.0);
-    if low < 0.5 * high {
-        return high - low;
+    if family.gap_by_squares(low, high) {
+        return (ring.outer.square - if low > 0.0 { ring.inner.square } else { square }).value();
     }
     let top = high.sqrt();
-    let steep = family.slope_at(top);
-    // Where g is flat by rounding, its levels do not tell radii apart.
-    if steep <= 0.0 {
-        return high - low;
-    }
-    let mut dt = (depth / steep).min(0.5 * top);
+    let mut dt = if high - low > NEARLY * high {
+        // One step of Newton's does from here.
+        (high - low) / (top + low.sqrt())
+    } else {
+        let steep = family.slope_at(top);
+        // Where g is flat by rounding, its levels do not tell radii apart.
+        if steep <= 0.0 {
+            return high - low;
+        }
+        (depth / steep).min(0.5 * top)
+    };
     for _ in 0..8 {
         let t = top - dt;
         let steep = family.slope_at(t);
@@ -145,8 +200,53 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
 
 /// The moments over a span above the core.
 pub(super) fn moments(family: &impl SmoothCoordinate, span: &Span) -> Moments {
-    let interval = interval(family, span);
-    interval.moments(|node| family.rise_at(node.t, interval.high, node.dt))
+    if span.gap <= 0.0 {
+        return Moments::default();
+    }
+    let (low, high, drop) = ends(family, span);
+    if let Some(moments) = family.moments_over(span, (low, high, drop)) {
+        return moments;
+    }
+    let singular = Singular { below: family.singularity(), above: f64::INFINITY };
+    let mut sum = [0.0; 2];
+    let mut done = 0.0;
+    while done < drop {
+        let (top, left) = (high - done, drop - done);
+        // So low that any rule will do; `done` would soon stop growing.
+        let panel = if top <= 1e-14 * high { Panel::coarse(left) } else { singular.panel(top, left) };
+        let stretch = (high, done, panel.width);
+        match panel.points() {
+            8 => add_panel(family, stretch, &EIGHT_POINTS, &mut sum),
+            12 => add_panel(family, stretch, &TWELVE_POINTS, &mut sum),
+            _ => add_panel(family, stretch, &TWENTY_POINTS, &mut sum),
+        }
+        if top <= 1e-14 * high {
+            break;
+        }
+        done += panel.width;
+    }
+    let [first, second] = sum;
+    Moments { width: span.width(), first, second }
+}
+
+/// Adds int h dx and int h^2 dx over a panel of t, which begins `done` below the outer end `high` and is `width` wide.
+fn add_panel<const N: usize>(
+    family: &impl SmoothCoordinate,
+    (high, done, width): (f64, f64, f64),
+    rule: &[(f64, f64); N],
+    [first, second]: &mut [f64; 2],
+) {
+    let square = family.kink_radius() * family.kink_radius();
+    let dt = rule.map(|(u, _)| done + width * u);
+    let t = dt.map(|dt| (high - dt).max(0.0));
+    let x = t.map(|t| (square + t * t).sqrt());
+    let nodes = Nodes { t, dt, x };
+    let h = family.rises_at(&nodes, high);
+    for (index, (_, weight)) in rule.iter().enumerate() {
+        let area = width * weight * h[index] * (nodes.t[index] / nodes.x[index]);
+        *first += area;
+        *second += area * h[index];
+    }
 }
 
 /// The span as one interval above the kink.
