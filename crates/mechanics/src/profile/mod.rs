@@ -15,6 +15,7 @@ mod asperities;
 pub(crate) mod call_count;
 mod cone;
 mod curve_family;
+mod distant_rings;
 mod ellipsoid;
 mod exact_sphere;
 mod far_field;
