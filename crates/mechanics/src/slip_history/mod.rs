@@ -145,7 +145,8 @@ impl SlipHistory {
             self.place(profile, d1, w1);
             return work;
         }
-        let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
+        let dw = w1 - self.position;
+        let dd = if d1 == self.edge.level { DoubleDouble::ZERO } else { d1 - self.edge.level };
         if dd >= dw.abs() {
             self.grow(profile, d1, w1);
             return 0.0;
@@ -241,8 +242,8 @@ impl SlipHistory {
                 stuck_from = Some(outer);
             }
             let Some(top) = self.pieces.last() else { break profile.point(DoubleDouble::ZERO) };
-            let inner_excess = slipping.excess(&top.line, top.inner.level);
-            if let Some(level) = slipping.crossing(top, inner_excess, &outer) {
+            let inward = slipping.inward(top);
+            if let Some(level) = slipping.crossing(top, &inward, &outer) {
                 let cut = profile.point(level);
                 let ring = Ring::between(cut, outer);
                 let moments = profile.moments(&ring);
@@ -253,7 +254,7 @@ impl SlipHistory {
             }
             let ring = Ring::between(top.inner, outer);
             work += slipping.work(&top.moments_to(profile, &outer), &top.line, excess, &ring);
-            excess = inner_excess.value();
+            excess = inward.excess.value();
             outer = top.inner;
             self.pieces.pop();
             if self.pieces.is_empty() {
@@ -292,7 +293,7 @@ impl SlipHistory {
         below: Sums,
     ) {
         let line = Line { offset: -(shift + rise(slope, self.edge.level)), slope };
-        self.pieces.push(Piece { inner: ring.inner, line, below, moments: Some(*moments) });
+        self.pieces.push(Piece::new(ring.inner, line, below, Some(*moments)));
         self.total = below.and(moments, ring, slope.value(), -shift.value());
     }
 

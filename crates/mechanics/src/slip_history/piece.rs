@@ -1,7 +1,7 @@
 //! One straight piece of the slip history, and the sums over the pieces.
 //!
-//! A piece keeps the integrals over its ring once they are known: it is popped by a later move with the ends it has now, and the
-//! integrals over a ring depend on its ends alone, so that they are the same to the last bit.
+//! A piece keeps what a later move asks of it: the integrals over its ring, once they are known, and the value of its line at its inner end.
+//! It is popped with the ends that it has now, and both depend on these alone, so that they are the same to the last bit.
 
 use std::fmt;
 
@@ -48,6 +48,8 @@ pub(super) struct Sums {
 pub(in super::super) struct Piece {
     pub(in super::super) inner: Point,
     pub(in super::super) line: Line,
+    /// The line at the inner end.
+    pub(in super::super) start: DoubleDouble,
     /// The sums over the pieces nearer the centre.
     pub(super) below: Sums,
     /// The integrals over its ring, if they were wanted since its outer end moved.
@@ -57,18 +59,24 @@ pub(in super::super) struct Piece {
 /// The state alone: what is kept for later moves says nothing more.
 impl fmt::Debug for Piece {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Piece { inner, line, below, moments: _ } = self;
+        let Piece { inner, line, start: _, below, moments: _ } = self;
         f.debug_struct("Piece").field("inner", inner).field("line", line).field("below", below).finish()
     }
 }
 
 impl Piece {
+    /// A piece from `inner` on.
+    pub(super) fn new(inner: Point, line: Line, below: Sums, moments: Option<Moments>) -> Piece {
+        Piece { inner, line, start: line.at(inner.level), below, moments }
+    }
+
     /// The integrals over its ring, which ends at `outer`.
     pub(super) fn moments_to(&self, profile: &Profile, outer: &Point) -> Moments {
         self.moments.unwrap_or_else(|| profile.moments(&Ring::between(self.inner, *outer)))
     }
 
     /// The sums up to `outer`, where the piece ends from now on.
+    #[inline]
     pub(super) fn end_at(&mut self, profile: &Profile, outer: &Point) -> Sums {
         let slope = self.line.slope.value();
         if slope.abs() <= 0.0 {
@@ -84,6 +92,7 @@ impl Piece {
 
 impl Sums {
     /// With the share of a ring of these moments, over which w - W has this slope up to its value at the outer end.
+    #[inline]
     pub(super) fn and(&self, moments: &Moments, ring: &Ring, slope: f64, carried: f64) -> Sums {
         // By parts: int X dy = x_inner depth + int h dx, int (y_outer - y) X dy = (x_inner depth^2 + int h^2 dx)/2.
         let load = ring.inner.radius * ring.depth + moments.first;
