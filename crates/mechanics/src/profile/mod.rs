@@ -39,6 +39,7 @@ mod shape;
 mod slope_series;
 mod smooth_coordinate;
 mod smooth_interval;
+mod smooth_path;
 mod smooth_pieces;
 mod span;
 mod sphere;

@@ -75,6 +75,15 @@ impl SmoothCoordinate for RoundedPunch {
         if near < b { near.min(far) } else { far }
     }
 
+    fn slopes_at<const N: usize>(&self, t: [f64; N]) -> Option<[f64; N]> {
+        let b = self.flat_radius;
+        let (_, lacking) = angles(t.map(|t| t / b));
+        Some(std::array::from_fn(|index| {
+            let t = t[index];
+            t * (t + b * lacking[index]) / ((b * b + t * t).sqrt() * self.edge_radius)
+        }))
+    }
+
     fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
         let (b, x_top, whole) = (self.flat_radius, self.radius_at(top), self.excess(top));
         let both = nodes.t.map(|t| b * b + t * top);

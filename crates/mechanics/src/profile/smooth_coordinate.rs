@@ -6,9 +6,10 @@
 //! integrand is analytic for |Im s| < pi/2 and both root singularities are gone (the substitutions are elementary; for the
 //! profiles see Popov & Hess 2015, chapter 3).
 
-use super::gauss::{EIGHT_POINTS, Panel, Singular, TWELVE_POINTS, TWENTY_POINTS, along_strip};
+use super::gauss::{EIGHT_POINTS, Panel, Singular, TWELVE_POINTS, TWENTY_POINTS};
 use super::roots::{descend, increasing};
 use super::smooth_interval::SmoothInterval;
+pub(super) use super::smooth_path::{kernel, kernel_slope};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
 
 /// A difference of two t^2 above this, over the larger one, is good to five digits.
@@ -29,6 +30,11 @@ pub(super) trait SmoothCoordinate {
 
     /// gamma = dg/dt (pure number), positive and not falling.
     fn slope_at(&self, t: f64) -> f64;
+
+    /// gamma at several t side by side, if it is singular nowhere above the kink and changes no faster than t.
+    fn slopes_at<const N: usize>(&self, _t: [f64; N]) -> Option<[f64; N]> {
+        None
+    }
 
     /// t gamma' - gamma (pure number): t^2 times the slope of gamma/t.
     fn bend_at(&self, t: f64) -> f64;
@@ -149,7 +155,7 @@ pub(super) fn slope(family: &impl SmoothCoordinate, radius: f64) -> f64 {
 }
 
 /// Both ends of a span in t, and their difference.
-fn ends(family: &impl SmoothCoordinate, span: &Span) -> (f64, f64, f64) {
+pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> (f64, f64, f64) {
     let (low, high) = span.excess(DoubleDouble::square_of(family.kink_radius()));
     let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
     (low, high, if high > 0.0 { span.gap / (low + high) } else { 0.0 })
@@ -258,83 +264,6 @@ fn interval(family: &impl SmoothCoordinate, span: &Span) -> SmoothInterval {
 pub(super) fn displacement_integral(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span, above: f64) -> f64 {
     let interval = interval(family, span);
     interval.displacement_integral(span, at, above, |node| family.rise_at(node.t, interval.high, node.dt))
-}
-
-/// The path of integration of a kernel: from its outer end inward.
-struct Path {
-    kappa: f64,
-    low: f64,
-    high: f64,
-    v_low: f64,
-    v_high: f64,
-    length: f64,
-}
-
-impl Path {
-    /// For radii above r in a span; none if there are none.
-    fn new(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> Option<Path> {
-        let square = DoubleDouble::square_of(family.kink_radius());
-        let span = span.above(square, family.kink_radius())?;
-        let (inner, outer) = span.excess(at.square);
-        if outer <= 0.0 {
-            return None;
-        }
-        let (mut low, high, _) = ends(family, &span);
-        let kappa = (at.square - square).value();
-        let (mut v_low, v_high) = (inner.max(0.0).sqrt(), outer.sqrt());
-        let mut gap = span.gap;
-        if inner <= 0.0 {
-            (low, v_low, gap) = (kappa.max(0.0).sqrt(), 0.0, outer);
-        }
-        let steps = gap / (v_low + v_high) + gap / (low + high);
-        // At r = b in a profile that is smooth there, what lies this near to b adds nothing.
-        let start = if low + v_low > 0.0 { low + v_low } else { 1e-17 * (high + v_high) };
-        Some(Path { kappa, low, high, v_low, v_high, length: (steps / start).ln_1p() })
-    }
-
-    /// int f(t, v, t_outer - t) ds for an f that changes as a power of t does; `ceiling` is the t where it is singular.
-    fn integrate(&self, power: f64, ceiling: f64, f: impl Fn(f64, f64, f64) -> f64) -> f64 {
-        let end = self.high + self.v_high;
-        let room = if ceiling < f64::INFINITY {
-            ((ceiling + (ceiling * ceiling - self.kappa).sqrt()) / end).ln()
-        } else {
-            ceiling
-        };
-        along_strip(self.length, power.max(1.0).recip(), room, |s| {
-            let here = end * (-s).exp();
-            let other = self.kappa / here;
-            let drop = -0.5 * (-s).exp_m1() * (end - other);
-            // Far below the outer end the difference has lost its digits, and the sum of the two has not.
-            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
-            f(t.max(self.low), (0.5 * (here - other)).max(self.v_low), drop)
-        })
-    }
-}
-
-/// K over a span.
-pub(super) fn kernel(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(family, at, span) else { return 0.0 };
-    if path.low + path.v_low <= 0.0 && family.jumps() {
-        return f64::INFINITY;
-    }
-    path.integrate(family.power(), family.ceiling(), |t, _, drop| family.slope_below(t, path.high, drop))
-}
-
-/// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
-pub(super) fn kernel_slope(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(family, at, span) else { return 0.0 };
-    let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
-    if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
-        let integrand = |t, v, drop| family.slope_below(t, high, drop) / (v * v);
-        return 0.5 * path.integrate(family.power(), family.ceiling(), integrand);
-    }
-    if low <= 0.0 && family.jumps() {
-        return f64::NEG_INFINITY;
-    }
-    let bend =
-        path.integrate(family.power(), family.ceiling(), |t, _, drop| family.bend_below(t, high, drop) / (t * t));
-    let start = if v_low > 0.0 { family.slope_at(low) / (low * v_low) } else { 0.0 };
-    0.5 * (bend + start - family.slope_at(high) / (high * v_high))
 }
 
 /// Implements `Shape` for a family with a flat core through its [`SmoothCoordinate`]: all but its loads and the given methods.

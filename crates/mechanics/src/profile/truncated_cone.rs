@@ -64,6 +64,15 @@ impl SmoothCoordinate for TruncatedCone {
         level / self.slope
     }
 
+    fn slopes_at<const N: usize>(&self, t: [f64; N]) -> Option<[f64; N]> {
+        let b = self.flat_radius;
+        let (angle, _) = angles(t.map(|t| t / b));
+        Some(std::array::from_fn(|index| {
+            let t = t[index];
+            self.slope * (t * angle[index] + b) / (b * b + t * t).sqrt()
+        }))
+    }
+
     fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
         let (b, x_top, whole) = (self.flat_radius, self.radius_at(top), top.atan2(self.flat_radius));
         let both = nodes.t.map(|t| b * b + t * top);

@@ -53,6 +53,10 @@ impl SmoothCoordinate for TruncatedSphere {
         (b * b + 2.0 * t * t) / (self.radius_at(t) * self.curvature_radius)
     }
 
+    fn slopes_at<const N: usize>(&self, t: [f64; N]) -> Option<[f64; N]> {
+        Some(t.map(|t| self.slope_at(t)))
+    }
+
     fn bend_at(&self, t: f64) -> f64 {
         let (b, x) = (self.flat_radius, self.radius_at(t));
         -b * b * b * b / (x * x * x * self.curvature_radius)
