@@ -137,7 +137,7 @@ fn moments(rings: &[(f64, f64)], ends: &mut Vec<(f64, f64)>) -> (f64, [f64; TERM
         (reached, before) = (reached + gap, weight);
     }
     ends.push((reached, before));
-    while ends.len() % BLOCK > 0 {
+    while !ends.len().is_multiple_of(BLOCK) {
         ends.push((0.0, 0.0));
     }
     let half = 0.5 * reached;
