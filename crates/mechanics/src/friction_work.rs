@@ -20,15 +20,24 @@ pub(super) struct SlipRing {
     pub(super) lag: f64,
 }
 
+/// The inner end of a piece on the way of a slip.
+pub(super) struct Inward {
+    /// How far the stuck value would exceed the bound there, m; it never falls towards the edge.
+    pub(super) excess: DoubleDouble,
+    /// Its level over the indentation at the end of the move, m.
+    height: f64,
+}
+
 impl SlipRing {
-    /// How far the stuck value at `level` would exceed the bound; it never falls towards the edge.
-    pub(super) fn excess(&self, line: &Line, level: DoubleDouble) -> DoubleDouble {
-        (line.at(level) + self.shift).signed(self.sign) + (level - self.indentation)
+    /// What a piece says of the slip at its inner end.
+    pub(super) fn inward(&self, piece: &Piece) -> Inward {
+        let height = piece.inner.level - self.indentation;
+        Inward { excess: (piece.start + self.shift).signed(self.sign) + height, height: height.value() }
     }
 
-    /// The level within the piece at which slip begins, from the excess at its inner end; `None` if the whole piece
-    /// slips.
-    pub(super) fn crossing(&self, piece: &Piece, inner_excess: DoubleDouble, outer: &Point) -> Option<DoubleDouble> {
+    /// The level within the piece at which slip begins; `None` if the whole piece slips.
+    pub(super) fn crossing(&self, piece: &Piece, inward: &Inward, outer: &Point) -> Option<DoubleDouble> {
+        let inner_excess = inward.excess;
         if inner_excess.value() >= 0.0 {
             return None;
         }
@@ -46,7 +55,7 @@ impl SlipRing {
         };
         let core = piece.inner.level.value() <= 0.0;
         let same = if core { ROUND_OFF } else { SAME_TURNING_POINT };
-        if stuck.value() <= same * (self.indentation - piece.inner.level).value() {
+        if stuck.value() <= same * -inward.height {
             return None;
         }
         let level = piece.inner.level + stuck;
@@ -59,7 +68,8 @@ impl SlipRing {
             return 0.0;
         }
         let growth = 1.0 + self.sign * line.slope.value();
-        let bound = (self.indentation - ring.outer.level).value();
+        let bound =
+            if self.indentation == ring.outer.level { 0.0 } else { (self.indentation - ring.outer.level).value() };
         let mean = bound - self.lag * slip;
         let mean_growth = 1.0 + self.lag * growth;
         let Moments { width, first, second } = *moments;

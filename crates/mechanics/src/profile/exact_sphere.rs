@@ -171,8 +171,7 @@ impl Shape for ExactSphere {
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
         if level.value() < LIMIT * self.radius {
-            let radius = DoubleDouble::from(self.radius);
-            return shallow_sphere::exact_square_at(level.over(radius)) * radius * radius;
+            return shallow_sphere::exact_square(self.radius, level);
         }
         let sigma = self.sigma(level.value());
         if sigma > 1.0 {
@@ -217,8 +216,9 @@ impl Shape for ExactSphere {
         if plain > 0.5 * ring.outer.square.value() {
             return plain;
         }
-        if let Some(outer) = self.shallow(ring.outer.square.value()) {
-            return self.radius * self.radius * shallow_sphere::gap_of(outer, depth / self.radius);
+        let level = ring.outer.level.value();
+        if level < LIMIT * self.radius {
+            return self.radius * self.radius * shallow_sphere::gap_of(level / self.radius, depth / self.radius);
         }
         let outer = self.place(ring.outer.radius, ring.outer.square);
         let steepness = |sigma: f64| self.radius * (sigma.tanh() + sigma / sigma.cosh().powi(2));

@@ -23,18 +23,26 @@ const TWELVE: [(f64, f64); 6] = [
     (0.437_383_295_744_265_54, 0.124_573_522_906_701_39),
 ];
 
+/// The rule of eight points over 0..1, in rising order.
+pub(super) const EIGHT_POINTS: [(f64, f64); 8] = both_halves(&EIGHT);
 /// The rule of twelve points over 0..1, in rising order.
-pub(crate) const TWELVE_POINTS: [(f64, f64); 12] = {
-    let mut points = [(0.0, 0.0); 12];
+pub(crate) const TWELVE_POINTS: [(f64, f64); 12] = both_halves(&TWELVE);
+
+/// The rule of twenty points over 0..1, in rising order.
+pub(super) const TWENTY_POINTS: [(f64, f64); 20] = both_halves(&TWENTY);
+
+/// A rule over 0..1 by its lower half.
+const fn both_halves<const N: usize>(lower: &Rule) -> [(f64, f64); N] {
+    let mut points = [(0.0, 0.0); N];
     let mut index = 0;
-    while index < TWELVE.len() {
-        let (at, weight) = TWELVE[index];
+    while index < lower.len() {
+        let (at, weight) = lower[index];
         points[index] = (at, weight);
-        points[11 - index] = (1.0 - at, weight);
+        points[N - 1 - index] = (1.0 - at, weight);
         index += 1;
     }
     points
-};
+}
 
 const TWENTY: [(f64, f64); 10] = [
     (0.003_435_700_407_452_537_6, 0.008_807_003_569_576_059),
@@ -95,6 +103,11 @@ impl Panel {
             visit(self.width * u, self.width * weight);
             visit(self.width * (1.0 - u), self.width * weight);
         }
+    }
+
+    /// The number of its points.
+    pub(super) fn points(self) -> usize {
+        2 * self.rule.len()
     }
 
     /// The abscissae from the panel's top on, with their weights.

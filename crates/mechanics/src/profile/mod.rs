@@ -15,6 +15,7 @@ mod asperities;
 pub(crate) mod call_count;
 mod cone;
 mod curve_family;
+mod distant_rings;
 mod ellipsoid;
 mod exact_sphere;
 mod far_field;
@@ -24,6 +25,7 @@ mod kernel_sums;
 mod load_curve;
 mod logarithm;
 mod moment_tree;
+mod polynomial;
 mod power_law;
 mod power_series;
 mod ring;
@@ -37,6 +39,7 @@ mod shape;
 mod slope_series;
 mod smooth_coordinate;
 mod smooth_interval;
+mod smooth_path;
 mod smooth_pieces;
 mod span;
 mod sphere;
@@ -251,16 +254,25 @@ impl Profile {
 
     /// The level with its radius and that radius's square.
     #[must_use]
+    #[inline]
     pub fn point(&self, level: DoubleDouble) -> Point {
-        let square = Shape::square(self, level);
+        // A move on a sphere is so short that a call counts.
+        let square = if let Profile::Sphere(sphere) = self { sphere.square(level) } else { Shape::square(self, level) };
         Point { level, radius: square.value().sqrt(), square }
     }
 
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
     #[must_use]
+    #[inline]
     pub fn moments(&self, ring: &Ring) -> Moments {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.moments);
+        // As for a point; and the ring need not be written to memory.
+        if let Profile::Sphere(sphere) = self { sphere.moments_between(ring) } else { self.moments_of_any(ring) }
+    }
+
+    #[inline(never)]
+    fn moments_of_any(&self, ring: &Ring) -> Moments {
         each!(self, shape => shape.ring_moments(ring))
     }
 

@@ -3,7 +3,7 @@
 //! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by a recursion ([`slope_series`](super::slope_series)) of
 //! positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
-use super::gauss::Singular;
+use super::gauss::{EIGHT_POINTS, Singular};
 use super::power_series::{Place, Series};
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
@@ -11,6 +11,14 @@ use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range, serie
 
 /// The largest exponent for which the recursion is quicker than a quadrature.
 const MOST_TERMS: u16 = 24;
+/// The largest exponent n of which eight points of Gauss integrate the square of a rise, a polynomial of degree 2 n, exactly.
+const MOST_FOR_EIGHT: u16 = 7;
+/// Where exponents get a square with twice the digits, differences of squares over that of the edge are good down to this.
+const RESOLVED: f64 = 1e-12;
+/// The width over the outer radius up to which the moments are summed as binomial series, and times the exponent.
+const SERIES: (f64, f64) = (0.3, 1.5);
+/// Terms of them: more than any takes.
+const MOST_OF_SERIES: i32 = 60;
 /// Exponents up to half of this get a square with twice the digits.
 const MOST_HALVES: i32 = 16;
 /// Beyond this many r the r under the root is negligible.
@@ -45,6 +53,105 @@ impl PowerLaw {
         let order = (1..=MOST_TERMS).find(|&n| f64::from(n).to_bits() == exponent.to_bits());
         let halves = (1..=MOST_HALVES).find(|&m| (0.5 * f64::from(m)).to_bits() == exponent.to_bits());
         Ok(PowerLaw { exponent, coefficient, scale, order, halves })
+    }
+
+    /// x^n for a whole n by products, else by logarithms.
+    fn raised(x: f64, exponent: f64, order: Option<u16>) -> f64 {
+        let Some(order) = order else { return x.powf(exponent) };
+        let (mut power, mut square, mut rest) = (1.0, x, order);
+        while rest > 0 {
+            if rest % 2 > 0 {
+                power *= square;
+            }
+            square *= square;
+            rest /= 2;
+        }
+        power
+    }
+
+    /// (x_outer^n - x^n)/(x_outer - x) of a whole n: a sum of positive terms.
+    fn chord(order: u16, outer: f64, x: f64) -> f64 {
+        let (mut sum, mut power) = (1.0, 1.0);
+        for _ in 1..order {
+            power *= outer;
+            sum = sum * x + power;
+        }
+        sum
+    }
+
+    /// int h dx and int h^2 dx over x_outer y and x_outer y^2, y the outer level, of a whole n up to [`MOST_FOR_EIGHT`].
+    fn whole_moments(order: u16, share: f64) -> (f64, f64) {
+        let below = EIGHT_POINTS.map(|(u, _)| share * u);
+        let mut chords = [1.0; EIGHT_POINTS.len()];
+        for _ in 1..order {
+            for (chord, below) in chords.iter_mut().zip(below) {
+                *chord = *chord * (1.0 - below) + 1.0;
+            }
+        }
+        let (mut first, mut second) = (0.0, 0.0);
+        for ((chord, below), (_, weight)) in chords.into_iter().zip(below).zip(EIGHT_POINTS) {
+            let h = below * chord;
+            first += weight * h;
+            second += weight * h * h;
+        }
+        (share * first, share * second)
+    }
+
+    /// The same of any n from one on, by the series of 1 - (1 - b)^n in b; its square is twice it less that of 2 n. The terms alternate
+    /// at first, up to e^(2 n share) of the sum.
+    fn series_moments(n: f64, share: f64) -> (f64, f64) {
+        let (mut once, mut twice) = (n * share, 2.0 * n * share);
+        let (mut first, mut second) = (0.5 * once, 0.0);
+        for k in 2..MOST_OF_SERIES {
+            let k = f64::from(k);
+            let step = share / k;
+            once *= step * (k - 1.0 - n);
+            twice *= step * (k - 1.0 - 2.0 * n);
+            let (add, add_square) = (once / (k + 1.0), (2.0 * once - twice) / (k + 1.0));
+            first += add;
+            second += add_square;
+            if add.abs() <= 1e-17 * first && add_square.abs() <= 1e-17 * second {
+                break;
+            }
+        }
+        (share * first, share * second)
+    }
+
+    /// The moments over a span, `y` the outer level and `levels` the inner level over it, if it is wanted.
+    fn moments_of(&self, span: &Span, y: f64, levels: impl FnOnce() -> f64) -> Moments {
+        let (n, x, width) = (self.exponent, span.outer_radius, span.width());
+        if width <= 0.0 {
+            return Moments::default();
+        }
+        let share = width / x;
+        let scaled =
+            |(first, second): (f64, f64)| Moments { width, first: x * y * first, second: x * y * (y * second) };
+        if let Some(order) = self.order.filter(|order| *order <= MOST_FOR_EIGHT) {
+            return scaled(Self::whole_moments(order, share));
+        }
+        if share <= SERIES.0 && n * share <= SERIES.1 && n >= 1.0 {
+            return scaled(Self::series_moments(n, share));
+        }
+        if share <= SERIES.0 && n * share <= 4.0 {
+            let (mut first, mut second) = (0.0, 0.0);
+            let singular = Singular { below: 0.0, above: f64::INFINITY };
+            singular.panel(1.0, share).visit(|below, weight| {
+                let h = -(n * (-below).ln_1p()).exp_m1();
+                first += weight * h;
+                second += weight * h * h;
+            });
+            return scaled((first, second));
+        }
+        let (q, q_level) = (1.0 - share, levels());
+        let (once, twice) = (1.0 - q * q_level, 1.0 - q * q_level * q_level);
+        scaled(if n < 1.0 {
+            // Over the levels, of which X is then a power above one.
+            let (depth, once, twice) = (1.0 - q_level, n / (n + 1.0) * once, n / (2.0 * n + 1.0) * twice);
+            (once - q * depth, 2.0 * (once - twice) - q * depth * depth)
+        } else {
+            let (once, twice) = (once / (n + 1.0), twice / (2.0 * n + 1.0));
+            (share - once, share - 2.0 * once + twice)
+        })
     }
 
     /// ln(x_outer/x_inner) of a span.
@@ -129,15 +236,22 @@ impl SmoothCoordinate for PowerLaw {
 
 impl Shape for PowerLaw {
     fn level(&self, radius: f64) -> f64 {
-        self.scale * radius.powf(self.exponent)
+        self.scale * Self::raised(radius, self.exponent, self.order)
     }
 
     fn slope(&self, radius: f64) -> f64 {
-        self.exponent * self.scale * radius.powf(self.exponent - 1.0)
+        self.exponent * self.scale * Self::raised(radius, self.exponent - 1.0, self.order.map(|order| order - 1))
     }
 
     fn radius(&self, level: f64) -> f64 {
-        (level / self.scale).powf(self.exponent.recip())
+        let power = level / self.scale;
+        match self.order {
+            Some(1) => power,
+            Some(2) => power.sqrt(),
+            Some(3) => power.cbrt(),
+            Some(4) => power.sqrt().sqrt(),
+            _ => power.powf(self.exponent.recip()),
+        }
     }
 
     fn square(&self, level: DoubleDouble) -> DoubleDouble {
@@ -167,12 +281,16 @@ impl Shape for PowerLaw {
     }
 
     fn rise(&self, span: &Span) -> f64 {
+        if let Some(order) = self.order {
+            return self.scale * span.width() * Self::chord(order, span.outer_radius, span.inner_radius);
+        }
         -self.level(span.outer_radius) * (-self.exponent * Self::decades(span)).exp_m1()
     }
 
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
         let plain = (ring.outer.square - ring.inner.square).value();
-        if plain > 0.5 * ring.outer.square.value() {
+        let resolved = if self.halves.is_some() { RESOLVED } else { 0.2 };
+        if plain > resolved * ring.outer.square.value() {
             return plain;
         }
         let (inner, outer) = (ring.inner.level.value(), ring.outer.level.value());
@@ -192,33 +310,13 @@ impl Shape for PowerLaw {
     }
 
     fn moments(&self, span: &Span) -> Moments {
-        let (n, x, y, width) = (self.exponent, span.outer_radius, self.level(span.outer_radius), span.width());
-        if width <= 0.0 {
-            return Moments::default();
-        }
-        let share = width / x;
-        if share <= 0.5 && n * share <= 4.0 {
-            let (mut first, mut second) = (0.0, 0.0);
-            let singular = Singular { below: 0.0, above: f64::INFINITY };
-            singular.panel(1.0, share).visit(|below, weight| {
-                let h = -(n * (-below).ln_1p()).exp_m1();
-                first += weight * h;
-                second += weight * h * h;
-            });
-            return Moments { width, first: x * y * first, second: x * y * (y * second) };
-        }
-        let decades = Self::decades(span);
-        let (q, q_level) = ((-decades).exp(), (-n * decades).exp());
-        let (once, twice) = (1.0 - q * q_level, 1.0 - q * q_level * q_level);
-        let (first, second) = if n < 1.0 {
-            // Over the levels, of which X is then a power above one.
-            let (depth, once, twice) = (1.0 - q_level, n / (n + 1.0) * once, n / (2.0 * n + 1.0) * twice);
-            (once - q * depth, 2.0 * (once - twice) - q * depth * depth)
-        } else {
-            let (once, twice) = (once / (n + 1.0), twice / (2.0 * n + 1.0));
-            (share - once, share - 2.0 * once + twice)
-        };
-        Moments { width, first: x * y * first, second: x * y * (y * second) }
+        let levels = || (-self.exponent * Self::decades(span)).exp();
+        self.moments_of(span, self.level(span.outer_radius), levels)
+    }
+
+    fn ring_moments(&self, ring: &Ring) -> Moments {
+        let (inner, outer) = (ring.inner.level.value(), ring.outer.level.value());
+        self.moments_of(&self.span(ring), outer, || inner / outer)
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {

@@ -3,9 +3,9 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi), int x dg = (3 x^2 (t - b phi) + t^3)/(6R) (Schubert 1942; Ciavarella 1999). All stays
 //! positive through t - b phi = b (u - atan u), u = t/b.
 
-use super::angle::tangent_less_angle;
+use super::angle::{angles, tangent_less_angle};
 use super::power_series::{KinkSeries, Place, Series};
-use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
+use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A flat punch with a rounded edge.
@@ -73,6 +73,47 @@ impl SmoothCoordinate for RoundedPunch {
         let far = quarter + (quarter * quarter + area).sqrt();
         let near = (6.0 * b * area).cbrt();
         if near < b { near.min(far) } else { far }
+    }
+
+    fn slopes_at<const N: usize>(&self, t: [f64; N]) -> Option<[f64; N]> {
+        let b = self.flat_radius;
+        let (_, lacking) = angles(t.map(|t| t / b));
+        Some(std::array::from_fn(|index| {
+            let t = t[index];
+            t * (t + b * lacking[index]) / ((b * b + t * t).sqrt() * self.edge_radius)
+        }))
+    }
+
+    fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
+        let (b, x_top, whole) = (self.flat_radius, self.radius_at(top), self.excess(top));
+        let both = nodes.t.map(|t| b * b + t * top);
+        let (_, lacking) = angles::<N>(std::array::from_fn(|index| b * nodes.dt[index] / both[index]));
+        std::array::from_fn(|index| {
+            let (t, dt, x) = (nodes.t[index], nodes.dt[index], nodes.x[index]);
+            let step = dt * t * top / both[index] + b * lacking[index];
+            // What the difference of the two loses near the rim counts only beside the first term.
+            (x_top * step + (whole - step) * dt * (t + top) / (x + x_top)) / self.edge_radius
+        })
+    }
+
+    fn solve(&self, level: f64) -> f64 {
+        let b = self.flat_radius;
+        let height = level * self.edge_radius / (b * b);
+        // sqrt(1 + u^2) (u - atan(u)) = height, whose u this is to 1.1e-3.
+        let v = (3.0 * height).cbrt();
+        let [p, q, r, s] = [1.580_546_5, 0.601_012_3, 0.187_413_4, 1.588_477];
+        let ratio = if v < 1.0 {
+            (1.0 + v * (p + v * (q + v * r))) / (1.0 + v * (s + v * 3.0 * r))
+        } else {
+            let w = v.recip();
+            v * (w * (w * (w + p) + q) + r) / (w * (w + s) + 3.0 * r)
+        };
+        let near = smooth_coordinate::near_root(v * ratio.sqrt(), |u| {
+            let (x, excess) = ((1.0 + u * u).sqrt(), tangent_less_angle(u));
+            let slope = (u + excess) / x;
+            [x * excess - height, u * slope, slope + u * (1.0 - excess * u / (x * x)) / x]
+        });
+        near.map_or_else(|| smooth_coordinate::solve(self, level), |u| b * u)
     }
 }
 

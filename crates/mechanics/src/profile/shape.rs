@@ -42,23 +42,7 @@ pub(super) trait Shape {
 
     /// Difference of the squares of the radii of a ring of this depth. [`Shape::rise`] undone, by Newton's steps.
     fn gap(&self, ring: &Ring, depth: f64) -> f64 {
-        let outer = ring.outer;
-        let plain = (outer.square - ring.inner.square).value();
-        if plain > 0.3 * outer.square.value() || ring.inner.level <= DoubleDouble::ZERO {
-            return plain;
-        }
-        // No ring reaches into a flat core, where g is constant.
-        let square = (outer.square - DoubleDouble::square_of(self.radius(0.0))).value();
-        let steepness = |radius: f64| self.slope(radius) / (2.0 * radius);
-        let start = depth / steepness(outer.radius);
-        let start = if plain > 1e-6 * square { plain } else { start.min(0.5 * square) };
-        increasing(start, |gap| {
-            let span = Span::under(outer.square, outer.radius, gap.min(square));
-            let (rise, steepness) = (self.rise(&span), steepness(span.inner_radius.max(f64::MIN_POSITIVE)));
-            // Where f' jumps the slope is infinite, and beyond the centre it is undefined: a Newton step would fail.
-            (rise - depth, if steepness.is_finite() && gap < square { steepness } else { rise / gap })
-        })
-        .min(square)
+        gap(self, ring, depth)
     }
 
     /// Radius and level at which the profile ends in a vertical edge.
@@ -122,16 +106,7 @@ pub(super) trait Shape {
 
     /// The moments of h = g(x_outer) - g(x).
     fn moments(&self, span: &Span) -> Moments {
-        let (mut sum, mut above) = (Moments::default(), 0.0);
-        let mut rest = Some(*span);
-        while let Some(span) = rest.filter(|span| span.gap > 0.0) {
-            let (interval, outer, inner) = self.outermost_interval(&span);
-            let part = interval.moments(|node| self.rise(&under(&outer, &interval, node)));
-            sum = Moments::stack(part, sum, above);
-            above += self.rise(&outer);
-            rest = inner;
-        }
-        sum
+        moments(self, span)
     }
 
     /// The moments of a ring, with the levels that it crosses at a vertical edge.
@@ -273,4 +248,39 @@ pub(super) fn under(top: &Span, interval: &SmoothInterval, node: Node) -> Span {
     // Near the inner end its own square must be exact, not the difference from the outer one.
     let inner = DoubleDouble::square_of(interval.base) + DoubleDouble::square_of(node.t);
     Span { inner, inner_radius: inner.value().sqrt(), gap: (top.outer - inner).value(), edge: 0.0, ..*top }
+}
+
+/// [`Shape::gap`] by Newton's steps.
+pub(super) fn gap<S: Shape + ?Sized>(shape: &S, ring: &Ring, depth: f64) -> f64 {
+    let outer = ring.outer;
+    let plain = (outer.square - ring.inner.square).value();
+    if plain > 0.3 * outer.square.value() || ring.inner.level <= DoubleDouble::ZERO {
+        return plain;
+    }
+    // No ring reaches into a flat core, where g is constant.
+    let square = (outer.square - DoubleDouble::square_of(shape.radius(0.0))).value();
+    let steepness = |radius: f64| shape.slope(radius) / (2.0 * radius);
+    let start = depth / steepness(outer.radius);
+    let start = if plain > 1e-6 * square { plain } else { start.min(0.5 * square) };
+    increasing(start, |gap| {
+        let span = Span::under(outer.square, outer.radius, gap.min(square));
+        let (rise, steepness) = (shape.rise(&span), steepness(span.inner_radius.max(f64::MIN_POSITIVE)));
+        // Where f' jumps the slope is infinite, and beyond the centre it is undefined: a Newton step would fail.
+        (rise - depth, if steepness.is_finite() && gap < square { steepness } else { rise / gap })
+    })
+    .min(square)
+}
+
+/// [`Shape::moments`] between kink and kink.
+pub(super) fn moments<S: Shape + ?Sized>(shape: &S, span: &Span) -> Moments {
+    let (mut sum, mut above) = (Moments::default(), 0.0);
+    let mut rest = Some(*span);
+    while let Some(span) = rest.filter(|span| span.gap > 0.0) {
+        let (interval, outer, inner) = shape.outermost_interval(&span);
+        let part = interval.moments(|node| shape.rise(&under(&outer, &interval, node)));
+        sum = Moments::stack(part, sum, above);
+        above += shape.rise(&outer);
+        rest = inner;
+    }
+    sum
 }

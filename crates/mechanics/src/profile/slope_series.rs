@@ -7,19 +7,24 @@
 //!
 //! Neighbouring rings share a root, and all runs over plain arrays, several radii at a time.
 
+use std::ops::Range;
+
 #[cfg(test)]
 use super::call_count;
+use super::distant_rings::DistantRings;
 use super::logarithm::ln_1p;
 use super::{DoubleDouble, Ring, StressRadius};
 
 /// Radii that are summed for side by side: roots and divisions take long, and one need not wait for another's.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 /// The most powers of x in a series.
 pub(super) const MOST_POWERS: usize = 40;
+/// From so many rings and radii on those of a parabola are summed by clusters.
+const MANY: (usize, usize) = (128, 48);
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
-type Lanes = [f64; LANES];
+pub(super) type Lanes = [f64; LANES];
 
 /// Rings of a profile whose g' is a series, from the edge inward.
 pub(super) struct SeriesRings<'a> {
@@ -42,6 +47,37 @@ impl Point {
     fn new(square: DoubleDouble, radius: f64, edge: f64) -> Point {
         let (square, rest) = square.parts();
         Point { square, rest, xi: radius / edge }
+    }
+}
+
+/// The squares of as many radii as there are lanes, in both parts, and the least and the greatest of them.
+struct Place {
+    square: Lanes,
+    rest: Lanes,
+    least: f64,
+    greatest: f64,
+}
+
+impl Place {
+    /// Lanes left over repeat the first.
+    fn of(squares: impl Iterator<Item = DoubleDouble>) -> Place {
+        let mut place = Place { square: [0.0; LANES], rest: [0.0; LANES], least: f64::INFINITY, greatest: 0.0 };
+        let mut count = 0;
+        for square in squares.take(LANES) {
+            (place.square[count], place.rest[count]) = square.parts();
+            count += 1;
+        }
+        for lane in count..LANES {
+            (place.square[lane], place.rest[lane]) = (place.square[0], place.rest[0]);
+        }
+        place.least = place.square.iter().copied().fold(f64::INFINITY, f64::min);
+        place.greatest = place.square.iter().copied().fold(0.0, f64::max);
+        place
+    }
+
+    /// How far an end is beyond each of them. Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
+    fn excess(&self, end: &Point, unit: f64) -> Lanes {
+        std::array::from_fn(|lane| ((end.square - self.square[lane]) + (end.rest - self.rest[lane])) * unit)
     }
 }
 
@@ -138,35 +174,63 @@ impl SeriesRings<'_> {
 
     /// The sums at each radius.
     pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
+        let parabola = matches!(self.series, [0.0, _]);
+        if parabola && self.rings.len() >= MANY.0 && radii.len() >= MANY.1 {
+            return self.sums_by_clusters(radii);
+        }
         let mut sums = Vec::with_capacity(radii.len());
         let mut antiderivative = Antiderivative::of(self.series);
         for radii in radii.chunks(LANES) {
-            // Lanes left over repeat the first.
-            let mut squares = [radii[0].square; LANES];
-            for (square, at) in squares.iter_mut().zip(radii) {
-                *square = at.square;
-            }
-            sums.extend_from_slice(&self.lanes(&squares, &mut antiderivative)[..radii.len()]);
+            let place = Place::of(radii.iter().map(|at| at.square));
+            let mut lanes = [0.0; LANES];
+            antiderivative.fill(self.series, &place.square.map(|square| square * self.unit));
+            self.add(0..self.rings.len(), &place, &antiderivative, &mut lanes);
+            sums.extend_from_slice(&lanes[..radii.len()]);
         }
         sums
     }
 
-    /// The sums at as many radii as there are lanes, whose squares are given.
-    fn lanes(&self, squares: &[DoubleDouble; LANES], antiderivative: &mut Antiderivative) -> Lanes {
-        let (square, rest) = (squares.map(|square| square.parts().0), squares.map(|square| square.parts().1));
-        let least = square.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = square.iter().copied().fold(0.0, f64::max);
-        // Squares that nearly agree cancel without a loss, and the rest is what rounding them has lost.
-        let excess = |end: &Point| -> Lanes {
-            std::array::from_fn(|lane| ((end.square - square[lane]) + (end.rest - rest[lane])) * self.unit)
-        };
+    /// The same of a parabola, what is far from a few neighbouring radii by [`DistantRings`].
+    fn sums_by_clusters(&self, radii: &[StressRadius]) -> Vec<f64> {
+        let rings: Vec<(f64, f64)> = self.rings.iter().map(|ring| (ring.gap, ring.weight)).collect();
+        let distant = DistantRings::new(&rings);
+        let mut order: Vec<usize> = (0..radii.len()).collect();
+        order.sort_unstable_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
+        let mut sums = vec![0.0; radii.len()];
+        let (mut far, mut near) = (Vec::new(), Vec::new());
+        let mut antiderivative = Antiderivative::of(self.series);
+        for order in order.chunks(LANES) {
+            let place = Place::of(order.iter().map(|&index| radii[index].square));
+            let mut lanes = [0.0; LANES];
+            antiderivative.fill(self.series, &place.square.map(|square| square * self.unit));
+            let last = self.rings.partition_point(|ring| ring.end.square >= place.least);
+            // Far by so much that the rounding of a difference does not count.
+            let distance = |index: usize| {
+                let square = self.rings[index].end.square;
+                (square * (1.0 - 4.0 * f64::EPSILON) - place.greatest) * self.unit
+            };
+            distant.divide(last, distance, &mut far, &mut near);
+            for run in &near {
+                self.add(run.clone(), &place, &antiderivative, &mut lanes);
+            }
+            let sum = distant.sum(&far, |index| place.excess(&self.rings[index].end, self.unit));
+            for ((&index, near), far) in order.iter().zip(lanes).zip(sum) {
+                sums[index] = near + 0.5 * self.series[1] * far;
+            }
+        }
+        sums
+    }
+
+    /// Adds what the rings `run` say at as many radii as there are lanes.
+    fn add(&self, run: Range<usize>, place: &Place, antiderivative: &Antiderivative, sums: &mut Lanes) {
+        let Place { square, least, greatest, .. } = *place;
+        let excess = |end: &Point| place.excess(end, self.unit);
         let rho_square: Lanes = square.map(|square| square * self.unit);
-        antiderivative.fill(self.series, &rho_square);
-        let (mut outer, mut reached): (&Point, Lanes) = (&self.edge, excess(&self.edge).map(root_of));
-        let mut sums = [0.0; LANES];
+        let edge = run.start.checked_sub(1).map_or(&self.edge, |outer| &self.rings[outer].end);
+        let (mut outer, mut reached): (&Point, Lanes) = (edge, excess(edge).map(root_of));
         // Most rings lie clearly beyond all the radii of this chunk.
         let clear = greatest * (1.0 + 4.0 * f64::EPSILON);
-        for ring in &self.rings {
+        for ring in &self.rings[run] {
             #[cfg(test)]
             call_count::add(|calls| &mut calls.kernel);
             let below = excess(&ring.end);
@@ -195,7 +259,6 @@ impl SeriesRings<'_> {
                 break;
             }
         }
-        sums
     }
 }
 

@@ -6,10 +6,14 @@
 //! integrand is analytic for |Im s| < pi/2 and both root singularities are gone (the substitutions are elementary; for the
 //! profiles see Popov & Hess 2015, chapter 3).
 
-use super::gauss::along_strip;
+use super::gauss::{EIGHT_POINTS, Panel, Singular, TWELVE_POINTS, TWENTY_POINTS};
 use super::roots::{descend, increasing};
 use super::smooth_interval::SmoothInterval;
+pub(super) use super::smooth_path::{kernel, kernel_slope};
 use super::{DoubleDouble, Moments, Ring, Span, StressRadius};
+
+/// A difference of two t^2 above this, over the larger one, is good to five digits.
+const NEARLY: f64 = 1e-10;
 
 /// A profile for x >= b, given as a function of the coordinate t = sqrt(x^2 - b^2) in which it is smooth.
 pub(super) trait SmoothCoordinate {
@@ -27,23 +31,43 @@ pub(super) trait SmoothCoordinate {
     /// gamma = dg/dt (pure number), positive and not falling.
     fn slope_at(&self, t: f64) -> f64;
 
+    /// gamma at several t side by side, if it is singular nowhere above the kink and changes no faster than t.
+    fn slopes_at<const N: usize>(&self, _t: [f64; N]) -> Option<[f64; N]> {
+        None
+    }
+
     /// t gamma' - gamma (pure number): t^2 times the slope of gamma/t.
     fn bend_at(&self, t: f64) -> f64;
 
     /// g(top) - g(t), m, to round-off of itself; `dt` = top - t.
     fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64;
 
+    /// The same at several t side by side, each with its `dt` and its radius.
+    fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
+        std::array::from_fn(|index| self.rise_at(nodes.t[index], top, nodes.dt[index]))
+    }
+
     /// A t at which g less g(b) is not below `level`.
     fn upper_bound(&self, level: f64) -> f64;
 
     /// The t of a level.
     fn solve(&self, level: f64) -> f64 {
-        descend(self.upper_bound(level), |t| (self.level_at(t) - level, self.slope_at(t)))
+        solve(self, level)
     }
 
     /// t^2 of a level, m^2, as exact as can be.
     fn square_above(&self, level: DoubleDouble) -> DoubleDouble {
         DoubleDouble::square_of(self.solve(level.value()))
+    }
+
+    /// Whether the difference of two t^2 is that of their levels to round-off.
+    fn gap_by_squares(&self, low: f64, high: f64) -> bool {
+        low < 0.8 * high
+    }
+
+    /// The moments over a span above the kink, between `low` and `high` in t, `dt` = high - low, where they are closed.
+    fn moments_over(&self, _span: &Span, _ends: (f64, f64, f64)) -> Option<Moments> {
+        None
     }
 
     /// x, m.
@@ -77,6 +101,38 @@ pub(super) trait SmoothCoordinate {
     }
 }
 
+/// Several places of one span.
+pub(super) struct Nodes<const N: usize> {
+    /// t, m.
+    pub(super) t: [f64; N],
+    /// How far below the outer end they are, m.
+    pub(super) dt: [f64; N],
+    /// Their radii, m.
+    pub(super) x: [f64; N],
+}
+
+/// The t of a level, from above.
+pub(super) fn solve<F: SmoothCoordinate + ?Sized>(family: &F, level: f64) -> f64 {
+    descend(family.upper_bound(level), |t| (family.level_at(t) - level, family.slope_at(t)))
+}
+
+/// The root of an increasing function from a `guess` that is good to some thousandths: `f` gives value, slope and second derivative.
+///
+/// Halley's steps cube the error, so that what is left after one of 3e-6 is below round-off. `None` if four do not get there.
+pub(super) fn near_root(guess: f64, f: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
+    let mut x = guess;
+    for _ in 0..4 {
+        let [value, slope, bend] = f(x);
+        let newton = value / slope;
+        let step = newton / (1.0 - 0.5 * newton * bend / slope);
+        x -= step;
+        if step.abs() <= 3e-6 * x {
+            return Some(x);
+        }
+    }
+    None
+}
+
 /// t at a radius.
 pub(super) fn t_of(family: &impl SmoothCoordinate, radius: f64) -> f64 {
     ((radius - family.kink_radius()) * (radius + family.kink_radius())).max(0.0).sqrt()
@@ -99,7 +155,7 @@ pub(super) fn slope(family: &impl SmoothCoordinate, radius: f64) -> f64 {
 }
 
 /// Both ends of a span in t, and their difference.
-fn ends(family: &impl SmoothCoordinate, span: &Span) -> (f64, f64, f64) {
+pub(super) fn ends(family: &impl SmoothCoordinate, span: &Span) -> (f64, f64, f64) {
     let (low, high) = span.excess(DoubleDouble::square_of(family.kink_radius()));
     let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
     (low, high, if high > 0.0 { span.gap / (low + high) } else { 0.0 })
@@ -118,16 +174,21 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
     let square = DoubleDouble::square_of(family.kink_radius());
     let low = (ring.inner.square - square).value().max(0.0);
     let high = (ring.outer.square - square).value().max(0.0);
-    if low < 0.5 * high {
-        return high - low;
+    if family.gap_by_squares(low, high) {
+        return (ring.outer.square - if low > 0.0 { ring.inner.square } else { square }).value();
     }
     let top = high.sqrt();
-    let steep = family.slope_at(top);
-    // Where g is flat by rounding, its levels do not tell radii apart.
-    if steep <= 0.0 {
-        return high - low;
-    }
-    let mut dt = (depth / steep).min(0.5 * top);
+    let mut dt = if high - low > NEARLY * high {
+        // One step of Newton's does from here.
+        (high - low) / (top + low.sqrt())
+    } else {
+        let steep = family.slope_at(top);
+        // Where g is flat by rounding, its levels do not tell radii apart.
+        if steep <= 0.0 {
+            return high - low;
+        }
+        (depth / steep).min(0.5 * top)
+    };
     for _ in 0..8 {
         let t = top - dt;
         let steep = family.slope_at(t);
@@ -145,8 +206,53 @@ pub(super) fn gap(family: &impl SmoothCoordinate, ring: &Ring, depth: f64) -> f6
 
 /// The moments over a span above the core.
 pub(super) fn moments(family: &impl SmoothCoordinate, span: &Span) -> Moments {
-    let interval = interval(family, span);
-    interval.moments(|node| family.rise_at(node.t, interval.high, node.dt))
+    if span.gap <= 0.0 {
+        return Moments::default();
+    }
+    let (low, high, drop) = ends(family, span);
+    if let Some(moments) = family.moments_over(span, (low, high, drop)) {
+        return moments;
+    }
+    let singular = Singular { below: family.singularity(), above: f64::INFINITY };
+    let mut sum = [0.0; 2];
+    let mut done = 0.0;
+    while done < drop {
+        let (top, left) = (high - done, drop - done);
+        // So low that any rule will do; `done` would soon stop growing.
+        let panel = if top <= 1e-14 * high { Panel::coarse(left) } else { singular.panel(top, left) };
+        let stretch = (high, done, panel.width);
+        match panel.points() {
+            8 => add_panel(family, stretch, &EIGHT_POINTS, &mut sum),
+            12 => add_panel(family, stretch, &TWELVE_POINTS, &mut sum),
+            _ => add_panel(family, stretch, &TWENTY_POINTS, &mut sum),
+        }
+        if top <= 1e-14 * high {
+            break;
+        }
+        done += panel.width;
+    }
+    let [first, second] = sum;
+    Moments { width: span.width(), first, second }
+}
+
+/// Adds int h dx and int h^2 dx over a panel of t, which begins `done` below the outer end `high` and is `width` wide.
+fn add_panel<const N: usize>(
+    family: &impl SmoothCoordinate,
+    (high, done, width): (f64, f64, f64),
+    rule: &[(f64, f64); N],
+    [first, second]: &mut [f64; 2],
+) {
+    let square = family.kink_radius() * family.kink_radius();
+    let dt = rule.map(|(u, _)| done + width * u);
+    let t = dt.map(|dt| (high - dt).max(0.0));
+    let x = t.map(|t| (square + t * t).sqrt());
+    let nodes = Nodes { t, dt, x };
+    let h = family.rises_at(&nodes, high);
+    for (index, (_, weight)) in rule.iter().enumerate() {
+        let area = width * weight * h[index] * (nodes.t[index] / nodes.x[index]);
+        *first += area;
+        *second += area * h[index];
+    }
 }
 
 /// The span as one interval above the kink.
@@ -158,83 +264,6 @@ fn interval(family: &impl SmoothCoordinate, span: &Span) -> SmoothInterval {
 pub(super) fn displacement_integral(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span, above: f64) -> f64 {
     let interval = interval(family, span);
     interval.displacement_integral(span, at, above, |node| family.rise_at(node.t, interval.high, node.dt))
-}
-
-/// The path of integration of a kernel: from its outer end inward.
-struct Path {
-    kappa: f64,
-    low: f64,
-    high: f64,
-    v_low: f64,
-    v_high: f64,
-    length: f64,
-}
-
-impl Path {
-    /// For radii above r in a span; none if there are none.
-    fn new(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> Option<Path> {
-        let square = DoubleDouble::square_of(family.kink_radius());
-        let span = span.above(square, family.kink_radius())?;
-        let (inner, outer) = span.excess(at.square);
-        if outer <= 0.0 {
-            return None;
-        }
-        let (mut low, high, _) = ends(family, &span);
-        let kappa = (at.square - square).value();
-        let (mut v_low, v_high) = (inner.max(0.0).sqrt(), outer.sqrt());
-        let mut gap = span.gap;
-        if inner <= 0.0 {
-            (low, v_low, gap) = (kappa.max(0.0).sqrt(), 0.0, outer);
-        }
-        let steps = gap / (v_low + v_high) + gap / (low + high);
-        // At r = b in a profile that is smooth there, what lies this near to b adds nothing.
-        let start = if low + v_low > 0.0 { low + v_low } else { 1e-17 * (high + v_high) };
-        Some(Path { kappa, low, high, v_low, v_high, length: (steps / start).ln_1p() })
-    }
-
-    /// int f(t, v, t_outer - t) ds for an f that changes as a power of t does; `ceiling` is the t where it is singular.
-    fn integrate(&self, power: f64, ceiling: f64, f: impl Fn(f64, f64, f64) -> f64) -> f64 {
-        let end = self.high + self.v_high;
-        let room = if ceiling < f64::INFINITY {
-            ((ceiling + (ceiling * ceiling - self.kappa).sqrt()) / end).ln()
-        } else {
-            ceiling
-        };
-        along_strip(self.length, power.max(1.0).recip(), room, |s| {
-            let here = end * (-s).exp();
-            let other = self.kappa / here;
-            let drop = -0.5 * (-s).exp_m1() * (end - other);
-            // Far below the outer end the difference has lost its digits, and the sum of the two has not.
-            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
-            f(t.max(self.low), (0.5 * (here - other)).max(self.v_low), drop)
-        })
-    }
-}
-
-/// K over a span.
-pub(super) fn kernel(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(family, at, span) else { return 0.0 };
-    if path.low + path.v_low <= 0.0 && family.jumps() {
-        return f64::INFINITY;
-    }
-    path.integrate(family.power(), family.ceiling(), |t, _, drop| family.slope_below(t, path.high, drop))
-}
-
-/// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
-pub(super) fn kernel_slope(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
-    let Some(path) = Path::new(family, at, span) else { return 0.0 };
-    let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
-    if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
-        let integrand = |t, v, drop| family.slope_below(t, high, drop) / (v * v);
-        return 0.5 * path.integrate(family.power(), family.ceiling(), integrand);
-    }
-    if low <= 0.0 && family.jumps() {
-        return f64::NEG_INFINITY;
-    }
-    let bend =
-        path.integrate(family.power(), family.ceiling(), |t, _, drop| family.bend_below(t, high, drop) / (t * t));
-    let start = if v_low > 0.0 { family.slope_at(low) / (low * v_low) } else { 0.0 };
-    0.5 * (bend + start - family.slope_at(high) / (high * v_high))
 }
 
 /// Implements `Shape` for a family with a flat core through its [`SmoothCoordinate`]: all but its loads and the given methods.

@@ -28,6 +28,26 @@ impl Sphere {
         self.curvature_radius
     }
 
+    /// The moments of a ring, of which its depth and its two radii say all.
+    #[inline]
+    pub(super) fn moments_between(&self, ring: &Ring) -> Moments {
+        let gap = if ring.depth > 0.0 { self.curvature_radius * ring.depth } else { 0.0 };
+        let outer = ring.outer.radius;
+        self.moments_by_width(outer, if gap > 0.0 { gap / (ring.inner.radius + outer) } else { 0.0 })
+    }
+
+    #[inline]
+    fn moments_by_width(&self, outer: f64, width: f64) -> Moments {
+        let area = width * width / self.curvature_radius;
+        Moments {
+            width,
+            first: area * (outer - width / 3.0),
+            second: area
+                * (width / self.curvature_radius)
+                * ((4.0 / 3.0 * outer - width) * outer + width * width / 5.0),
+        }
+    }
+
     /// The same where R follows from other, checked numbers.
     pub(super) fn of_curvature(radius: f64) -> Sphere {
         Sphere { curvature_radius: radius }
@@ -69,15 +89,7 @@ impl Shape for Sphere {
     }
 
     fn moments(&self, span: &Span) -> Moments {
-        let (outer, width) = (span.outer_radius, span.width());
-        let area = width * width / self.curvature_radius;
-        Moments {
-            width,
-            first: area * (outer - width / 3.0),
-            second: area
-                * (width / self.curvature_radius)
-                * ((4.0 / 3.0 * outer - width) * outer + width * width / 5.0),
-        }
+        self.moments_by_width(span.outer_radius, span.width())
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {

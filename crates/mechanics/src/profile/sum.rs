@@ -4,10 +4,13 @@
 //! bracketed method. A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where
 //! the others make up for it: X(y) then lies between the flat radius of the sum and where it ends or falls.
 
+use super::polynomial::Polynomial;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, Series};
 use super::roots::increasing;
-use super::shape::{End, Shape};
-use super::{DoubleDouble, Error, InterpolationError, Point, Profile, Ring, Span, StressRadius, Tabulated, range};
+use super::shape::{self, End, Shape};
+use super::{
+    DoubleDouble, Error, InterpolationError, Moments, Point, Profile, Ring, Span, StressRadius, Tabulated, range,
+};
 
 /// How far beyond a kink, or below a vertical end, relative to its radius, a radius still lacks digits that a level has.
 const NEAR: f64 = 1e-2;
@@ -32,6 +35,8 @@ pub struct Sum {
     ceiling: f64,
     power: f64,
     analytic_tip: bool,
+    /// g, where it is one.
+    polynomial: Option<Polynomial>,
 }
 
 impl Sum {
@@ -63,6 +68,7 @@ impl Sum {
             ceiling: flat.iter().map(Shape::ceiling).fold(f64::INFINITY, f64::min),
             power: flat.iter().map(Shape::power).fold(1.0, f64::max),
             analytic_tip: flat.iter().all(Shape::analytic_tip),
+            polynomial: Polynomial::of(&flat),
             parts: flat,
             kinks,
         };
@@ -130,6 +136,11 @@ impl Sum {
         Span { inner, outer, inner_radius: base, outer_radius: outer.value().sqrt(), gap, edge: 0.0 }
     }
 
+    /// The least of the radii at which a part alone has a level: not below that of the sum.
+    fn least_radius(&self, level: f64) -> f64 {
+        self.parts.iter().map(|part| part.radius(level)).fold(f64::INFINITY, f64::min)
+    }
+
     fn total(&self, f: impl Fn(&Profile) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }
@@ -164,14 +175,23 @@ impl Sum {
 
 impl Shape for Sum {
     fn level(&self, radius: f64) -> f64 {
+        if let Some(polynomial) = &self.polynomial {
+            return polynomial.level(radius);
+        }
         self.total(|part| part.level(radius))
     }
 
     fn slope(&self, radius: f64) -> f64 {
+        if let Some(polynomial) = &self.polynomial {
+            return polynomial.slope(radius);
+        }
         self.total(|part| part.slope(radius))
     }
 
     fn radius(&self, level: f64) -> f64 {
+        if let Some(polynomial) = self.polynomial.as_ref().filter(|_| level > 0.0) {
+            return polynomial.radius(level, self.least_radius(level));
+        }
         match self.rim {
             Some((rim, top)) if level >= top => rim,
             _ => self.inverse(level, Shape::radius, Shape::level, |x| Shape::slope(self, x)),
@@ -233,7 +253,15 @@ impl Shape for Sum {
     }
 
     fn rise(&self, span: &Span) -> f64 {
-        self.total(|part| part.rise(span))
+        self.polynomial.map_or_else(|| self.total(|part| part.rise(span)), |polynomial| polynomial.rise(span))
+    }
+
+    fn gap(&self, ring: &Ring, depth: f64) -> f64 {
+        self.polynomial.map_or_else(|| shape::gap(self, ring, depth), |polynomial| polynomial.gap(ring, depth))
+    }
+
+    fn moments(&self, span: &Span) -> Moments {
+        self.polynomial.map_or_else(|| shape::moments(self, span), |polynomial| polynomial.moments(span))
     }
 
     fn rim(&self) -> Option<(f64, f64)> {

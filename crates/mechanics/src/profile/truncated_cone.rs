@@ -3,8 +3,11 @@
 //! gamma = dg/dt = T (phi t + b)/x, int x dg = (T/2)(x^2 phi + b t) (Shtaerman 1949; Popov & Hess 2015). f' jumps at b: pressure
 //! and shear are log-infinite there.
 
+use std::f64::consts::FRAC_PI_2;
+
+use super::angle::angles;
 use super::power_series::{KinkSeries, Place, Series};
-use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
+use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
 /// A truncated cone.
@@ -59,6 +62,44 @@ impl SmoothCoordinate for TruncatedCone {
     fn upper_bound(&self, level: f64) -> f64 {
         // phi >= t/x.
         level / self.slope
+    }
+
+    fn slopes_at<const N: usize>(&self, t: [f64; N]) -> Option<[f64; N]> {
+        let b = self.flat_radius;
+        let (angle, _) = angles(t.map(|t| t / b));
+        Some(std::array::from_fn(|index| {
+            let t = t[index];
+            self.slope * (t * angle[index] + b) / (b * b + t * t).sqrt()
+        }))
+    }
+
+    fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
+        let (b, x_top, whole) = (self.flat_radius, self.radius_at(top), top.atan2(self.flat_radius));
+        let both = nodes.t.map(|t| b * b + t * top);
+        let (turn, _) = angles::<N>(std::array::from_fn(|index| b * nodes.dt[index] / both[index]));
+        std::array::from_fn(|index| {
+            let (t, dt, x) = (nodes.t[index], nodes.dt[index], nodes.x[index]);
+            // What the difference of the angles loses near the rim counts only beside the first term.
+            self.slope * (x_top * turn[index] + (whole - turn[index]) * dt * (t + top) / (x + x_top))
+        })
+    }
+
+    fn solve(&self, level: f64) -> f64 {
+        let b = self.flat_radius;
+        let height = level / (self.slope * b);
+        // sqrt(1 + u^2) atan(u) = height, whose u this is to 1.2e-3.
+        let [p, q, r] = [1.424_421, 0.553_947_04, 1.398_492_3];
+        let guess = if height < 1.0 {
+            height * (1.0 + height * (p + height * q)) / (1.0 + height * (r + height * FRAC_PI_2 * q))
+        } else {
+            let w = height.recip();
+            height * (w * (w + p) + q) / (w * (w + r) + FRAC_PI_2 * q)
+        };
+        let near = smooth_coordinate::near_root(guess, |u| {
+            let (x, phi) = ((1.0 + u * u).sqrt(), u.atan());
+            [x * phi - height, (u * phi + 1.0) / x, phi / (x * x * x)]
+        });
+        near.map_or_else(|| smooth_coordinate::solve(self, level), |u| b * u)
     }
 }
 

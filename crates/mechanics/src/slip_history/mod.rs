@@ -12,10 +12,13 @@
 //! as absolute positions, so no error accumulates.
 
 mod packed;
+mod piece;
 
 use super::double_double::DoubleDouble;
 use super::friction_work::{self, SlipRing};
 use super::profile::{Moments, Point, Profile, Ring};
+pub(super) use piece::{Line, Piece};
+use piece::{Sums, rise};
 
 /// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
 /// is itself rounded. w at the edge is rounded by as much.
@@ -26,49 +29,6 @@ pub(super) const SAME_TURNING_POINT: f64 = 1e-28;
 
 /// The largest share of a change of the load that may be rounding.
 const ROUNDED_SHARE: f64 = 1e-6;
-
-/// A straight part of w - W over y: `offset + slope * y`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Line {
-    pub(super) offset: DoubleDouble,
-    pub(super) slope: DoubleDouble,
-}
-
-impl Line {
-    pub(super) fn at(&self, level: DoubleDouble) -> DoubleDouble {
-        if self.slope == DoubleDouble::ZERO { self.offset } else { self.offset + rise(self.slope, level) }
-    }
-}
-
-/// `slope * level`, without a product for the slopes -1, 0 and 1 of all moves at constant load.
-fn rise(slope: DoubleDouble, level: DoubleDouble) -> DoubleDouble {
-    let (whole, rest) = slope.parts();
-    if rest.abs() > 0.0 {
-        slope * level
-    } else if whole.abs() >= 1.0 {
-        level.signed(whole)
-    } else {
-        level * whole
-    }
-}
-
-/// Sums over the pieces for force and elastic energy, from the centre outward: `force` = sum of slope * int X dy,
-/// `energy` = sum of slope * int (w - W) X dy, and `size`, the sum of the magnitudes in `force`, with which rounding
-/// errors scale.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Sums {
-    force: DoubleDouble,
-    energy: DoubleDouble,
-    size: f64,
-}
-
-/// One straight piece, from its inner end to the next piece's (or to the edge).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Piece {
-    pub(super) inner: Point,
-    pub(super) line: Line,
-    below: Sums,
-}
 
 /// The state of the tangential problem in scaled units: lengths in m, integrals of X over y in m^2.
 #[derive(Clone, Debug, Default)]
@@ -93,7 +53,7 @@ impl SlipHistory {
         if history.in_contact() {
             // The whole contact as one unloaded piece.
             let inner = profile.point(DoubleDouble::ZERO);
-            history.pieces.push(Piece { inner, line: Line::default(), below: Sums::default() });
+            history.pieces.push(Piece { inner, ..Piece::default() });
         }
         history
     }
@@ -185,7 +145,8 @@ impl SlipHistory {
             self.place(profile, d1, w1);
             return work;
         }
-        let (dd, dw) = (d1 - self.edge.level, w1 - self.position);
+        let dw = w1 - self.position;
+        let dd = if d1 == self.edge.level { DoubleDouble::ZERO } else { d1 - self.edge.level };
         if dd >= dw.abs() {
             self.grow(profile, d1, w1);
             return 0.0;
@@ -243,6 +204,9 @@ impl SlipHistory {
             }
             self.edge = edge_at(profile, d1);
             self.position = w1;
+            if let Some(top) = self.pieces.last_mut() {
+                top.moments = None;
+            }
             let trial = self.pieces.last().map_or(DoubleDouble::ZERO, |top| top.line.at(d1)) + self.shift();
             if trial.abs().value() <= round_off(d1, self.shift(), dd) {
                 // The move takes the last rise of the load back along the same line.
@@ -277,9 +241,9 @@ impl SlipHistory {
             if stuck_from.is_none() && excess <= at_bound {
                 stuck_from = Some(outer);
             }
-            let Some(top) = self.pieces.last().copied() else { break profile.point(DoubleDouble::ZERO) };
-            let inner_excess = slipping.excess(&top.line, top.inner.level);
-            if let Some(level) = slipping.crossing(&top, inner_excess, &outer) {
+            let Some(top) = self.pieces.last() else { break profile.point(DoubleDouble::ZERO) };
+            let inward = slipping.inward(top);
+            if let Some(level) = slipping.crossing(top, &inward, &outer) {
                 let cut = profile.point(level);
                 let ring = Ring::between(cut, outer);
                 let moments = profile.moments(&ring);
@@ -289,8 +253,8 @@ impl SlipHistory {
                 break cut;
             }
             let ring = Ring::between(top.inner, outer);
-            work += slipping.work(&profile.moments(&ring), &top.line, excess, &ring);
-            excess = inner_excess.value();
+            work += slipping.work(&top.moments_to(profile, &outer), &top.line, excess, &ring);
+            excess = inward.excess.value();
             outer = top.inner;
             self.pieces.pop();
             if self.pieces.is_empty() {
@@ -300,8 +264,8 @@ impl SlipHistory {
         if dd.value() > 0.0 {
             self.edge = edge_at(profile, d1);
         }
-        let below = if let Some(top) = self.pieces.last() {
-            top.sums(profile, start)
+        let below = if let Some(top) = self.pieces.last_mut() {
+            top.end_at(profile, &start)
         } else {
             self.reference = w1;
             Sums::default()
@@ -329,39 +293,14 @@ impl SlipHistory {
         below: Sums,
     ) {
         let line = Line { offset: -(shift + rise(slope, self.edge.level)), slope };
-        self.pieces.push(Piece { inner: ring.inner, line, below });
+        self.pieces.push(Piece::new(ring.inner, line, below, Some(*moments)));
         self.total = below.and(moments, ring, slope.value(), -shift.value());
     }
 
     /// Sums up to the edge, from the sums below the top piece.
     fn close(&mut self, profile: &Profile) {
-        self.total = self.pieces.last().map_or_else(Sums::default, |top| top.sums(profile, self.edge));
-    }
-}
-
-impl Piece {
-    /// The sums up to `outer`, where the piece ends.
-    fn sums(&self, profile: &Profile, outer: Point) -> Sums {
-        let slope = self.line.slope.value();
-        if slope.abs() <= 0.0 {
-            return self.below;
-        }
-        let ring = Ring::between(self.inner, outer);
-        self.below.and(&profile.moments(&ring), &ring, slope, self.line.at(outer.level).value())
-    }
-}
-
-impl Sums {
-    /// With the share of a ring of these moments, over which w - W has this slope up to its value at the outer end.
-    fn and(&self, moments: &Moments, ring: &Ring, slope: f64, carried: f64) -> Sums {
-        // By parts: int X dy = x_inner depth + int h dx, int (y_outer - y) X dy = (x_inner depth^2 + int h^2 dx)/2.
-        let load = ring.inner.radius * ring.depth + moments.first;
-        let lever = 0.5 * (ring.inner.radius * ring.depth * ring.depth + moments.second);
-        Sums {
-            force: self.force + DoubleDouble::from(slope * load),
-            energy: self.energy + DoubleDouble::from(slope * (carried * load - slope * lever)),
-            size: self.size + slope.abs() * load,
-        }
+        let edge = self.edge;
+        self.total = self.pieces.last_mut().map_or_else(Sums::default, |top| top.end_at(profile, &edge));
     }
 }
 

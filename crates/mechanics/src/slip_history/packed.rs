@@ -56,7 +56,7 @@ impl SlipHistory {
             if !sound || inner.level >= edge.level {
                 return None;
             }
-            pieces.push(Piece { inner, line, below: Sums::unpack(reader)? });
+            pieces.push(Piece::new(inner, line, Sums::unpack(reader)?, None));
         }
         let history = SlipHistory { pieces, edge, total, position, reference, slip_from };
         (history.in_contact() != history.pieces.is_empty()).then_some(history)

@@ -6,6 +6,7 @@ mod coarse_tables;
 mod curved_moves;
 mod curved_tolerance;
 mod cycles;
+mod deep_history;
 mod digits;
 mod double_double;
 mod elasticity;

@@ -1,0 +1,134 @@
+//! The kernels of families with a kink, over the path of [`smooth_coordinate`](super::smooth_coordinate).
+//!
+//! A short path, that of most rings of a slip history, takes one panel of Gauss's rule, as [`along_strip`] would give it, with all of its
+//! points side by side.
+
+use super::gauss::{EIGHT_POINTS, TWELVE_POINTS, along_strip};
+use super::smooth_coordinate::{SmoothCoordinate, ends};
+use super::{DoubleDouble, Span, StressRadius};
+
+/// The lengths up to which the rules of eight and of twelve points serve.
+const SHORT: (f64, f64) = (0.6, 1.4);
+/// One over 2, 3 and so on: the last term of e^s is below 1e-17 of one at the larger of these lengths.
+const RECIPROCALS: [f64; 21] = {
+    let mut recips = [0.5; 21];
+    let mut index = 0;
+    while index < recips.len() {
+        recips[index] = 1.0 / (index + 2) as f64;
+        index += 1;
+    }
+    recips
+};
+
+/// The path of integration of a kernel: from its outer end inward.
+struct Path {
+    kappa: f64,
+    low: f64,
+    high: f64,
+    v_low: f64,
+    v_high: f64,
+    length: f64,
+}
+
+impl Path {
+    /// For radii above r in a span; none if there are none.
+    fn new(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> Option<Path> {
+        let square = DoubleDouble::square_of(family.kink_radius());
+        let span = span.above(square, family.kink_radius())?;
+        let (inner, outer) = span.excess(at.square);
+        if outer <= 0.0 {
+            return None;
+        }
+        let (mut low, high, _) = ends(family, &span);
+        let kappa = (at.square - square).value();
+        let (mut v_low, v_high) = (inner.max(0.0).sqrt(), outer.sqrt());
+        let mut gap = span.gap;
+        if inner <= 0.0 {
+            (low, v_low, gap) = (kappa.max(0.0).sqrt(), 0.0, outer);
+        }
+        let steps = gap / (v_low + v_high) + gap / (low + high);
+        // At r = b in a profile that is smooth there, what lies this near to b adds nothing.
+        let start = if low + v_low > 0.0 { low + v_low } else { 1e-17 * (high + v_high) };
+        Some(Path { kappa, low, high, v_low, v_high, length: (steps / start).ln_1p() })
+    }
+
+    /// K by one panel over a short path, the family's gamma side by side.
+    fn short(&self, family: &impl SmoothCoordinate) -> Option<f64> {
+        if self.length <= SHORT.0 {
+            self.by_rule(family, &EIGHT_POINTS)
+        } else if self.length <= SHORT.1 {
+            self.by_rule(family, &TWELVE_POINTS)
+        } else {
+            None
+        }
+    }
+
+    fn by_rule<const N: usize>(&self, family: &impl SmoothCoordinate, rule: &[(f64, f64); N]) -> Option<f64> {
+        let end = self.high + self.v_high;
+        // e^s - 1 by its series of positive terms.
+        let s = rule.map(|(u, _)| self.length * u);
+        let mut growth = [1.0; N];
+        for recip in RECIPROCALS.iter().rev() {
+            for lane in 0..N {
+                growth[lane] = 1.0 + growth[lane] * s[lane] * recip;
+            }
+        }
+        let t: [f64; N] = std::array::from_fn(|lane| {
+            let grown = 1.0 + s[lane] * growth[lane];
+            let here = end / grown;
+            let other = self.kappa / here;
+            let drop = 0.5 * s[lane] * growth[lane] / grown * (end - other);
+            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
+            t.max(self.low)
+        });
+        let slopes = family.slopes_at(t)?;
+        Some(self.length * slopes.iter().zip(rule).map(|(slope, (_, weight))| slope * weight).sum::<f64>())
+    }
+
+    /// int f(t, v, t_outer - t) ds for an f that changes as a power of t does; `ceiling` is the t where it is singular.
+    fn integrate(&self, power: f64, ceiling: f64, f: impl Fn(f64, f64, f64) -> f64) -> f64 {
+        let end = self.high + self.v_high;
+        let room = if ceiling < f64::INFINITY {
+            ((ceiling + (ceiling * ceiling - self.kappa).sqrt()) / end).ln()
+        } else {
+            ceiling
+        };
+        along_strip(self.length, power.max(1.0).recip(), room, |s| {
+            let here = end * (-s).exp();
+            let other = self.kappa / here;
+            let drop = -0.5 * (-s).exp_m1() * (end - other);
+            // Far below the outer end the difference has lost its digits, and the sum of the two has not.
+            let t = if drop < 0.5 * self.high { self.high - drop } else { 0.5 * (here + other) };
+            f(t.max(self.low), (0.5 * (here - other)).max(self.v_low), drop)
+        })
+    }
+}
+
+/// K over a span.
+pub(super) fn kernel(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
+    let Some(path) = Path::new(family, at, span) else { return 0.0 };
+    if path.low + path.v_low <= 0.0 && family.jumps() {
+        return f64::INFINITY;
+    }
+    if let Some(kernel) = path.short(family) {
+        return kernel;
+    }
+    path.integrate(family.power(), family.ceiling(), |t, _, drop| family.slope_below(t, path.high, drop))
+}
+
+/// dK/d(r^2) over a span: (1/2) int gamma dt/v^3, by parts where v starts from zero or nearly so.
+pub(super) fn kernel_slope(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
+    let Some(path) = Path::new(family, at, span) else { return 0.0 };
+    let (low, high, v_low, v_high) = (path.low, path.high, path.v_low, path.v_high);
+    if v_low > 0.0 && (path.kappa <= 0.0 || v_high < 2.0 * v_low) {
+        let integrand = |t, v, drop| family.slope_below(t, high, drop) / (v * v);
+        return 0.5 * path.integrate(family.power(), family.ceiling(), integrand);
+    }
+    if low <= 0.0 && family.jumps() {
+        return f64::NEG_INFINITY;
+    }
+    let bend =
+        path.integrate(family.power(), family.ceiling(), |t, _, drop| family.bend_below(t, high, drop) / (t * t));
+    let start = if v_low > 0.0 { family.slope_at(low) / (low * v_low) } else { 0.0 };
+    0.5 * (bend + start - family.slope_at(high) / (high * v_high))
+}
