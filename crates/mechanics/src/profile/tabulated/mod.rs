@@ -10,13 +10,15 @@
 mod build;
 mod interpolation_error;
 mod kernel_sums;
+mod legendre;
+mod near_kernel;
 mod panel;
+mod source_tree;
 mod spline;
 #[cfg(test)]
 mod tests;
 
 use super::super::error::TableFault;
-use super::far_field::FarField;
 use super::kernel_sums::FEW;
 use super::moment_tree::MomentTree;
 use super::shape::{self, End, Shape};
@@ -25,7 +27,9 @@ use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 pub use interpolation_error::InterpolationError;
 pub(super) use kernel_sums::WeightedPanels;
+use legendre::LegendreMoments;
 use panel::Panel;
+use source_tree::SourceTree;
 use spline::Knot;
 
 /// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the panel's end: it is
@@ -48,7 +52,7 @@ pub struct Tabulated {
     /// Moments and depth of all runs of panels.
     tree: MomentTree,
     /// The kernel's sources.
-    sources: FarField,
+    sources: SourceTree,
     knots: Vec<f64>,
     /// The sums of [`Panel::steepest`] before each panel.
     steepest: Vec<f64>,
@@ -114,12 +118,7 @@ impl Tabulated {
         let end = (last.end().1, level, load);
         let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
         let tree = MomentTree::new(panels.iter().map(leaf));
-        let mut bounds: Vec<f64> = panels.iter().map(|panel| panel.square.value()).collect();
-        bounds.push(last.end().0.value());
-        let sources = FarField::new(&bounds, LEAF, |index, add| {
-            let panel = &panels[index];
-            kernel_sums::sources(panel, panel.low, panel.high, 1.0, add);
-        });
+        let sources = SourceTree::new(&panels);
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
         let steepest = panels.iter().scan(0.0, |sum, panel| Some(std::mem::replace(sum, *sum + panel.steepest())));
@@ -190,27 +189,43 @@ impl Tabulated {
         (low, if whole { inner } else { inner + 1 }..outer, high)
     }
 
-    /// Sums over the panels of a span: `panel` for one, `far` for sources that replace many; only radii beyond r count.
+    /// A panel as a span, up to the very square where the next one begins.
+    fn span_of_panel(&self, index: usize) -> Span {
+        let panel = &self.panels[index];
+        self.panels.get(index + 1).map_or_else(|| panel.span(), |next| panel.span_up_to(next))
+    }
+
+    /// The kernel of a whole panel.
+    fn kernel_of_panel(&self, index: usize, at: &StressRadius) -> f64 {
+        let panel = &self.panels[index];
+        let end = self.panels.get(index + 1).map_or_else(|| panel.end().0, |next| next.square);
+        let closed = near_kernel::kernel(panel, &panel.powers, at, end);
+        closed.unwrap_or_else(|| smooth_coordinate::kernel(panel, at, &self.span_of_panel(index)))
+    }
+
+    /// Sums over the panels of a span beyond r: `part` of one that the span cuts, `whole` of others, and `far` of clusters of them.
     fn gather(
         &self,
         at: &StressRadius,
         span: &Span,
-        panel: impl Fn(&Panel, &Span) -> f64,
-        far: impl Fn(f64, f64) -> f64,
+        part: impl Fn(&Panel, &Span) -> f64,
+        whole: impl Fn(usize) -> f64,
+        far: impl Fn((f64, f64), &LegendreMoments, f64) -> f64,
     ) -> f64 {
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
-        let (low, whole, high) = self.parts(&span);
+        let (low, between, high) = self.parts(&span);
         let mut sum = 0.0;
         for (index, span) in [low, high].into_iter().flatten() {
-            sum += panel(&self.panels[index], &span);
+            sum += part(&self.panels[index], &span);
         }
-        let square = at.square.value();
+        let below = at.square.value();
         let (mut distant, mut close) = (0.0, 0.0);
         self.sources.visit(
-            whole,
-            (square, square),
-            &mut |place, weight| distant += far(place - square, weight),
-            &mut |index| close += panel(&self.panels[index], &self.panels[index].span()),
+            self.sources.root(),
+            &between,
+            below,
+            &mut |cluster| distant += far(cluster.interval, &cluster.moments, below),
+            &mut |index| close += whole(index),
         );
         sum + close + distant
     }
@@ -384,7 +399,8 @@ impl Shape for Tabulated {
             at,
             span,
             |panel, span| smooth_coordinate::kernel(panel, at, span),
-            |gap, weight| weight / gap.sqrt(),
+            |index| self.kernel_of_panel(index, at),
+            legendre::potential,
         )
     }
 
@@ -393,8 +409,9 @@ impl Shape for Tabulated {
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
-        self.gather(at, span, |panel, span| smooth_coordinate::kernel_slope(panel, at, span), far)
+        let part = |panel: &Panel, span: &Span| smooth_coordinate::kernel_slope(panel, at, span);
+        let whole = |index: usize| part(&self.panels[index], &self.panels[index].span());
+        self.gather(at, span, part, whole, legendre::potential_slope)
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {

@@ -4,7 +4,7 @@
 //! in x, and q keeps gamma = dg/dt = t q exact as t goes to zero.
 
 use super::super::smooth_coordinate::SmoothCoordinate;
-use super::{DoubleDouble, Span, gauss};
+use super::{DoubleDouble, Span, gauss, near_kernel};
 
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
@@ -34,6 +34,8 @@ pub(super) struct Panel {
     /// Coefficients of q and, for u from -1 on, of P.
     slope: Box<[f64]>,
     primitive: Box<[f64]>,
+    /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
+    pub(super) powers: Box<[f64]>,
     /// How many terms of P are more than [`NEGLIGIBLE`].
     terms: usize,
 }
@@ -103,6 +105,7 @@ impl Panel {
             square,
             level: 0.0,
             load: 0.0,
+            powers: near_kernel::powers(&slope, low, high),
             slope: slope.into(),
             primitive: primitive.into(),
             terms,
