@@ -10,13 +10,13 @@ use std::cell::RefCell;
 #[cfg(test)]
 use super::super::call_count;
 use super::legendre::{self, LegendreMoments, ORDERS};
-use super::source_tree::{Cluster, add_panel, is_far};
+use super::source_tree::{Cluster, add_panel};
 use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, smooth_coordinate};
 use std::ops::Range;
 
 /// The panels of a table by their weights.
 pub(crate) struct WeightedPanels<'a> {
-    table: &'a Tabulated,
+    pub(super) table: &'a Tabulated,
     /// Runs of panels that lie in one ring, and its weight, from the centre outward.
     runs: Vec<(Range<usize>, f64)>,
     /// The parts of panels that rings cut, by their panels.
@@ -112,7 +112,7 @@ impl WeightedPanels<'_> {
         let mut sum = 0.0;
         let whole = |index: usize| self.table.kernel_of_panel(index, at);
         let part = |panel: &Panel, span: &Span| smooth_coordinate::kernel(panel, at, span);
-        self.visit(at, legendre::potential, whole, part, |part| sum += part);
+        self.visit_above(at, legendre::potential, whole, part, |part| sum += part);
         sum
     }
 
@@ -125,15 +125,15 @@ impl WeightedPanels<'_> {
             smooth_coordinate::kernel_slope(panel, at, span)
         };
         let whole = |index: usize| part(&self.table.panels[index], &self.table.span_of_panel(index));
-        self.visit(at, legendre::potential_slope, whole, part, |part| {
+        self.visit_above(at, legendre::potential_slope, whole, part, |part| {
             sum += part;
             size += part.abs();
         });
         (sum, size)
     }
 
-    /// Adds what clusters of panels do from afar, and each of the others by itself.
-    fn visit(
+    /// Adds what lies above r: what clusters of panels do from afar, and each of the others by itself.
+    fn visit_above(
         &self,
         at: &StressRadius,
         far: impl Fn((f64, f64), &LegendreMoments, f64) -> f64,
@@ -141,9 +141,22 @@ impl WeightedPanels<'_> {
         part: impl Fn(&Panel, &Span) -> f64,
         add: impl FnMut(f64),
     ) {
+        let (panels, below) = (self.table.find(at.radius)..self.table.panels.len(), at.square.value());
+        let far = |interval, moments: &LegendreMoments| far(interval, moments, below);
+        self.visit(panels, |interval| legendre::is_far(interval, below), far, whole, part, add);
+    }
+
+    /// Adds what these panels do: by clusters where those are far, else panel by panel and part by part.
+    pub(super) fn visit(
+        &self,
+        panels: Range<usize>,
+        is_far: impl Fn((f64, f64)) -> bool,
+        far: impl Fn((f64, f64), &LegendreMoments) -> f64,
+        whole: impl Fn(usize) -> f64,
+        part: impl Fn(&Panel, &Span) -> f64,
+        add: impl FnMut(f64),
+    ) {
         let add = RefCell::new(add);
-        let panels = self.table.find(at.radius)..self.table.panels.len();
-        let below = at.square.value();
         let mut open = vec![self.nodes.len() - 1];
         while let Some(node) = open.pop() {
             match &self.nodes[node] {
@@ -151,17 +164,17 @@ impl WeightedPanels<'_> {
                 Node::Even(index, weight) => self.table.sources.visit(
                     *index,
                     &panels,
-                    below,
-                    &mut |cluster: &Cluster| add.borrow_mut()(weight * far(cluster.interval, &cluster.moments, below)),
+                    &is_far,
+                    &mut |cluster: &Cluster| add.borrow_mut()(weight * far(cluster.interval, &cluster.moments)),
                     &mut |panel| add.borrow_mut()(weight * whole(panel)),
                 ),
                 Node::Uneven(index, moments, children) => {
                     let Cluster { first, last, interval, .. } = self.table.sources.cluster(*index);
-                    if *last <= panels.start {
+                    if *last <= panels.start || *first >= panels.end {
                         continue;
                     }
-                    if *first >= panels.start && is_far(*interval, below) {
-                        add.borrow_mut()(far(*interval, moments, below));
+                    if *first >= panels.start && *last <= panels.end && is_far(*interval) {
+                        add.borrow_mut()(far(*interval, moments));
                     } else if let Some(children) = children {
                         open.extend(children);
                     } else {

@@ -85,6 +85,11 @@ pub(super) fn add_shifted(
     }
 }
 
+/// Whether an interval is at least as far above a place as it is wide.
+pub(super) fn is_far((low, high): (f64, f64), below: f64) -> bool {
+    low - below >= high - low
+}
+
 /// The roots of the distances of the ends of an interval from a place below it, and 1/(p + q) and sigma.
 fn roots(interval: (f64, f64), below: f64) -> (f64, f64, f64, f64) {
     let (p, q) = ((interval.0 - below).sqrt(), (interval.1 - below).sqrt());

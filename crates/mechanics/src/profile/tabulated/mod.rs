@@ -8,11 +8,15 @@
 //! first at which g falls, exist: but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
+mod displacement;
 mod interpolation_error;
 mod kernel_sums;
 mod legendre;
+mod lookup;
 mod near_kernel;
 mod panel;
+mod panel_integrals;
+mod ring_moments;
 mod source_tree;
 mod spline;
 #[cfg(test)]
@@ -28,6 +32,7 @@ use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss
 pub use interpolation_error::InterpolationError;
 pub(super) use kernel_sums::WeightedPanels;
 use legendre::LegendreMoments;
+use lookup::Lookup;
 use panel::Panel;
 use source_tree::SourceTree;
 use spline::Knot;
@@ -49,6 +54,8 @@ pub struct Tabulated {
     /// The interpolation error at increasing radii.
     interpolation_errors: Vec<(f64, InterpolationError)>,
     panels: Vec<Panel>,
+    by_radius: Lookup,
+    by_level: Lookup,
     /// Moments and depth of all runs of panels.
     tree: MomentTree,
     /// The kernel's sources.
@@ -123,12 +130,16 @@ impl Tabulated {
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
         let steepest = panels.iter().scan(0.0, |sum, panel| Some(std::mem::replace(sum, *sum + panel.steepest())));
         let steepest = steepest.collect();
+        let by_radius = Lookup::new(panels.iter().map(|panel| panel.radius), end.0);
+        let by_level = Lookup::new(panels.iter().map(|panel| panel.level), level);
         Ok(Tabulated {
             radii: Vec::new(),
             heights: Vec::new(),
             noise: 0.0,
             interpolation_errors: Vec::new(),
             panels,
+            by_radius,
+            by_level,
             tree,
             sources,
             knots,
@@ -166,12 +177,12 @@ impl Tabulated {
 
     /// The panel that holds a radius.
     fn find(&self, radius: f64) -> usize {
-        self.panels.partition_point(|panel| panel.radius <= radius).saturating_sub(1)
+        self.by_radius.holding(radius)
     }
 
     /// The panels of both ends of a span.
     fn ends(&self, span: &Span) -> (usize, usize) {
-        let outer = self.panels.partition_point(|panel| panel.radius < span.outer_radius).saturating_sub(1);
+        let outer = self.by_radius.ending_at(span.outer_radius);
         (self.find(span.inner_radius).min(outer), outer)
     }
 
@@ -223,7 +234,7 @@ impl Tabulated {
         self.sources.visit(
             self.sources.root(),
             &between,
-            below,
+            &|interval| legendre::is_far(interval, below),
             &mut |cluster| distant += far(cluster.interval, &cluster.moments, below),
             &mut |index| close += whole(index),
         );
@@ -273,11 +284,14 @@ impl Shape for Tabulated {
         if y >= self.end.1 {
             return DoubleDouble::square_of(self.end.0);
         }
-        let index = self.panels.partition_point(|panel| panel.level <= y).saturating_sub(1);
+        let index = self.by_level.holding(y);
         let panel = &self.panels[index];
         let rest = (level - DoubleDouble::from(panel.level)).value();
         if rest <= 0.0 {
             return panel.square;
+        }
+        if let Some(square) = panel.square_after(rest) {
+            return square;
         }
         let whole = self.panels.get(index + 1).map_or(self.end.1, |next| next.level) - panel.level;
         let t =
@@ -318,7 +332,7 @@ impl Shape for Tabulated {
     }
 
     fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        let index = self.panels.partition_point(|panel| panel.radius < outer.outer_radius).saturating_sub(1);
+        let index = self.by_radius.ending_at(outer.outer_radius);
         let panel = &self.panels[index];
         // The series knows no other knot than its own.
         if panel.base.to_bits() == interval.base.to_bits() && node.t >= panel.low {
@@ -394,6 +408,13 @@ impl Shape for Tabulated {
         sum.0
     }
 
+    fn ring_moments(&self, ring: &Ring) -> Moments {
+        self.moments_across(ring).unwrap_or_else(|| {
+            let span = self.span(ring);
+            Moments::stack(self.moments(&span), Moments::default(), span.edge)
+        })
+    }
+
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         self.gather(
             at,
@@ -406,6 +427,10 @@ impl Shape for Tabulated {
 
     fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
         if rings.len() * radii.len() > FEW { kernel_sums::sums(self, rings, radii) } else { None }
+    }
+
+    fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
+        displacement::displacements(self, rings, ends, radii)
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {

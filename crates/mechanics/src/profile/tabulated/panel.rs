@@ -4,6 +4,7 @@
 //! in x, and q keeps gamma = dg/dt = t q exact as t goes to zero.
 
 use super::super::smooth_coordinate::SmoothCoordinate;
+use super::panel_integrals::PanelIntegrals;
 use super::{DoubleDouble, Span, gauss, near_kernel};
 
 /// Values that fix a series.
@@ -36,6 +37,8 @@ pub(super) struct Panel {
     primitive: Box<[f64]>,
     /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
     pub(super) powers: Box<[f64]>,
+    /// Its integrals up to any place.
+    pub(super) integrals: PanelIntegrals,
     /// How many terms of P are more than [`NEGLIGIBLE`].
     terms: usize,
 }
@@ -51,7 +54,7 @@ fn cosine(index: usize) -> f64 {
 }
 
 /// The series with these values; what rounding alone keeps from zero is cut off.
-fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
+pub(super) fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
     let term = |order: usize| {
         let terms = values.iter().enumerate().map(|(i, value)| value * cosines[order * (2 * i + 1) % (4 * POINTS)]);
         terms.sum::<f64>() / if order == 0 { 24.0 } else { 12.0 }
@@ -96,7 +99,7 @@ impl Panel {
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
         let size = primitive.iter().fold(0.0_f64, |size, a| size.max(a.abs()));
         let terms = primitive.iter().rposition(|a| a.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
-        Panel {
+        let mut panel = Panel {
             base,
             singularity,
             low,
@@ -108,11 +111,20 @@ impl Panel {
             powers: near_kernel::powers(&slope, low, high),
             slope: slope.into(),
             primitive: primitive.into(),
+            integrals: PanelIntegrals::default(),
             terms,
-        }
+        };
+        panel.integrals = PanelIntegrals::new(&panel, cosines);
+        panel
     }
 
-    fn place(&self, t: f64) -> f64 {
+    /// The rise from the beginning to t over t less that where it begins.
+    pub(super) fn rise_from_low(&self, t: f64) -> f64 {
+        divided_difference(&self.primitive, self.place(t), -1.0) * 2.0 / (self.high - self.low)
+    }
+
+    /// t as a place from -1 to 1.
+    pub(super) fn place(&self, t: f64) -> f64 {
         ((t - self.low) - (self.high - t)) / (self.high - self.low)
     }
 
@@ -174,6 +186,15 @@ impl Panel {
         checked.extend([self.low, self.high]);
         checked.sort_by(f64::total_cmp);
         checked
+    }
+
+    /// The square of the radius at which g has risen by `rise`, m, from the beginning, unless that takes a search.
+    pub(super) fn square_after(&self, rise: f64) -> Option<DoubleDouble> {
+        let t = |s: f64| (self.low * self.low + s).sqrt();
+        let slope = |s: f64| 0.5 * self.slope_over_radius(t(s));
+        let all = (self.high - self.low) * (self.high + self.low);
+        let s = self.integrals.distance(rise, all, |s| self.place(t(s)), slope)?;
+        Some(self.square + DoubleDouble::from(s))
     }
 
     /// int x dg from the beginning to t.

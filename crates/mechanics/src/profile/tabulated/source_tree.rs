@@ -80,13 +80,12 @@ impl SourceTree {
         (last - first > 1).then(|| [index - 2 * (last - first.midpoint(last)), index - 1])
     }
 
-    /// Goes through the panels `panels` below cluster `index`, seen from the square `below`: by whole clusters where they are far, else
-    /// panel by panel.
+    /// Goes through the panels `panels` below cluster `index`: by whole clusters where they are far, else panel by panel.
     pub(super) fn visit(
         &self,
         index: usize,
         panels: &Range<usize>,
-        below: f64,
+        is_far: &impl Fn((f64, f64)) -> bool,
         far: &mut impl FnMut(&Cluster),
         near: &mut impl FnMut(usize),
     ) {
@@ -95,17 +94,12 @@ impl SourceTree {
             return;
         }
         let whole = cluster.first >= panels.start && cluster.last <= panels.end;
-        if whole && is_far(cluster.interval, below) {
+        if whole && is_far(cluster.interval) {
             far(cluster);
         } else if let Some(children) = self.children(index) {
-            children.into_iter().for_each(|child| self.visit(child, panels, below, far, near));
+            children.into_iter().for_each(|child| self.visit(child, panels, is_far, far, near));
         } else {
             near(cluster.first);
         }
     }
-}
-
-/// Whether an interval is at least as far above a place as it is wide.
-pub(super) fn is_far((low, high): (f64, f64), below: f64) -> bool {
-    low - below >= high - low
 }
