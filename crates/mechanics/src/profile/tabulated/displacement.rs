@@ -6,10 +6,10 @@
 //! u = v(0) + (2/pi) int arccos(x/r) dv inside the contact, u = (2/pi) (v(a) arcsin(a/r) - int arcsin(x/r) dv) outside.
 //!
 //! Of X = x^2 = c + h xi either kernel T has the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at X = 0 and at r^2. An
-//! interval that is as far from both as it is wide counts as far: twenty Gauss points of that derivative give T but for its value
-//! at the centre to 3^-1.6 of 20 digits, 0.1716^20 = 5e-16 of its change ([`legendre`](super::legendre)), and the moments of the sources do the
-//! rest. Panels that are near are integrated one by one: int T dg is T at the lower end times the rise, -+ int h dx/sqrt(r^2 - x^2), h = g
-//! at the upper end less g.
+//! interval that is as far from both as it is wide counts as far: a polynomial through the derivative at twenty Gauss points misses it by
+//! 0.1716^20 = 5e-16 of itself and a small factor (Trefethen 2008). T is its value at the centre and the primitive of that polynomial, whose
+//! parts the moments of the sources weigh ([`legendre`](super::legendre)). Panels that are near are integrated one by one: int T dg is T at
+//! the lower end times the rise, -+ int h dx/sqrt(r^2 - x^2), h = g at the upper end less g.
 
 use std::f64::consts::FRAC_2_PI;
 use std::sync::LazyLock;

@@ -10,6 +10,7 @@ use std::cell::RefCell;
 #[cfg(test)]
 use super::super::call_count;
 use super::legendre::{self, LegendreMoments, ORDERS};
+use super::many_radii::ManyRadii;
 use super::source_tree::{Cluster, add_panel};
 use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, smooth_coordinate};
 use std::ops::Range;
@@ -20,13 +21,13 @@ pub(crate) struct WeightedPanels<'a> {
     /// Runs of panels that lie in one ring, and its weight, from the centre outward.
     runs: Vec<(Range<usize>, f64)>,
     /// The parts of panels that rings cut, by their panels.
-    parts: Vec<(usize, Span, f64)>,
+    pub(super) parts: Vec<(usize, Span, f64)>,
     /// The clusters whose panels do not count alike and those right below, children first.
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
 }
 
 /// A cluster of panels.
-enum Node {
+pub(super) enum Node {
     /// The table's own of this number, times a weight.
     Even(usize, f64),
     /// The table's own of this number, with other moments, and its halves in the list, if it has any.
@@ -35,10 +36,7 @@ enum Node {
 
 /// The sums at each radius of the kernels of rings times their weights; `None` with levels at a vertical edge.
 pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
-    let panels = WeightedPanels::new(table, rings)?;
-    let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
-    let sum = |at: &StressRadius| if at.radius > edge { 0.0 } else { panels.sum(at) };
-    Some(radii.iter().map(sum).collect())
+    Some(ManyRadii::sums(&WeightedPanels::new(table, rings)?, radii))
 }
 
 impl WeightedPanels<'_> {
@@ -84,6 +82,8 @@ impl WeightedPanels<'_> {
             return;
         }
         let mut moments = [0.0; ORDERS];
+        // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
+        let wanted = legendre::is_far(cluster.interval, 0.0);
         let children = table.sources.children(index).map(|children| {
             children.map(|child| {
                 self.gather(child);
@@ -91,29 +91,36 @@ impl WeightedPanels<'_> {
                     Node::Even(number, weight) => (*number, &table.sources.cluster(*number).moments, *weight),
                     Node::Uneven(number, moments, _) => (*number, moments, 1.0),
                 };
-                if factor.abs() > 0.0 {
+                if wanted && factor.abs() > 0.0 {
                     let from = table.sources.cluster(number).interval;
                     legendre::add_shifted(&mut moments, cluster.interval, from, own, factor);
                 }
                 self.nodes.len() - 1
             })
         });
-        if children.is_none() {
-            let panel = &table.panels[cluster.first];
-            for (_, span, weight) in parts_of(&self.parts, cluster.first) {
-                let ends = (panel.t_of(span.inner), panel.t_of(span.outer));
-                add_panel(&mut moments, cluster.interval, panel, ends, *weight);
-            }
+        if wanted && children.is_none() {
+            self.add_parts(cluster, &mut moments);
         }
         self.nodes.push(Node::Uneven(index, moments, children));
     }
 
-    fn sum(&self, at: &StressRadius) -> f64 {
-        let mut sum = 0.0;
-        let whole = |index: usize| self.table.kernel_of_panel(index, at);
-        let part = |panel: &Panel, span: &Span| smooth_coordinate::kernel(panel, at, span);
-        self.visit_above(at, legendre::potential, whole, part, |part| sum += part);
-        sum
+    /// Adds the moments of the parts of a panel. All but the first make the most of the panel: the first counts as what is left by them.
+    fn add_parts(&self, cluster: &Cluster, moments: &mut LegendreMoments) {
+        let panel = &self.table.panels[cluster.first];
+        let parts = parts_of(&self.parts, cluster.first);
+        let covered = parts.windows(2).all(|pair| pair[0].1.outer == pair[1].1.inner)
+            && parts.first().is_some_and(|(_, span, _)| span.inner <= panel.square)
+            && parts.last().is_some_and(|(_, span, _)| span.outer >= self.table.span_of_panel(cluster.first).outer);
+        let base = if covered { parts[0].2 } else { 0.0 };
+        if base.abs() > 0.0 {
+            moments.iter_mut().zip(&cluster.moments).for_each(|(moment, whole)| *moment += base * whole);
+        }
+        for (_, span, weight) in parts {
+            if (weight - base).abs() > 0.0 {
+                let ends = (panel.t_of(span.inner), panel.t_of(span.outer));
+                add_panel(moments, cluster.interval, panel, ends, weight - base);
+            }
+        }
     }
 
     /// The derivative of the sum with respect to r^2, 1/m^2, and the sum of the sizes of its parts.
@@ -125,25 +132,20 @@ impl WeightedPanels<'_> {
             smooth_coordinate::kernel_slope(panel, at, span)
         };
         let whole = |index: usize| part(&self.table.panels[index], &self.table.span_of_panel(index));
-        self.visit_above(at, legendre::potential_slope, whole, part, |part| {
-            sum += part;
-            size += part.abs();
-        });
-        (sum, size)
-    }
-
-    /// Adds what lies above r: what clusters of panels do from afar, and each of the others by itself.
-    fn visit_above(
-        &self,
-        at: &StressRadius,
-        far: impl Fn((f64, f64), &LegendreMoments, f64) -> f64,
-        whole: impl Fn(usize) -> f64,
-        part: impl Fn(&Panel, &Span) -> f64,
-        add: impl FnMut(f64),
-    ) {
         let (panels, below) = (self.table.find(at.radius)..self.table.panels.len(), at.square.value());
-        let far = |interval, moments: &LegendreMoments| far(interval, moments, below);
-        self.visit(panels, |interval| legendre::is_far(interval, below), far, whole, part, add);
+        let far = |interval, moments: &LegendreMoments| legendre::potential_slope(interval, moments, below);
+        self.visit(
+            panels,
+            |interval| legendre::is_far(interval, below),
+            far,
+            whole,
+            part,
+            |part| {
+                sum += part;
+                size += part.abs();
+            },
+        );
+        (sum, size)
     }
 
     /// Adds what these panels do: by clusters where those are far, else panel by panel and part by part.
@@ -191,7 +193,7 @@ impl WeightedPanels<'_> {
 }
 
 /// The parts of a panel, of all in rising order.
-fn parts_of(parts: &[(usize, Span, f64)], index: usize) -> &[(usize, Span, f64)] {
+pub(super) fn parts_of(parts: &[(usize, Span, f64)], index: usize) -> &[(usize, Span, f64)] {
     let first = parts.partition_point(|part| part.0 < index);
     let count = parts[first..].partition_point(|part| part.0 == index);
     &parts[first..first + count]

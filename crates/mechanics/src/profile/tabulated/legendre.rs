@@ -69,19 +69,44 @@ pub(super) fn add_shifted(
     let offset = (0.5 * ((child.0 - parent.0) + (child.1 - parent.1)) / half).clamp(scale - 1.0, 1.0 - scale);
     let up = FACTORS.map(|(up, _)| scale * up);
     let down = FACTORS.map(|(_, down)| scale * down);
-    // One empty column on either side.
-    let (mut this, mut before) = ([0.0; ORDERS + 2], [0.0; ORDERS + 2]);
-    for (column, moment) in this[1..].iter_mut().zip(of_child) {
+    let mut rows = Rows { this: [0.0; ORDERS + 2], before: [0.0; ORDERS + 2], up, down, offset };
+    for (column, moment) in rows.this[1..].iter_mut().zip(of_child) {
         *column = factor * moment;
     }
-    for (moment, (rise, fall)) in moments.iter_mut().zip(STEPS) {
-        *moment += this[1];
-        let mut next = [0.0; ORDERS + 2];
-        for index in 0..ORDERS {
-            let product = up[index] * this[index + 2] + down[index] * this[index] + offset * this[index + 1];
-            next[index + 1] = rise * product - fall * before[index + 1];
+    // The row of order k is used up to the column 19 - k.
+    rows.add::<20>(moments, 0);
+    rows.add::<16>(moments, 4);
+    rows.add::<12>(moments, 8);
+    rows.add::<8>(moments, 12);
+    rows.add::<4>(moments, 16);
+}
+
+/// The last two rows, with one empty column on either side, and the factors of a step.
+struct Rows {
+    this: [f64; ORDERS + 2],
+    before: [f64; ORDERS + 2],
+    up: [f64; ORDERS],
+    down: [f64; ORDERS],
+    offset: f64,
+}
+
+impl Rows {
+    /// Adds the moments of four orders, by steps over so many columns.
+    fn add<const COLUMNS: usize>(&mut self, moments: &mut LegendreMoments, first: usize) {
+        let Rows { this, before, up, down, offset } = self;
+        // Each step writes over the row before the last, so that two of them are a round.
+        let step = |before: &mut [f64; ORDERS + 2], this: &[f64; ORDERS + 2], (rise, fall): (f64, f64)| {
+            for index in 0..COLUMNS {
+                let product = up[index] * this[index + 2] + down[index] * this[index] + *offset * this[index + 1];
+                before[index + 1] = rise * product - fall * before[index + 1];
+            }
+        };
+        for order in [first, first + 2] {
+            moments[order] += this[1];
+            step(before, this, STEPS[order]);
+            moments[order + 1] += before[1];
+            step(this, before, STEPS[order + 1]);
         }
-        (this, before) = (next, this);
     }
 }
 
@@ -101,6 +126,21 @@ fn roots(interval: (f64, f64), below: f64) -> (f64, f64, f64, f64) {
 pub(super) fn potential(interval: (f64, f64), moments: &LegendreMoments, below: f64) -> f64 {
     let (_, _, inverse, sigma) = roots(interval, below);
     2.0 * inverse * polynomial(moments, sigma)
+}
+
+/// The same for several places Y, side by side.
+pub(super) fn potentials<const N: usize>(interval: (f64, f64), moments: &LegendreMoments, below: [f64; N]) -> [f64; N] {
+    let inverse = below.map(|below| 1.0 / ((interval.0 - below).sqrt() + (interval.1 - below).sqrt()));
+    let sigma = inverse.map(|inverse| -(interval.1 - interval.0) * inverse * inverse);
+    let square = sigma.map(|sigma| sigma * sigma);
+    let (mut even, mut odd) = ([0.0; N], [0.0; N]);
+    for pair in moments.chunks_exact(2).rev() {
+        for lane in 0..N {
+            even[lane] = even[lane] * square[lane] + pair[0];
+            odd[lane] = odd[lane] * square[lane] + pair[1];
+        }
+    }
+    std::array::from_fn(|lane| 2.0 * inverse[lane] * (even[lane] + sigma[lane] * odd[lane]))
 }
 
 /// Its derivative with respect to Y: that of 1/(p + q) is 1/(2pq) of itself, and that of sigma 1/(pq).

@@ -13,9 +13,12 @@ mod interpolation_error;
 mod kernel_sums;
 mod legendre;
 mod lookup;
+mod many_radii;
 mod near_kernel;
+mod noise;
 mod panel;
 mod panel_integrals;
+mod panels;
 mod ring_moments;
 mod source_tree;
 mod spline;
@@ -31,7 +34,6 @@ use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 pub use interpolation_error::InterpolationError;
 pub(super) use kernel_sums::WeightedPanels;
-use legendre::LegendreMoments;
 use lookup::Lookup;
 use panel::Panel;
 use source_tree::SourceTree;
@@ -108,7 +110,7 @@ impl Tabulated {
         let mut table = Tabulated::from_knots(&knots, whole)?;
         table.interpolation_errors = interpolation_error::up_to_radii(radii, heights, &knots);
         (table.radii, table.heights) = (radii.to_vec(), heights.to_vec());
-        table.noise = noise(radii, heights);
+        table.noise = noise::of_heights(radii, heights);
         Ok(table)
     }
 
@@ -154,111 +156,6 @@ impl Tabulated {
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
         self.panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
-
-    /// An estimate of the noise of the heights, m, from what a local cubic leaves over. A coarse table of a smooth surface has some too.
-    #[must_use]
-    pub fn height_noise(&self) -> f64 {
-        self.noise
-    }
-
-    /// By how much g at the radius x, m, has more noise than the heights do (pure number), if theirs is independent:
-    /// the root of the sum of squares of dg/dz, taken for straight lines between the points. At n equal steps it is sqrt(2n) and so.
-    #[must_use]
-    pub fn noise_amplification(&self, x: f64) -> f64 {
-        let angle = |r: f64| (r / x).min(1.0).asin();
-        let (mut sum, mut before) = (0.0, 0.0);
-        for pair in self.radii.windows(2) {
-            let share = x * (angle(pair[1]) - angle(pair[0])) / (pair[1] - pair[0]);
-            sum += (share - before) * (share - before);
-            before = share;
-        }
-        (sum + before * before).sqrt()
-    }
-
-    /// The panel that holds a radius.
-    fn find(&self, radius: f64) -> usize {
-        self.by_radius.holding(radius)
-    }
-
-    /// The panels of both ends of a span.
-    fn ends(&self, span: &Span) -> (usize, usize) {
-        let outer = self.by_radius.ending_at(span.outer_radius);
-        (self.find(span.inner_radius).min(outer), outer)
-    }
-
-    /// The parts of a span in its innermost and its outermost panel, and the whole panels between.
-    fn parts(&self, span: &Span) -> (Option<Piece>, std::ops::Range<usize>, Option<Piece>) {
-        let (inner, outer) = self.ends(span);
-        if inner == outer {
-            return (None, outer..outer, Some((outer, *span)));
-        }
-        let (this, next) = (&self.panels[inner], &self.panels[inner + 1]);
-        let whole = span.inner_radius <= this.radius;
-        let low = if whole { None } else { span.below(next.square, next.radius).map(|span| (inner, span)) };
-        let top = &self.panels[outer];
-        let high = span.above(top.square, top.radius).map(|span| (outer, span));
-        (low, if whole { inner } else { inner + 1 }..outer, high)
-    }
-
-    /// A panel as a span, up to the very square where the next one begins.
-    fn span_of_panel(&self, index: usize) -> Span {
-        let panel = &self.panels[index];
-        self.panels.get(index + 1).map_or_else(|| panel.span(), |next| panel.span_up_to(next))
-    }
-
-    /// The kernel of a whole panel.
-    fn kernel_of_panel(&self, index: usize, at: &StressRadius) -> f64 {
-        let panel = &self.panels[index];
-        let end = self.panels.get(index + 1).map_or_else(|| panel.end().0, |next| next.square);
-        let closed = near_kernel::kernel(panel, &panel.powers, at, end);
-        closed.unwrap_or_else(|| smooth_coordinate::kernel(panel, at, &self.span_of_panel(index)))
-    }
-
-    /// Sums over the panels of a span beyond r: `part` of one that the span cuts, `whole` of others, and `far` of clusters of them.
-    fn gather(
-        &self,
-        at: &StressRadius,
-        span: &Span,
-        part: impl Fn(&Panel, &Span) -> f64,
-        whole: impl Fn(usize) -> f64,
-        far: impl Fn((f64, f64), &LegendreMoments, f64) -> f64,
-    ) -> f64 {
-        let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
-        let (low, between, high) = self.parts(&span);
-        let mut sum = 0.0;
-        for (index, span) in [low, high].into_iter().flatten() {
-            sum += part(&self.panels[index], &span);
-        }
-        let below = at.square.value();
-        let (mut distant, mut close) = (0.0, 0.0);
-        self.sources.visit(
-            self.sources.root(),
-            &between,
-            &|interval| legendre::is_far(interval, below),
-            &mut |cluster| distant += far(cluster.interval, &cluster.moments, below),
-            &mut |index| close += whole(index),
-        );
-        sum + close + distant
-    }
-}
-
-/// A stretch within the panel of this index.
-type Piece = (usize, Span);
-
-/// What third divided differences say about the noise of single heights.
-fn noise(radii: &[f64], heights: &[f64]) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (r, z) in radii.windows(4).zip(heights.windows(4)) {
-        let (mut difference, mut size) = (0.0, 0.0);
-        for i in 0..4 {
-            let weight: f64 = (0..4).filter(|&j| j != i).map(|j| (r[3] - r[0]) / (r[i] - r[j])).product();
-            difference += weight * (z[i] - z[0]);
-            size += weight * weight;
-        }
-        sum += difference * difference / size;
-        count += 1.0;
-    }
-    if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
 }
 
 impl Shape for Tabulated {
@@ -290,8 +187,8 @@ impl Shape for Tabulated {
         if rest <= 0.0 {
             return panel.square;
         }
-        if let Some(square) = panel.square_after(rest) {
-            return square;
+        if let Some(further) = panel_integrals::distance(panel, rest) {
+            return panel.square + DoubleDouble::from(further);
         }
         let whole = self.panels.get(index + 1).map_or(self.end.1, |next| next.level) - panel.level;
         let t =

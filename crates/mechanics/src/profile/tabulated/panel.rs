@@ -53,13 +53,21 @@ fn cosine(index: usize) -> f64 {
     (std::f64::consts::PI * (index % (4 * POINTS)) as f64 / 48.0).cos()
 }
 
+/// What turns values at the places into the coefficients of a series: a row for each order.
+pub(super) type Transform = [[f64; POINTS]; POINTS];
+
 /// The series with these values; what rounding alone keeps from zero is cut off.
-pub(super) fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
-    let term = |order: usize| {
-        let terms = values.iter().enumerate().map(|(i, value)| value * cosines[order * (2 * i + 1) % (4 * POINTS)]);
-        terms.sum::<f64>() / if order == 0 { 24.0 } else { 12.0 }
+pub(super) fn series(values: &[f64; POINTS], transform: &Transform) -> Vec<f64> {
+    let term = |row: &[f64; POINTS]| {
+        let mut sums = [0.0; 4];
+        for (row, values) in row.chunks_exact(4).zip(values.chunks_exact(4)) {
+            for lane in 0..4 {
+                sums[lane] += row[lane] * values[lane];
+            }
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
     };
-    let mut series: Vec<f64> = (0..POINTS).map(term).collect();
+    let mut series: Vec<f64> = transform.iter().map(term).collect();
     let size = series.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     while series.last().is_some_and(|a| a.abs() <= ROUNDED * size) {
         series.pop();
@@ -67,9 +75,12 @@ pub(super) fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec
     series
 }
 
-/// The cosines that all series need.
-pub(super) fn cosines() -> [f64; 4 * POINTS] {
-    std::array::from_fn(cosine)
+/// The transform that all series need.
+pub(super) fn transform() -> Transform {
+    std::array::from_fn(|order| {
+        let share = if order == 0 { 1.0 / 24.0 } else { 1.0 / 12.0 };
+        std::array::from_fn(|index| share * cosine(order * (2 * index + 1)))
+    })
 }
 
 impl Panel {
@@ -78,9 +89,9 @@ impl Panel {
         (base, singularity): (f64, f64),
         (low, high): (f64, f64),
         values: &[f64; POINTS],
-        cosines: &[f64; 4 * POINTS],
+        transform: &Transform,
     ) -> Panel {
-        let slope = series(values, cosines);
+        let slope = series(values, transform);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // t q in the same terms, t = middle + half u and 2 u T_k = T_(k+1) + T_(k-1), then its primitive.
         let term = |k: usize| slope.get(k).copied().unwrap_or(0.0);
@@ -114,13 +125,13 @@ impl Panel {
             integrals: PanelIntegrals::default(),
             terms,
         };
-        panel.integrals = PanelIntegrals::new(&panel, cosines);
+        panel.integrals = PanelIntegrals::new(&panel, transform);
         panel
     }
 
-    /// The rise from the beginning to t over t less that where it begins.
-    pub(super) fn rise_from_low(&self, t: f64) -> f64 {
-        divided_difference(&self.primitive, self.place(t), -1.0) * 2.0 / (self.high - self.low)
+    /// g from the beginning to t, m, to round-off of that over all of the panel.
+    pub(super) fn rise_to(&self, t: f64) -> f64 {
+        chebyshev(&self.primitive, self.place(t)) - chebyshev(&self.primitive, -1.0)
     }
 
     /// t as a place from -1 to 1.
@@ -130,12 +141,7 @@ impl Panel {
 
     /// q at t.
     pub(super) fn slope_over_radius(&self, t: f64) -> f64 {
-        let u = self.place(t);
-        let (mut b1, mut b2) = (0.0, 0.0);
-        for &a in self.slope.iter().skip(1).rev() {
-            (b1, b2) = (a + 2.0 * u * b1 - b2, b1);
-        }
-        self.slope.first().copied().unwrap_or(0.0) + u * b1 - b2
+        chebyshev(&self.slope, self.place(t))
     }
 
     /// A bound of |dq/dt|: that of a Chebyshev polynomial of the order k is k^2 at most.
@@ -186,15 +192,6 @@ impl Panel {
         checked.extend([self.low, self.high]);
         checked.sort_by(f64::total_cmp);
         checked
-    }
-
-    /// The square of the radius at which g has risen by `rise`, m, from the beginning, unless that takes a search.
-    pub(super) fn square_after(&self, rise: f64) -> Option<DoubleDouble> {
-        let t = |s: f64| (self.low * self.low + s).sqrt();
-        let slope = |s: f64| 0.5 * self.slope_over_radius(t(s));
-        let all = (self.high - self.low) * (self.high + self.low);
-        let s = self.integrals.distance(rise, all, |s| self.place(t(s)), slope)?;
-        Some(self.square + DoubleDouble::from(s))
     }
 
     /// int x dg from the beginning to t.
@@ -268,6 +265,15 @@ impl SmoothCoordinate for Panel {
     fn jumps(&self) -> bool {
         false
     }
+}
+
+/// The value of a Chebyshev series at u.
+fn chebyshev(series: &[f64], u: f64) -> f64 {
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for &a in series.iter().skip(1).rev() {
+        (b1, b2) = ((a - b2) + 2.0 * u * b1, b1);
+    }
+    (series.first().copied().unwrap_or(0.0) - b2) + u * b1
 }
 
 /// (p(u) - p(v))/(u - v), also at u = v, by Clenshaw's recurrence carried for both.

@@ -1,8 +1,7 @@
-//! Integrals of g over a part of a panel, and its inverse, by series that are made once.
+//! Integrals of g over a part of a panel by series that are made once, and the inverse of g.
 //!
-//! With s = x^2 less that where the panel begins, g has risen there by s R(t), R a mean of q/2 and as smooth as q. R, A = int g dx and
-//! B = int g^2 dx, g from the beginning on, are Chebyshev series in t, from values at the places of q; dx = t dt/x is analytic but at
-//! t = +-ik, further away than the singularity of g. A and B are good to a few units in the last place of W H and W H^2, W the width and H
+//! A = int g dx and B = int g^2 dx, g from the beginning of the panel on, are Chebyshev series in t, from values at the places of q;
+//! dx = t dt/x is analytic but at t = +-ik, further away than the singularity of g. A and B are good to a few units in the last place of W H and W H^2, W the width and H
 //! the depth of the panel, so that with the width w and the rise h of a part from the beginning on
 //!
 //! int (h - g) dx = h w - A, int (h - g)^2 dx = h (h w - 2 A) + B,
@@ -11,14 +10,12 @@
 //! W H^2 ([`PanelIntegrals::resolve`]), as they are for a ring that holds a whole panel of this size beside the part. Thinner rings are
 //! integrated numerically.
 
-use super::Moments;
-use super::panel::{POINTS, Panel, places, series};
+use super::panel::{Panel, Transform, places, series};
+use super::{Moments, near_kernel};
 
 /// The series of a panel and its integrals as a whole.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PanelIntegrals {
-    /// Coefficients of R.
-    mean: Box<[f64]>,
     /// Coefficients of A and B.
     areas: Box<[[f64; 2]]>,
     /// W, m, and H, m.
@@ -29,34 +26,22 @@ pub(super) struct PanelIntegrals {
 }
 
 impl PanelIntegrals {
-    pub(super) fn new(panel: &Panel, cosines: &[f64; 4 * POINTS]) -> PanelIntegrals {
+    pub(super) fn new(panel: &Panel, transform: &Transform) -> PanelIntegrals {
         let (low, high) = (panel.low, panel.high);
-        let places = places(low, high);
-        let mean = places.map(|t| panel.rise_from_low(t) / (t + low));
         let stretch = |t: f64| if panel.base > 0.0 { t / (panel.base * panel.base + t * t).sqrt() } else { 1.0 };
-        let rise = |index: usize| (places[index] - low) * (places[index] + low) * mean[index];
-        let area = std::array::from_fn(|index| rise(index) * stretch(places[index]));
-        let square = std::array::from_fn(|index| rise(index) * area[index]);
-        let primitives = [area, square].map(|values| primitive(&series(&values, cosines), 0.5 * (high - low)));
+        let places = places(low, high);
+        let rises = places.map(|t| panel.rise_to(t));
+        let area = std::array::from_fn(|index| rises[index] * stretch(places[index]));
+        let square = std::array::from_fn(|index| rises[index] * area[index]);
+        let primitives = [area, square].map(|values| primitive(&series(&values, transform), 0.5 * (high - low)));
         let length = primitives.each_ref().map(Vec::len).into_iter().max().unwrap_or(0);
         let term = |series: &Vec<f64>, index: usize| series.get(index).copied().unwrap_or(0.0);
         let areas: Box<[[f64; 2]]> =
             (0..length).map(|index| primitives.each_ref().map(|series| term(series, index))).collect();
         let whole = areas.iter().fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
-        let all = (high - low) * (high + low);
-        let mean: Box<[f64]> = series(&mean, cosines).into();
-        let depth = all * mean.iter().sum::<f64>();
-        let width = all / (panel.radius + panel.end().1);
-        PanelIntegrals { mean, areas, width, depth, whole }
-    }
-
-    /// The rise, m, from the beginning up to the place u, which is s further in the square of the radius: to round-off of itself.
-    pub(super) fn rise(&self, u: f64, s: f64) -> f64 {
-        let (mut one, mut two) = (0.0, 0.0);
-        for &a in self.mean.iter().skip(1).rev() {
-            (one, two) = ((a - two) + 2.0 * u * one, one);
-        }
-        s * ((self.mean.first().copied().unwrap_or(0.0) - two) + u * one)
+        let depth = panel.rise_to(high);
+        let width = (high - low) * (high + low) / (panel.radius + panel.end().1);
+        PanelIntegrals { areas, width, depth, whole }
     }
 
     /// A and B up to the place u.
@@ -89,37 +74,35 @@ impl PanelIntegrals {
         let area = self.width * self.depth;
         ring.first >= area && ring.second >= area * self.depth
     }
+}
 
-    /// How much further, in the square of the radius, g has risen by `rise`, m, in a panel that covers `all`, m^2; `u` is the place of such
-    /// a distance, and `slope` gives q/2 there.
-    ///
-    /// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of each is that of the
-    /// one before times the relative change of q on the way, which the steps tell. `None` where they do not fall so.
-    pub(super) fn distance(
-        &self,
-        rise: f64,
-        all: f64,
-        u: impl Fn(f64) -> f64,
-        slope: impl Fn(f64) -> f64,
-    ) -> Option<f64> {
-        let mut s = (all * (rise / self.depth)).min(all);
-        let slope = slope(s);
-        let mut last = s;
-        for _ in 0..8 {
-            let step = (rise - self.rise(u(s), s)) / slope;
-            s += step;
-            let size = step.abs();
-            // Also where one of them is no number.
-            if !(s > 0.0 && s <= 1.000_001 * all && size <= 0.25 * last) {
-                return None;
-            }
-            if size * (size / last) <= 1e-17 * s || size <= 3e-16 * s {
-                return Some(s.min(all));
-            }
-            last = size;
-        }
-        None
+/// How much further, in the square of the radius, g has risen by `rise`, m; `None` without powers of q, and where that takes a search.
+///
+/// Newton's step with q/2 where g would be if it rose with x^2, and further steps with the same slope: the error of each is that of the
+/// one before times the relative change of q on the way, which the steps tell.
+pub(super) fn distance(panel: &Panel, rise: f64) -> Option<f64> {
+    if panel.powers.is_empty() {
+        return None;
     }
+    let all = (panel.high - panel.low) * (panel.high + panel.low);
+    let t = |s: f64| (panel.low * panel.low + s).sqrt();
+    let mut s = (all * (rise / panel.integrals.depth)).min(all);
+    let slope = 0.5 * panel.slope_over_radius(t(s));
+    let mut last = s;
+    for _ in 0..8 {
+        let step = (rise - near_kernel::rise(panel, t(s), s)) / slope;
+        s += step;
+        let size = step.abs();
+        // Also where one of them is no number.
+        if !(s > 0.0 && s <= 1.000_001 * all && size <= 0.25 * last) {
+            return None;
+        }
+        if size * (size / last) <= 1e-17 * s || size <= 3e-16 * s {
+            return Some(s.min(all));
+        }
+        last = size;
+    }
+    None
 }
 
 /// The primitive, zero at u = -1, of a Chebyshev series in u, t = middle + half u.

@@ -2,7 +2,7 @@
 //! between by the tree of their sums.
 
 use super::super::{DoubleDouble, Moments, Ring};
-use super::Tabulated;
+use super::{Tabulated, near_kernel};
 
 impl Tabulated {
     /// The moments of a ring; `None` of one that lies in one panel or meets the end of the table, and where a part is too thin for its
@@ -13,6 +13,9 @@ impl Tabulated {
             return None;
         }
         let (bottom, next, top) = (&self.panels[inner], &self.panels[inner + 1], &self.panels[outer]);
+        if top.powers.is_empty() {
+            return None;
+        }
         let part = ring.inner.radius > bottom.radius;
         let (mut sum, between) = self.tree.run(if part { inner + 1 } else { inner }, outer);
         if part {
@@ -21,9 +24,9 @@ impl Tabulated {
             sum = Moments::stack(below, sum, between);
         }
         let beyond = (ring.outer.square - top.square).value().max(0.0);
-        let u = top.place(top.t_of(ring.outer.square));
-        let rise = top.integrals.rise(u, beyond);
-        let above = top.integrals.below(u, beyond / (ring.outer.radius + top.radius), rise);
+        let t = top.t_of(ring.outer.square);
+        let rise = near_kernel::rise(top, t, beyond);
+        let above = top.integrals.below(top.place(t), beyond / (ring.outer.radius + top.radius), rise);
         sum = Moments::stack(sum, above, rise);
         (top.integrals.resolve(&sum) && (!part || bottom.integrals.resolve(&sum))).then_some(sum)
     }
