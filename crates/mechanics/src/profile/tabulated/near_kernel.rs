@@ -45,7 +45,9 @@ pub(super) fn powers(series: &[f64], low: f64, high: f64) -> Box<[f64]> {
     let (mut sum, mut factor, mut terms) = (0.0, 1.0, 0);
     for a in series {
         sum += a.abs() * factor;
-        if !(sum <= 2.0 * CONDITION * size) {
+        // Also where one of them is no number.
+        let small = sum <= 2.0 * CONDITION * size;
+        if !small {
             break;
         }
         factor *= growth;
