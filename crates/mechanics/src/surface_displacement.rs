@@ -138,9 +138,10 @@ mod tests {
     use super::super::profile::Tabulated;
     use super::super::{Contact, Elasticity, Move, Preload, Profile, Setup, Tangential};
     use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
+        #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, rng_seed: RngSeed::Fixed(0), ..ProptestConfig::default() })]
 
         #[test]
         fn displacements_at_once_are_those_ring_by_ring(

@@ -5,10 +5,11 @@
 
 use std::ops::Range;
 
+use super::StressRadius;
 use super::kernel_sums::{Node, WeightedPanels, parts_of};
 use super::legendre::{self, LegendreMoments};
+use super::panels::kernel_of_part;
 use super::source_tree::Cluster;
-use super::{StressRadius, smooth_coordinate};
 
 /// Radii side by side.
 const LANES: usize = 4;
@@ -67,8 +68,7 @@ impl ManyRadii<'_> {
                         if weight.abs() > 0.0 {
                             let panel = &panels.table.panels[*index];
                             for radius in left.clone() {
-                                self.sums[radius] +=
-                                    weight * smooth_coordinate::kernel(panel, &self.radii[radius], span);
+                                self.sums[radius] += weight * kernel_of_part(panel, &self.radii[radius], span);
                             }
                         }
                     }

@@ -316,7 +316,7 @@ impl Shape for Tabulated {
         self.gather(
             at,
             span,
-            |panel, span| smooth_coordinate::kernel(panel, at, span),
+            |panel, span| panels::kernel_of_part(panel, at, span),
             |index| self.kernel_of_panel(index, at),
             legendre::potential,
         )

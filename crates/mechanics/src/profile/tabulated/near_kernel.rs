@@ -1,4 +1,4 @@
-//! The kernel of one panel in closed form, for radii below or within it.
+//! The kernel of a panel, or of a part of one, in closed form, for radii below or within it.
 //!
 //! With kappa = r^2 - k^2 and v = sqrt(x^2 - r^2) = sqrt(t^2 - kappa), t dt = v dv turns K = int t q dt/v into int q dv. For
 //! q = sum of c_n t^n that is the sum of c_n J_n, J_n = int t^n dv, and by parts
@@ -9,10 +9,10 @@
 //! grows by less than |kappa|/high^2 in a step from n - 2 to n: up to twice the width of the panel, [`LEAST_KAPPA`], by no more than
 //! 2^(n/2), while c_n falls like 2.2^-n at least. The c_n are those of the Chebyshev series of the panel, at most
 //! [`CONDITION`] times q in the sum of what they are added up from, so that rounding leaves some 1e-14 of the share of one panel at the worst.
-//! Other panels, and stretches of one, are integrated numerically ([`smooth_coordinate`](super::smooth_coordinate)).
+//! Other panels, and thin parts of one, are integrated numerically ([`smooth_coordinate`](super::smooth_coordinate)).
 
 use super::panel::{POINTS, Panel};
-use super::{DoubleDouble, StressRadius};
+use super::{DoubleDouble, Span, StressRadius};
 
 /// The sum of the magnitudes of the terms of a series in powers, over the size of the series.
 const CONDITION: f64 = 3.0;
@@ -22,6 +22,9 @@ const DROPPED: f64 = 4e-15;
 
 /// The least kappa over the square of the upper end.
 const LEAST_KAPPA: f64 = -2.0;
+
+/// The least part of a panel above r, in the square of the radius, whose integrals are differences without loss.
+const LEAST_PART: f64 = 0.1;
 
 /// 1/(n + 1).
 const SHARES: [f64; POINTS + 1] = {
@@ -87,35 +90,40 @@ pub(super) fn rise(panel: &Panel, t: f64, s: f64) -> f64 {
     s * sum
 }
 
-/// K of what lies beyond r in a panel up to the square `end` where the next begins, by the powers of its q; `None` if they do not serve.
-pub(super) fn kernel(panel: &Panel, powers: &[f64], at: &StressRadius, end: DoubleDouble) -> Option<f64> {
-    if powers.is_empty() {
+/// K of what lies beyond r in a part of a panel, by the powers of its q; `None` if they do not serve.
+pub(super) fn kernel(panel: &Panel, at: &StressRadius, span: &Span) -> Option<f64> {
+    if panel.powers.is_empty() {
         return None;
     }
-    let (below, above) = ((panel.square - at.square).value(), (end - at.square).value());
+    let (below, above) = span.excess(at.square);
     if above <= 0.0 {
         return Some(0.0);
     }
     let inverse = panel.high.recip();
-    let kappa = (at.square - DoubleDouble::square_of(panel.base)).value() * inverse * inverse;
-    if kappa < LEAST_KAPPA {
+    let share = inverse * inverse;
+    let kappa = (at.square - DoubleDouble::square_of(panel.base)).value() * share;
+    let low = panel.low * inverse;
+    if kappa < LEAST_KAPPA || (below > 0.0 && span.gap * share < LEAST_PART * (1.0 - low * low)) {
         return None;
     }
-    let v_high = above.sqrt() * inverse;
-    let (low, v_low) =
-        if below > 0.0 { (panel.low * inverse, below.sqrt() * inverse) } else { (kappa.max(0.0).sqrt(), 0.0) };
-    let gap = (above - below.max(0.0)) * inverse * inverse;
+    let (v_high, high) = (above.sqrt() * inverse, panel.t_of(span.outer) * inverse);
+    let (low, v_low, gap) = if below > 0.0 {
+        (panel.t_of(span.inner) * inverse, below.sqrt() * inverse, span.gap * share)
+    } else {
+        (kappa.max(0.0).sqrt(), 0.0, above * share)
+    };
     let rise = gap / (v_high + v_low);
     let start = low + v_low;
-    let logarithm = if start > 0.0 { ((rise + gap / (1.0 + low)) / start).ln_1p() } else { 0.0 };
-    let mut last = [rise, 0.5 * (v_high - low * v_low + kappa * logarithm)];
-    let mut sum = powers[0] * last[0] + powers.get(1).map_or(0.0, |c| c * last[1]);
-    let mut lower = low * low * v_low;
+    let logarithm = if start > 0.0 { ((rise + gap / (high + low)) / start).ln_1p() } else { 0.0 };
+    let mut last = [rise, 0.5 * (high * v_high - low * v_low + kappa * logarithm)];
+    let mut sum = panel.powers[0] * last[0] + panel.powers.get(1).map_or(0.0, |c| c * last[1]);
+    let (mut upper, mut lower) = (high * high * v_high, low * low * v_low);
     let mut order = 2.0;
-    for (&c, share) in powers.iter().zip(SHARES).skip(2) {
-        let next = (v_high - lower + order * kappa * last[0]) * share;
+    for (&c, share) in panel.powers.iter().zip(SHARES).skip(2) {
+        let next = (upper - lower + order * kappa * last[0]) * share;
         last = [last[1], next];
         sum += c * next;
+        upper *= high;
         lower *= low;
         order += 1.0;
     }

@@ -41,10 +41,7 @@ impl Tabulated {
 
     /// The kernel of a whole panel.
     pub(super) fn kernel_of_panel(&self, index: usize, at: &StressRadius) -> f64 {
-        let panel = &self.panels[index];
-        let end = self.panels.get(index + 1).map_or_else(|| panel.end().0, |next| next.square);
-        let closed = near_kernel::kernel(panel, &panel.powers, at, end);
-        closed.unwrap_or_else(|| smooth_coordinate::kernel(panel, at, &self.span_of_panel(index)))
+        kernel_of_part(&self.panels[index], at, &self.span_of_panel(index))
     }
 
     /// Sums over the panels of a span beyond r: `part` of one that the span cuts, `whole` of others, and `far` of clusters of them.
@@ -73,4 +70,9 @@ impl Tabulated {
         );
         sum + close + distant
     }
+}
+
+/// The kernel of a part of a panel.
+pub(super) fn kernel_of_part(panel: &Panel, at: &StressRadius, span: &Span) -> f64 {
+    near_kernel::kernel(panel, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, at, span))
 }
