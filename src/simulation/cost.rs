@@ -110,8 +110,8 @@ const RECORD_BYTES: usize = 512;
 /// One radius with all fields, likewise.
 const RADIUS_BYTES: usize = 320;
 /// One point of a table: its two numbers, and the series that the mechanics makes between it and the next. The process grows
-/// by 800 to 950.
-const POINT_BYTES: usize = 1_280;
+/// by 2700 to 3800.
+const POINT_BYTES: usize = 4_096;
 /// One asperity: its numbers twice, and its share of the clusters.
 const ASPERITY_BYTES: usize = 128;
 /// One point of a load curve: its numbers, and two pieces of the curve with their moments.

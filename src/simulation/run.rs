@@ -266,12 +266,7 @@ const RADII_PER_CHECK: usize = 64;
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let radius = sampling.radii(solver.state().contact_radius);
-    let along = |field: &dyn Fn(f64) -> f64| -> Result<Vec<Option<f64>>, Failure> {
-        let at = |radius: &f64| stop.check().map(|()| finite(field(*radius))).map_err(Failure::from);
-        radius.iter().map(at).collect()
-    };
-    // Fields that are quick at one radius are computed at many radii between two checks.
-    let together = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
+    let along = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
         let mut all = Vec::with_capacity(radius.len());
         for radii in radius.chunks(RADII_PER_CHECK) {
             stop.check()?;
@@ -279,11 +274,12 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Resu
         }
         Ok(all)
     };
-    let pressure = sampling.fields.pressure.then(|| together(&|radii| solver.pressures(radii))).transpose()?;
-    let shear = sampling.fields.shear.then(|| together(&|radii| solver.shears(radii))).transpose()?;
-    let slip = |radius| solver.slip(radius).unwrap_or(f64::NAN);
+    let pressure = sampling.fields.pressure.then(|| along(&|radii| solver.pressures(radii))).transpose()?;
+    let shear = sampling.fields.shear.then(|| along(&|radii| solver.shears(radii))).transpose()?;
+    let slip =
+        |radii: &[f64]| -> Vec<f64> { solver.slips(radii).into_iter().map(|slip| slip.unwrap_or(f64::NAN)).collect() };
     let slip = sampling.fields.slip.then(|| along(&slip)).transpose()?;
-    let displacement = |radius| solver.surface_displacement(radius);
+    let displacement = |radii: &[f64]| solver.surface_displacements(radii);
     let displacement = sampling.fields.displacement.then(|| along(&displacement)).transpose()?;
     Ok(Stress { radius, pressure, shear, slip, displacement })
 }

@@ -25,10 +25,10 @@ pub trait Solver {
     fn pressures(&self, radii: &[f64]) -> Vec<f64>;
     /// Shear stress at each of the radii (m), Pa.
     fn shears(&self, radii: &[f64]) -> Vec<f64>;
-    /// Slip under the indenter at a radius (m), m; none outside the contact.
-    fn slip(&self, radius: f64) -> Option<f64>;
-    /// Tangential displacement of the surface at a radius (m), m.
-    fn surface_displacement(&self, radius: f64) -> f64;
+    /// Slip under the indenter at each of the radii (m), m; none outside the contact.
+    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>>;
+    /// Tangential displacement of the surface at each of the radii (m), m.
+    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64>;
     /// The exact contact, on which the moves of a path may depend; springs have it as it was before their first move.
     fn exact(&self) -> &Contact;
     /// The path of equal peaks for the exact contact; an error for a cut-off radius that it does not allow.
@@ -76,12 +76,12 @@ impl Solver for Contact {
         self.shears(radii)
     }
 
-    fn slip(&self, radius: f64) -> Option<f64> {
-        self.slip(radius)
+    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
+        self.slips(radii)
     }
 
-    fn surface_displacement(&self, radius: f64) -> f64 {
-        self.surface_displacement(radius)
+    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        self.surface_displacements(radii)
     }
 
     fn exact(&self) -> &Contact {
@@ -140,12 +140,12 @@ impl Solver for Springs {
         radii.iter().map(|&radius| self.shear(radius)).collect()
     }
 
-    fn slip(&self, radius: f64) -> Option<f64> {
-        self.slip(radius)
+    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
+        radii.iter().map(|&radius| self.slip(radius)).collect()
     }
 
-    fn surface_displacement(&self, radius: f64) -> f64 {
-        self.surface_displacement(radius)
+    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        radii.iter().map(|&radius| self.surface_displacement(radius)).collect()
     }
 
     fn exact(&self) -> &Contact {

@@ -76,14 +76,14 @@ impl Solver for Counting<'_> {
         self.contact.shears(radii)
     }
 
-    fn slip(&self, radius: f64) -> Option<f64> {
-        self.count(|calls| &mut calls.slips, 1);
-        self.contact.slip(radius)
+    fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
+        self.count(|calls| &mut calls.slips, radii.len());
+        self.contact.slips(radii)
     }
 
-    fn surface_displacement(&self, radius: f64) -> f64 {
-        self.count(|calls| &mut calls.displacements, 1);
-        self.contact.surface_displacement(radius)
+    fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        self.count(|calls| &mut calls.displacements, radii.len());
+        self.contact.surface_displacements(radii)
     }
 
     fn exact(&self) -> &Contact {

@@ -1,5 +1,5 @@
-//! What the shape costs, over the same on a sphere: 20 reversals with the shear stress at 200 radii, a move with its force, and all
-//! extrema of the shear stress after 20 reversals.
+//! What the shape costs, over the same on a sphere: 20 reversals with the shear stress at 200 radii, a move with its force, all
+//! extrema of the shear stress after 20 reversals, and the displacement of the surface at a radius, one of 200, in the same state.
 //!
 //! `cargo bench -p stickslip-mechanics --bench shapes` prints a table. Each run of a shape follows one of the sphere, and the ratio is
 //! the median over such pairs, so that other work on the machine counts on both sides.
@@ -70,6 +70,15 @@ fn moves(virgin: &Contact) -> Duration {
     start.elapsed()
 }
 
+/// The time of the displacement of the surface.
+fn displacements(virgin: &Contact) -> Duration {
+    let (contact, edge) = (reversed(virgin), virgin.contact_radius());
+    let radii: Vec<f64> = (0..RADII).map(|index| edge * index as f64 / RADII as f64).collect();
+    let start = Instant::now();
+    black_box(contact.surface_displacements(&radii));
+    start.elapsed()
+}
+
 /// The time of the extrema.
 fn extrema(virgin: &Contact) -> Duration {
     let contact = reversed(virgin);
@@ -102,21 +111,22 @@ fn main() {
         ("table of 10 000 points", table(10_000)),
     ];
     println!(
-        "| shape | stress at 200 radii, us | over the sphere's | a move, us | over the sphere's | extrema, us | over the sphere's |"
+        "| shape | stress at 200 radii, us | over the sphere's | a move, us | over the sphere's | extrema, us | over the sphere's | displacement at a radius, us | over the sphere's |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     for (name, profile) in shapes {
         let shape = contact(profile);
-        let figures = [(stresses as Scene, 1), (moves, MOVES), (extrema, 1)].map(|(scene, count)| {
-            let (mut times, mut ratios) = (Vec::new(), Vec::new());
-            for _ in 0..PAIRS {
-                let unit = scene(&sphere).as_secs_f64();
-                let time = scene(&shape).as_secs_f64();
-                times.push(1e6 * time / count as f64);
-                ratios.push(time / unit);
-            }
-            format!("{:.3} | {:.1}", median(times), median(ratios))
-        });
+        let figures =
+            [(stresses as Scene, 1), (moves, MOVES), (extrema, 1), (displacements, RADII)].map(|(scene, count)| {
+                let (mut times, mut ratios) = (Vec::new(), Vec::new());
+                for _ in 0..PAIRS {
+                    let unit = scene(&sphere).as_secs_f64();
+                    let time = scene(&shape).as_secs_f64();
+                    times.push(1e6 * time / count as f64);
+                    ratios.push(time / unit);
+                }
+                format!("{:.3} | {:.1}", median(times), median(ratios))
+            });
         println!("| {name} | {} |", figures.join(" | "));
     }
 }

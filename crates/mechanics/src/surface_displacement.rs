@@ -23,8 +23,26 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn surface_displacement(&self, radius: f64) -> f64 {
+        self.displacement_at(radius, self.relative_displacements(&[radius])[0])
+    }
+
+    /// [`Contact::surface_displacement`] at each of `radii`, m: faster than one by one.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// assert_eq!(contact.surface_displacements(&[0.05, 0.2])[1], contact.surface_displacement(0.2));
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        let carried = self.relative_displacements(radii);
+        radii.iter().zip(carried).map(|(&radius, carried)| self.displacement_at(radius, carried)).collect()
+    }
+
+    /// u, m, at a radius, m, with the u - U that pieces carry.
+    fn displacement_at(&self, radius: f64, carried: f64) -> f64 {
         let shift = self.history.shift().value();
-        let carried = self.relative_displacement(radius);
         self.scale()
             * if radius > 0.0 {
                 carried + shift * FRAC_2_PI * arc_to(self.history.edge(), &StressRadius::new(radius))
@@ -45,19 +63,48 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<f64> {
-        let edge = self.history.edge();
-        let touched = edge.level.value() > 0.0 && radius <= edge.radius;
-        touched.then(|| {
-            if self.friction <= 0.0 {
-                // The surface does not move at all, and the slip history does not follow the displacement.
-                return self.displacement.value() + 0.0;
-            }
-            let started = (self.history.position() - self.history.shift()).value();
-            self.scale() * (started - self.relative_displacement(radius)) + 0.0
-        })
+        self.slips(&[radius])[0]
     }
 
-    /// (2/pi) int_0^min(r, a) (w - W)/sqrt(r^2 - x^2) dx, m, of the stored w - W, without the shift.
+    /// [`Contact::slip`] at each of `radii`, m: faster than one by one.
+    ///
+    /// ```
+    #[doc = include_str!("example.txt")]
+    /// contact.apply(&slide(0.001))?;
+    /// assert_eq!(contact.slips(&[0.05, 0.2]), [contact.slip(0.05), None]);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
+        let edge = self.history.edge();
+        let touched = |radius: &f64| edge.level.value() > 0.0 && *radius <= edge.radius;
+        if self.friction <= 0.0 {
+            // The surface does not move at all, and the slip history does not follow the displacement.
+            let slip = self.displacement.value() + 0.0;
+            return radii.iter().map(|radius| touched(radius).then_some(slip)).collect();
+        }
+        let inside: Vec<f64> = radii.iter().copied().filter(touched).collect();
+        let started = (self.history.position() - self.history.shift()).value();
+        let mut carried = self.relative_displacements(&inside).into_iter();
+        let slip = |carried: f64| self.scale() * (started - carried) + 0.0;
+        radii.iter().map(|radius| touched(radius).then(|| carried.next().map(slip)).flatten()).collect()
+    }
+
+    /// (2/pi) int_0^min(r, a) (w - W)/sqrt(r^2 - x^2) dx, m, of the stored w - W, without the shift, at each radius.
+    fn relative_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        let ends = self.history.pieces().first().zip(self.history.pieces().last());
+        let ends = ends.map(|(core, top)| {
+            (core.line.at(DoubleDouble::ZERO).value(), top.line.at(self.history.edge().level).value())
+        });
+        let at_once = ends.and_then(|ends| {
+            let mut rings: Vec<_> = self.history.rings().map(|(ring, line)| (ring, line.slope.value())).collect();
+            rings.reverse();
+            self.profile.displacements(&rings, ends, &StressRadius::of_all(radii))
+        });
+        at_once.unwrap_or_else(|| radii.iter().map(|&radius| self.relative_displacement(radius)).collect())
+    }
+
+    /// The same at one radius, ring by ring.
     fn relative_displacement(&self, radius: f64) -> f64 {
         let Some(core) = self.history.pieces().first() else { return 0.0 };
         let at_core = core.line.at(DoubleDouble::ZERO).value();
@@ -85,4 +132,48 @@ impl Contact {
 fn arc_to(point: &Point, at: &StressRadius) -> f64 {
     let beyond = (at.square - point.square).value();
     if beyond > 0.0 { point.radius.atan2(beyond.sqrt()) } else { std::f64::consts::FRAC_PI_2 }
+}
+#[cfg(test)]
+mod tests {
+    use super::super::profile::Tabulated;
+    use super::super::{Contact, Elasticity, Move, Preload, Profile, Setup, Tangential};
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, rng_seed: RngSeed::Fixed(0), ..ProptestConfig::default() })]
+
+        #[test]
+        fn displacements_at_once_are_those_ring_by_ring(
+            steps in prop::collection::vec((0.05..1.0_f64, 0.2..1.0_f64), 3..60),
+            turns in prop::collection::vec(-1.0..1.0_f64, 1..12),
+            share in 0.2..0.95_f64,
+        ) {
+            // Uneven steps and slopes that rise by any amount, so that g does too.
+            let (mut radii, mut heights, mut slope) = (vec![0.0], vec![0.0], 0.0);
+            for (step, bend) in steps {
+                let (r, z): (f64, f64) = (radii[radii.len() - 1], heights[heights.len() - 1]);
+                slope += bend * step;
+                radii.push(r + 1e-3 * step);
+                heights.push(z + 1e-6 * slope * step);
+            }
+            let profile = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+            let edge = share * profile.limit_radius().unwrap();
+            let elasticity = Elasticity::effective(1e11, 8e10).unwrap();
+            let preload = Preload::ContactRadius(edge);
+            let mut contact = Contact::new(Setup { profile, elasticity, friction: 0.3, preload }).unwrap();
+            let full = contact.gross_slip_displacement();
+            for turn in turns {
+                let to = Tangential::Displacement(full * turn);
+                contact.apply(&Move { tangential: Some(to), ..Move::default() }).unwrap();
+            }
+            let radii: Vec<f64> = (0..60).map(|index| f64::from(index) * edge / 40.0).collect();
+            let at_once = contact.relative_displacements(&radii);
+            for (&radius, found) in radii.iter().zip(at_once) {
+                let expected = contact.relative_displacement(radius);
+                let error = (found - expected).abs() / contact.indentation();
+                prop_assert!(error < 2e-14, "at {radius:e} m: {found:e} m instead of {expected:e} m");
+            }
+        }
+    }
 }

@@ -148,7 +148,7 @@ impl Set {
         if some.len() <= FEW {
             each(some);
         } else {
-            let far = &mut |_, _, gaps: &[f64; _], roots: &[f64; _]| add(&mut far, gaps, roots, &term);
+            let far = &mut |gaps: &[f64; _], roots: &[f64; _]| add(&mut far, gaps, roots, &term);
             self.clusters.visit_clusters(some, (here, here), far, &mut each);
         }
         std::array::from_fn(|index| far[index].iter().sum::<f64>() + near[index].iter().sum::<f64>())

@@ -2,13 +2,11 @@
 //! fixed points.
 //!
 //! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
-//! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). Both Abel integrals of a table
-//! use it: g' from f' (X = x^2, Y = r^2) and the kernel from g' (the other way about). So do the sums over many asperities
+//! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). The Abel integral that gives g' of a
+//! table from f' uses it (X = x^2, Y = r^2), the kernels of many rings (the other way about) and the sums over many asperities
 //! (X a level, Y a gap), for which all that is far below an interval of X is gathered, once, in a series over it ([`Local`]).
 
-use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::LazyLock;
 
 /// Points that replace a cluster.
 const PROXIES: usize = 20;
@@ -23,9 +21,6 @@ struct Cluster {
     weights: [f64; PROXIES],
     children: Option<(usize, usize)>,
 }
-
-/// Weights of clusters by their numbers.
-pub(super) type Uneven = HashMap<usize, [f64; PROXIES]>;
 
 /// A tree of clusters over items in rising order.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,40 +91,8 @@ fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
     shares.map(|share| share * scale)
 }
 
-/// The values of the Chebyshev polynomials of each order, twice those but the first, over the number of points, at each point: what turns
-/// [`add_moments`] into the weights of interpolation.
-static TRANSFORM: LazyLock<[[f64; PROXIES]; PROXIES]> = LazyLock::new(|| {
-    let step = std::f64::consts::PI / (2 * PROXIES) as f64;
-    std::array::from_fn(|point| {
-        std::array::from_fn(|order| {
-            let factor = if order == 0 { 1.0 } else { 2.0 } / PROXIES as f64;
-            factor * (step * (order * (2 * point + 1) % (4 * PROXIES)) as f64).cos()
-        })
-    })
-});
-
-/// Adds weights times the Chebyshev polynomials of each order over the interval, at their places.
-fn add_moments<const N: usize>(
-    moments: &mut [f64; PROXIES],
-    (low, high): (f64, f64),
-    places: &[f64; N],
-    weights: &[f64; N],
-) {
-    // An interval of a few units in the last place has no centre of its own, and all of it is one place.
-    let half = (0.5 * (high - low)).max(f64::MIN_POSITIVE);
-    let twice = places.map(|at| (2.0 * ((at - 0.5 * (low + high)) / half)).clamp(-2.0, 2.0));
-    let mut before: [f64; N] = std::array::from_fn(|index| 0.5 * twice[index] * weights[index]);
-    let mut this = *weights;
-    for moment in moments {
-        *moment += this.iter().sum::<f64>();
-        for index in 0..N {
-            (this[index], before[index]) = (twice[index] * this[index] - before[index], this[index]);
-        }
-    }
-}
-
 /// The sum of what stands for a cluster, four by four.
-pub(super) fn total(terms: &[f64; PROXIES]) -> f64 {
+fn total(terms: &[f64; PROXIES]) -> f64 {
     let mut sums = [0.0; 4];
     for four in terms.chunks_exact(4) {
         for (sum, term) in sums.iter_mut().zip(four) {
@@ -184,52 +147,6 @@ impl FarField {
         self.clusters.len() - 1
     }
 
-    /// The weights of each cluster, by its number, whose items do not count all alike: `share` is the factor of a run of items that do,
-    /// and `sources` gives those of an item that does not.
-    pub(super) fn uneven(
-        &self,
-        share: &impl Fn(Range<usize>) -> Option<f64>,
-        sources: &impl Fn(usize, &mut dyn FnMut(f64, f64)),
-    ) -> Uneven {
-        let mut found = Uneven::new();
-        if let Some(root) = self.clusters.len().checked_sub(1) {
-            self.gather(root, share, sources, &mut found);
-        }
-        found
-    }
-
-    /// Finds the weights of a cluster, and of those below it.
-    fn gather(
-        &self,
-        index: usize,
-        share: &impl Fn(Range<usize>) -> Option<f64>,
-        sources: &impl Fn(usize, &mut dyn FnMut(f64, f64)),
-        found: &mut Uneven,
-    ) -> [f64; PROXIES] {
-        let Cluster { first, last, low, high, weights, children } = &self.clusters[index];
-        if let Some(factor) = share(*first..*last) {
-            return weights.map(|weight| factor * weight);
-        }
-        let mut moments = [0.0; PROXIES];
-        if let Some((below, above)) = children {
-            for child in [*below, *above] {
-                let weights = self.gather(child, share, sources, found);
-                let Cluster { low: from, high: to, .. } = &self.clusters[child];
-                let places = std::array::from_fn(|index| place(*from, *to, index));
-                add_moments(&mut moments, (*low, *high), &places, &weights);
-            }
-        } else {
-            let mut add = |at, weight| add_moments(&mut moments, (*low, *high), &[at], &[weight]);
-            (*first..*last).for_each(|item| sources(item, &mut add));
-        }
-        let weights = TRANSFORM.each_ref().map(|row| {
-            let terms = std::array::from_fn(|order| row[order] * moments[order]);
-            total(&terms)
-        });
-        found.insert(index, weights);
-        weights
-    }
-
     /// Goes through the items `items`, seen from the interval `from`: whole clusters as sources where they are far, by `far`, else
     /// item by item, by `near`.
     pub(super) fn visit(
@@ -239,18 +156,18 @@ impl FarField {
         far: &mut impl FnMut(f64, f64),
         near: &mut impl FnMut(usize),
     ) {
-        let mut each = |_, _, places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
+        let mut each = |places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
             places.iter().zip(weights).for_each(|(&place, &weight)| far(place, weight));
         };
         self.visit_clusters(items, from, &mut each, &mut |items| items.for_each(&mut *near));
     }
 
-    /// The same by whole clusters, each with its number, first item, places and weights, and by runs of items.
+    /// The same by whole clusters, each with its places and weights, and by runs of items.
     pub(super) fn visit_clusters(
         &self,
         items: Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(usize, usize, &[f64; PROXIES], &[f64; PROXIES]),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
         near: &mut impl FnMut(Range<usize>),
     ) {
         if let Some(root) = self.clusters.len().checked_sub(1) {
@@ -263,7 +180,7 @@ impl FarField {
         index: usize,
         items: &Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(usize, usize, &[f64; PROXIES], &[f64; PROXIES]),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
         near: &mut impl FnMut(Range<usize>),
     ) {
         let cluster = &self.clusters[index];
@@ -274,8 +191,7 @@ impl FarField {
         let distance = (cluster.low - from.1).max(from.0 - cluster.high);
         let whole = first == cluster.first && last == cluster.last;
         if whole && distance >= (cluster.high - cluster.low).max(from.1 - from.0) {
-            let places = std::array::from_fn(|index| place(cluster.low, cluster.high, index));
-            far(index, first, &places, &cluster.weights);
+            far(&std::array::from_fn(|index| place(cluster.low, cluster.high, index)), &cluster.weights);
         } else if let Some((low, high)) = cluster.children {
             self.descend(low, items, from, far, near);
             self.descend(high, items, from, far, near);

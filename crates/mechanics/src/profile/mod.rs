@@ -331,6 +331,18 @@ impl Profile {
         })
     }
 
+    /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m, is straight in g over
+    /// rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends` are its values at the centre and at the edge.
+    /// `None` where ring by ring is no slower.
+    pub(super) fn displacements(
+        &self,
+        rings: &[(Ring, f64)],
+        ends: (f64, f64),
+        radii: &[StressRadius],
+    ) -> Option<Vec<f64>> {
+        Shape::displacements(self, rings, ends, radii)
+    }
+
     /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core, belongs
     /// to no ring: there it is asin(min(1, X(0)/r)).
     #[must_use]
@@ -500,6 +512,7 @@ dispatch! {
     slope_over_radius_series(place: &Place) -> Option<Series>;
     kink_series(b: f64, top: f64) -> Option<KinkSeries>;
     kernel_sums(rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>>;
+    displacements(rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>>;
     surface_slope(r: f64) -> f64;
     curvature_radius() -> Option<f64>;
     limit() -> Option<End>;

@@ -171,6 +171,11 @@ pub(super) trait Shape {
         None
     }
 
+    /// See [`Profile::displacements`](super::Profile); `None` of a family that has no faster way than ring by ring.
+    fn displacements(&self, _rings: &[(Ring, f64)], _ends: (f64, f64), _radii: &[StressRadius]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// f'(r), the slope of the undeformed surface.
     fn surface_slope(&self, r: f64) -> f64;
 

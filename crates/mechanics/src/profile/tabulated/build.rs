@@ -48,15 +48,16 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
         });
     });
     let stretches = stretches(knots, &segments);
-    let cosines = panel::cosines();
+    let transform = panel::transform();
     let (mut panels, mut falls_at) = (Vec::with_capacity(stretches.len()), None);
     for block in stretches.chunks(BLOCK) {
         let field = Field::new(block, &segments, &far);
         for stretch in block {
             let values =
                 |low, high| panel::places(low, high).map(|t| field.slope(&segments, stretch, t) / stretch.radius(t));
-            let make =
-                |low, high| Panel::new((stretch.base, stretch.singularity), (low, high), &values(low, high), &cosines);
+            let make = |low, high| {
+                Panel::new((stretch.base, stretch.singularity), (low, high), &values(low, high), &transform)
+            };
             let panel = make(stretch.low, stretch.high);
             let Some(t) = first_fall(&panel) else {
                 panels.push(panel);

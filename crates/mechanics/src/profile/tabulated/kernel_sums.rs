@@ -1,149 +1,199 @@
 //! The weighted kernels of many adjoining rings of a table, at many radii.
 //!
-//! The weight of a panel that lies in one ring is that ring's, and the few panels that rings cut are cut with them. So the tree of
-//! the kernel's sources is weighted once, and each radius goes through it once, whatever the number of rings.
+//! A panel that lies in one ring has that ring's weight, and so has a cluster of such panels: its moments are those of the table times
+//! the weight. The few panels that rings cut are cut with them, and only the clusters that hold one, or panels of several rings, get
+//! moments of their own ([`Node`]). So a state costs in proportion to the number of its rings and not to that of the panels, and each radius goes
+//! through the tree once, whatever the number of rings.
 
 use std::cell::RefCell;
 
 #[cfg(test)]
 use super::super::call_count;
-use super::super::far_field::{Uneven, total};
-use super::SmoothCoordinate as _;
-use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, gauss, smooth_coordinate};
+use super::legendre::{self, LegendreMoments, ORDERS};
+use super::many_radii::ManyRadii;
+use super::source_tree::{Cluster, add_panel};
+use super::{Panel, Ring, Shape, Span, StressRadius, Tabulated, smooth_coordinate};
+use std::ops::Range;
 
 /// The panels of a table by their weights.
 pub(crate) struct WeightedPanels<'a> {
-    table: &'a Tabulated,
-    /// The weight of each panel, zero outside the rings; NaN of one that is cut.
-    weights: Vec<f64>,
-    /// The parts of those that are cut, by their panels.
-    parts: Vec<(usize, Span, f64)>,
-    /// The sources of the clusters of panels whose weights differ.
-    uneven: Uneven,
+    pub(super) table: &'a Tabulated,
+    /// Runs of panels that lie in one ring, and its weight, from the centre outward.
+    runs: Vec<(Range<usize>, f64)>,
+    /// The parts of panels that rings cut, by their panels.
+    pub(super) parts: Vec<(usize, Span, f64)>,
+    /// The clusters whose panels do not count alike and those right below, children first.
+    pub(super) nodes: Vec<Node>,
+}
+
+/// A cluster of panels.
+pub(super) enum Node {
+    /// The table's own of this number, times a weight.
+    Even(usize, f64),
+    /// The table's own of this number, with other moments, and its halves in the list, if it has any.
+    Uneven(usize, LegendreMoments, Option<[usize; 2]>),
 }
 
 /// The sums at each radius of the kernels of rings times their weights; `None` with levels at a vertical edge.
 pub(super) fn sums(table: &Tabulated, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
-    let panels = WeightedPanels::new(table, rings)?;
-    let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
-    let sum = |at: &StressRadius| if at.radius > edge { 0.0 } else { panels.sum(at) };
-    Some(radii.iter().map(sum).collect())
-}
-
-/// The sources of a stretch of a panel, as many times as its weight says.
-pub(super) fn sources(panel: &Panel, low: f64, high: f64, weight: f64, add: &mut dyn FnMut(f64, f64)) {
-    gauss::Panel::fine(high - low).visit(|below, share| {
-        let t = high - below;
-        add(panel.base * panel.base + t * t, weight * share * panel.slope_at(t));
-    });
+    Some(ManyRadii::sums(&WeightedPanels::new(table, rings)?, radii))
 }
 
 impl WeightedPanels<'_> {
     /// `None` with levels at a vertical edge.
     pub(in super::super) fn new<'a>(table: &'a Tabulated, rings: &[(Ring, f64)]) -> Option<WeightedPanels<'a>> {
-        let (mut weights, mut parts) = (vec![0.0; table.panels.len()], Vec::new());
+        let (mut runs, mut parts) = (Vec::with_capacity(rings.len()), Vec::with_capacity(2 * rings.len()));
         for (ring, weight) in rings {
             let span = table.span(ring);
             if span.edge > 0.0 {
                 return None;
             }
             let (low, whole, high) = table.parts(&span);
-            weights[whole].fill(*weight);
-            for (index, span) in [low, high].into_iter().flatten() {
-                weights[index] = f64::NAN;
-                parts.push((index, span, *weight));
+            parts.extend(low.map(|(index, span)| (index, span, *weight)));
+            if !whole.is_empty() {
+                runs.push((whole, *weight));
             }
+            parts.extend(high.map(|(index, span)| (index, span, *weight)));
         }
-        // Where the run of panels of the same weight ends that begins at a panel.
-        let mut ends: Vec<usize> = (1..=weights.len()).collect();
-        for index in (0..weights.len().saturating_sub(1)).rev() {
-            if weights[index].to_bits() == weights[index + 1].to_bits() {
-                ends[index] = ends[index + 1];
-            }
-        }
-        let share = |run: std::ops::Range<usize>| {
-            Some(weights[run.start]).filter(|weight| ends[run.start] >= run.end && !weight.is_nan())
-        };
-        let sources = |index: usize, add: &mut dyn FnMut(f64, f64)| {
-            let panel = &table.panels[index];
-            for (_, span, weight) in parts_of(&parts, index) {
-                self::sources(panel, panel.t_of(span.inner), panel.t_of(span.outer), *weight, add);
-            }
-        };
-        let uneven = table.sources.uneven(&share, &sources);
-        Some(WeightedPanels { table, weights, parts, uneven })
+        let mut panels = WeightedPanels { table, runs, parts, nodes: Vec::new() };
+        panels.gather(table.sources.root());
+        Some(panels)
     }
 
-    fn sum(&self, at: &StressRadius) -> f64 {
-        let mut sum = 0.0;
-        let near = |panel: &Panel, span: &Span| smooth_coordinate::kernel(panel, at, span);
-        self.visit(at, |gap, weight| weight / gap.sqrt(), near, |part| sum += part);
-        sum
+    /// The weight of each of these panels, if they have one; zero outside the rings.
+    fn weight(&self, panels: &Range<usize>) -> Option<f64> {
+        let run = self.runs.partition_point(|(run, _)| run.end <= panels.start);
+        match self.runs.get(run) {
+            Some((run, weight)) if run.start <= panels.start => (panels.end <= run.end).then_some(*weight),
+            next => {
+                let part = self.parts.partition_point(|part| part.0 < panels.start);
+                let cut = self.parts.get(part).is_some_and(|part| part.0 < panels.end);
+                (!cut && next.is_none_or(|(run, _)| run.start >= panels.end)).then_some(0.0)
+            }
+        }
+    }
+
+    /// Lists a cluster of the table after all that is needed below it.
+    fn gather(&mut self, index: usize) {
+        let table = self.table;
+        let cluster = table.sources.cluster(index);
+        if let Some(weight) = self.weight(&(cluster.first..cluster.last)) {
+            self.nodes.push(Node::Even(index, weight));
+            return;
+        }
+        let mut moments = [0.0; ORDERS];
+        // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
+        let wanted = legendre::is_far(cluster.interval, 0.0);
+        let children = table.sources.children(index).map(|children| {
+            children.map(|child| {
+                self.gather(child);
+                let (number, own, factor) = match &self.nodes[self.nodes.len() - 1] {
+                    Node::Even(number, weight) => (*number, &table.sources.cluster(*number).moments, *weight),
+                    Node::Uneven(number, moments, _) => (*number, moments, 1.0),
+                };
+                if wanted && factor.abs() > 0.0 {
+                    let from = table.sources.cluster(number).interval;
+                    legendre::add_shifted(&mut moments, cluster.interval, from, own, factor);
+                }
+                self.nodes.len() - 1
+            })
+        });
+        if wanted && children.is_none() {
+            self.add_parts(cluster, &mut moments);
+        }
+        self.nodes.push(Node::Uneven(index, moments, children));
+    }
+
+    /// Adds the moments of the parts of a panel. All but the first make the most of the panel: the first counts as what is left by them.
+    fn add_parts(&self, cluster: &Cluster, moments: &mut LegendreMoments) {
+        let panel = &self.table.panels[cluster.first];
+        let parts = parts_of(&self.parts, cluster.first);
+        let covered = parts.windows(2).all(|pair| pair[0].1.outer == pair[1].1.inner)
+            && parts.first().is_some_and(|(_, span, _)| span.inner <= panel.square)
+            && parts.last().is_some_and(|(_, span, _)| span.outer >= self.table.span_of_panel(cluster.first).outer);
+        let base = if covered { parts[0].2 } else { 0.0 };
+        if base.abs() > 0.0 {
+            moments.iter_mut().zip(&cluster.moments).for_each(|(moment, whole)| *moment += base * whole);
+        }
+        for (_, span, weight) in parts {
+            if (weight - base).abs() > 0.0 {
+                let ends = (panel.t_of(span.inner), panel.t_of(span.outer));
+                add_panel(moments, cluster.interval, panel, ends, weight - base);
+            }
+        }
     }
 
     /// The derivative of the sum with respect to r^2, 1/m^2, and the sum of the sizes of its parts.
     pub(in super::super) fn slope(&self, at: &StressRadius) -> (f64, f64) {
         let (mut sum, mut size) = (0.0, 0.0);
-        let near = |panel: &Panel, span: &Span| {
+        let part = |panel: &Panel, span: &Span| {
             #[cfg(test)]
             call_count::add(|calls| &mut calls.kernel_slope);
             smooth_coordinate::kernel_slope(panel, at, span)
         };
-        let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
-        self.visit(at, far, near, |part| {
-            sum += part;
-            size += part.abs();
-        });
+        let whole = |index: usize| part(&self.table.panels[index], &self.table.span_of_panel(index));
+        let (panels, below) = (self.table.find(at.radius)..self.table.panels.len(), at.square.value());
+        let far = |interval, moments: &LegendreMoments| legendre::potential_slope(interval, moments, below);
+        self.visit(
+            panels,
+            |interval| legendre::is_far(interval, below),
+            far,
+            whole,
+            part,
+            |part| {
+                sum += part;
+                size += part.abs();
+            },
+        );
         (sum, size)
     }
 
-    /// Adds what clusters of panels do from afar, and each of the others by itself.
-    fn visit(
+    /// Adds what these panels do: by clusters where those are far, else panel by panel and part by part.
+    pub(super) fn visit(
         &self,
-        at: &StressRadius,
-        far: impl Fn(f64, f64) -> f64,
-        near: impl Fn(&Panel, &Span) -> f64,
+        panels: Range<usize>,
+        is_far: impl Fn((f64, f64)) -> bool,
+        far: impl Fn((f64, f64), &LegendreMoments) -> f64,
+        whole: impl Fn(usize) -> f64,
+        part: impl Fn(&Panel, &Span) -> f64,
         add: impl FnMut(f64),
     ) {
-        let table = self.table;
-        let square = at.square.value();
         let add = RefCell::new(add);
-        table.sources.visit_clusters(
-            table.find(at.radius)..table.panels.len(),
-            (square, square),
-            &mut |cluster, first, places, weights| {
-                let own = self.uneven.get(&cluster);
-                let (factor, weights) = own.map_or((self.weights[first], weights), |own| (1.0, own));
-                if factor.abs() > 0.0 {
-                    let terms = std::array::from_fn(|index| far(places[index] - square, weights[index]));
-                    add.borrow_mut()(factor * total(&terms));
-                }
-            },
-            &mut |panels| panels.for_each(|panel| self.near(panel, &near, &mut *add.borrow_mut())),
-        );
-    }
-
-    /// The shares of one panel.
-    fn near(&self, index: usize, share: impl Fn(&Panel, &Span) -> f64, add: &mut impl FnMut(f64)) {
-        let panel = &self.table.panels[index];
-        let weight = self.weights[index];
-        if weight.is_nan() {
-            for (_, span, weight) in parts_of(&self.parts, index) {
-                if weight.abs() > 0.0 {
-                    add(weight * share(panel, span));
+        let mut open = vec![self.nodes.len() - 1];
+        while let Some(node) = open.pop() {
+            match &self.nodes[node] {
+                Node::Even(_, weight) if weight.abs() <= 0.0 => {}
+                Node::Even(index, weight) => self.table.sources.visit(
+                    *index,
+                    &panels,
+                    &is_far,
+                    &mut |cluster: &Cluster| add.borrow_mut()(weight * far(cluster.interval, &cluster.moments)),
+                    &mut |panel| add.borrow_mut()(weight * whole(panel)),
+                ),
+                Node::Uneven(index, moments, children) => {
+                    let Cluster { first, last, interval, .. } = self.table.sources.cluster(*index);
+                    if *last <= panels.start || *first >= panels.end {
+                        continue;
+                    }
+                    if *first >= panels.start && *last <= panels.end && is_far(*interval) {
+                        add.borrow_mut()(far(*interval, moments));
+                    } else if let Some(children) = children {
+                        open.extend(children);
+                    } else {
+                        for (index, span, weight) in parts_of(&self.parts, *first) {
+                            if weight.abs() > 0.0 {
+                                add.borrow_mut()(weight * part(&self.table.panels[*index], span));
+                            }
+                        }
+                    }
                 }
             }
-        } else if weight.abs() > 0.0 {
-            // Its own end is rounded, and 1/sqrt(x^2 - r^2) has no digits to spare beneath it.
-            let next = self.table.panels.get(index + 1);
-            let span = next.map_or_else(|| panel.span(), |next| panel.span_up_to(next));
-            add(weight * share(panel, &span));
         }
     }
 }
 
 /// The parts of a panel, of all in rising order.
-fn parts_of(parts: &[(usize, Span, f64)], index: usize) -> &[(usize, Span, f64)] {
+pub(super) fn parts_of(parts: &[(usize, Span, f64)], index: usize) -> &[(usize, Span, f64)] {
     let first = parts.partition_point(|part| part.0 < index);
     let count = parts[first..].partition_point(|part| part.0 == index);
     &parts[first..first + count]

@@ -8,15 +8,24 @@
 //! first at which g falls, exist: but for the part of a sum, whose g may fall as long as that of the sum does not.
 
 mod build;
+mod displacement;
 mod interpolation_error;
 mod kernel_sums;
+mod legendre;
+mod lookup;
+mod many_radii;
+mod near_kernel;
+mod noise;
 mod panel;
+mod panel_integrals;
+mod panels;
+mod ring_moments;
+mod source_tree;
 mod spline;
 #[cfg(test)]
 mod tests;
 
 use super::super::error::TableFault;
-use super::far_field::FarField;
 use super::kernel_sums::FEW;
 use super::moment_tree::MomentTree;
 use super::shape::{self, End, Shape};
@@ -25,7 +34,9 @@ use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 pub use interpolation_error::InterpolationError;
 pub(super) use kernel_sums::WeightedPanels;
+use lookup::Lookup;
 use panel::Panel;
+use source_tree::SourceTree;
 use spline::Knot;
 
 /// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the panel's end: it is
@@ -45,10 +56,12 @@ pub struct Tabulated {
     /// The interpolation error at increasing radii.
     interpolation_errors: Vec<(f64, InterpolationError)>,
     panels: Vec<Panel>,
+    by_radius: Lookup,
+    by_level: Lookup,
     /// Moments and depth of all runs of panels.
     tree: MomentTree,
     /// The kernel's sources.
-    sources: FarField,
+    sources: SourceTree,
     knots: Vec<f64>,
     /// The sums of [`Panel::steepest`] before each panel.
     steepest: Vec<f64>,
@@ -97,7 +110,7 @@ impl Tabulated {
         let mut table = Tabulated::from_knots(&knots, whole)?;
         table.interpolation_errors = interpolation_error::up_to_radii(radii, heights, &knots);
         (table.radii, table.heights) = (radii.to_vec(), heights.to_vec());
-        table.noise = noise(radii, heights);
+        table.noise = noise::of_heights(radii, heights);
         Ok(table)
     }
 
@@ -114,22 +127,21 @@ impl Tabulated {
         let end = (last.end().1, level, load);
         let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
         let tree = MomentTree::new(panels.iter().map(leaf));
-        let mut bounds: Vec<f64> = panels.iter().map(|panel| panel.square.value()).collect();
-        bounds.push(last.end().0.value());
-        let sources = FarField::new(&bounds, LEAF, |index, add| {
-            let panel = &panels[index];
-            kernel_sums::sources(panel, panel.low, panel.high, 1.0, add);
-        });
+        let sources = SourceTree::new(&panels);
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
         let steepest = panels.iter().scan(0.0, |sum, panel| Some(std::mem::replace(sum, *sum + panel.steepest())));
         let steepest = steepest.collect();
+        let by_radius = Lookup::new(panels.iter().map(|panel| panel.radius), end.0);
+        let by_level = Lookup::new(panels.iter().map(|panel| panel.level), level);
         Ok(Tabulated {
             radii: Vec::new(),
             heights: Vec::new(),
             noise: 0.0,
             interpolation_errors: Vec::new(),
             panels,
+            by_radius,
+            by_level,
             tree,
             sources,
             knots,
@@ -144,95 +156,6 @@ impl Tabulated {
     pub(super) fn slope_check_radii(&self) -> impl Iterator<Item = f64> {
         self.panels.iter().flat_map(|panel| panel.slope_check_places().into_iter().map(|t| panel.radius_at(t)))
     }
-
-    /// An estimate of the noise of the heights, m, from what a local cubic leaves over. A coarse table of a smooth surface has some too.
-    #[must_use]
-    pub fn height_noise(&self) -> f64 {
-        self.noise
-    }
-
-    /// By how much g at the radius x, m, has more noise than the heights do (pure number), if theirs is independent:
-    /// the root of the sum of squares of dg/dz, taken for straight lines between the points. At n equal steps it is sqrt(2n) and so.
-    #[must_use]
-    pub fn noise_amplification(&self, x: f64) -> f64 {
-        let angle = |r: f64| (r / x).min(1.0).asin();
-        let (mut sum, mut before) = (0.0, 0.0);
-        for pair in self.radii.windows(2) {
-            let share = x * (angle(pair[1]) - angle(pair[0])) / (pair[1] - pair[0]);
-            sum += (share - before) * (share - before);
-            before = share;
-        }
-        (sum + before * before).sqrt()
-    }
-
-    /// The panel that holds a radius.
-    fn find(&self, radius: f64) -> usize {
-        self.panels.partition_point(|panel| panel.radius <= radius).saturating_sub(1)
-    }
-
-    /// The panels of both ends of a span.
-    fn ends(&self, span: &Span) -> (usize, usize) {
-        let outer = self.panels.partition_point(|panel| panel.radius < span.outer_radius).saturating_sub(1);
-        (self.find(span.inner_radius).min(outer), outer)
-    }
-
-    /// The parts of a span in its innermost and its outermost panel, and the whole panels between.
-    fn parts(&self, span: &Span) -> (Option<Piece>, std::ops::Range<usize>, Option<Piece>) {
-        let (inner, outer) = self.ends(span);
-        if inner == outer {
-            return (None, outer..outer, Some((outer, *span)));
-        }
-        let (this, next) = (&self.panels[inner], &self.panels[inner + 1]);
-        let whole = span.inner_radius <= this.radius;
-        let low = if whole { None } else { span.below(next.square, next.radius).map(|span| (inner, span)) };
-        let top = &self.panels[outer];
-        let high = span.above(top.square, top.radius).map(|span| (outer, span));
-        (low, if whole { inner } else { inner + 1 }..outer, high)
-    }
-
-    /// Sums over the panels of a span: `panel` for one, `far` for sources that replace many; only radii beyond r count.
-    fn gather(
-        &self,
-        at: &StressRadius,
-        span: &Span,
-        panel: impl Fn(&Panel, &Span) -> f64,
-        far: impl Fn(f64, f64) -> f64,
-    ) -> f64 {
-        let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
-        let (low, whole, high) = self.parts(&span);
-        let mut sum = 0.0;
-        for (index, span) in [low, high].into_iter().flatten() {
-            sum += panel(&self.panels[index], &span);
-        }
-        let square = at.square.value();
-        let (mut distant, mut close) = (0.0, 0.0);
-        self.sources.visit(
-            whole,
-            (square, square),
-            &mut |place, weight| distant += far(place - square, weight),
-            &mut |index| close += panel(&self.panels[index], &self.panels[index].span()),
-        );
-        sum + close + distant
-    }
-}
-
-/// A stretch within the panel of this index.
-type Piece = (usize, Span);
-
-/// What third divided differences say about the noise of single heights.
-fn noise(radii: &[f64], heights: &[f64]) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (r, z) in radii.windows(4).zip(heights.windows(4)) {
-        let (mut difference, mut size) = (0.0, 0.0);
-        for i in 0..4 {
-            let weight: f64 = (0..4).filter(|&j| j != i).map(|j| (r[3] - r[0]) / (r[i] - r[j])).product();
-            difference += weight * (z[i] - z[0]);
-            size += weight * weight;
-        }
-        sum += difference * difference / size;
-        count += 1.0;
-    }
-    if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
 }
 
 impl Shape for Tabulated {
@@ -258,11 +181,14 @@ impl Shape for Tabulated {
         if y >= self.end.1 {
             return DoubleDouble::square_of(self.end.0);
         }
-        let index = self.panels.partition_point(|panel| panel.level <= y).saturating_sub(1);
+        let index = self.by_level.holding(y);
         let panel = &self.panels[index];
         let rest = (level - DoubleDouble::from(panel.level)).value();
         if rest <= 0.0 {
             return panel.square;
+        }
+        if let Some(further) = panel_integrals::distance(panel, rest) {
+            return panel.square + DoubleDouble::from(further);
         }
         let whole = self.panels.get(index + 1).map_or(self.end.1, |next| next.level) - panel.level;
         let t =
@@ -303,7 +229,7 @@ impl Shape for Tabulated {
     }
 
     fn rise_to(&self, outer: &Span, interval: &SmoothInterval, node: Node) -> f64 {
-        let index = self.panels.partition_point(|panel| panel.radius < outer.outer_radius).saturating_sub(1);
+        let index = self.by_radius.ending_at(outer.outer_radius);
         let panel = &self.panels[index];
         // The series knows no other knot than its own.
         if panel.base.to_bits() == interval.base.to_bits() && node.t >= panel.low {
@@ -379,12 +305,20 @@ impl Shape for Tabulated {
         sum.0
     }
 
+    fn ring_moments(&self, ring: &Ring) -> Moments {
+        self.moments_across(ring).unwrap_or_else(|| {
+            let span = self.span(ring);
+            Moments::stack(self.moments(&span), Moments::default(), span.edge)
+        })
+    }
+
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
         self.gather(
             at,
             span,
-            |panel, span| smooth_coordinate::kernel(panel, at, span),
-            |gap, weight| weight / gap.sqrt(),
+            |panel, span| panels::kernel_of_part(panel, at, span),
+            |index| self.kernel_of_panel(index, at),
+            legendre::potential,
         )
     }
 
@@ -392,9 +326,14 @@ impl Shape for Tabulated {
         if rings.len() * radii.len() > FEW { kernel_sums::sums(self, rings, radii) } else { None }
     }
 
+    fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
+        displacement::displacements(self, rings, ends, radii)
+    }
+
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        let far = |gap: f64, weight: f64| 0.5 * weight / (gap * gap.sqrt());
-        self.gather(at, span, |panel, span| smooth_coordinate::kernel_slope(panel, at, span), far)
+        let part = |panel: &Panel, span: &Span| smooth_coordinate::kernel_slope(panel, at, span);
+        let whole = |index: usize| part(&self.panels[index], &self.panels[index].span());
+        self.gather(at, span, part, whole, legendre::potential_slope)
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {

@@ -4,7 +4,8 @@
 //! in x, and q keeps gamma = dg/dt = t q exact as t goes to zero.
 
 use super::super::smooth_coordinate::SmoothCoordinate;
-use super::{DoubleDouble, Span, gauss};
+use super::panel_integrals::PanelIntegrals;
+use super::{DoubleDouble, Span, gauss, near_kernel};
 
 /// Values that fix a series.
 pub(super) const POINTS: usize = 24;
@@ -34,6 +35,10 @@ pub(super) struct Panel {
     /// Coefficients of q and, for u from -1 on, of P.
     slope: Box<[f64]>,
     primitive: Box<[f64]>,
+    /// Coefficients of q in powers of t over its upper end, for the kernel; none if they do not serve.
+    pub(super) powers: Box<[f64]>,
+    /// Its integrals up to any place.
+    pub(super) integrals: PanelIntegrals,
     /// How many terms of P are more than [`NEGLIGIBLE`].
     terms: usize,
 }
@@ -48,13 +53,21 @@ fn cosine(index: usize) -> f64 {
     (std::f64::consts::PI * (index % (4 * POINTS)) as f64 / 48.0).cos()
 }
 
+/// What turns values at the places into the coefficients of a series: a row for each order.
+pub(super) type Transform = [[f64; POINTS]; POINTS];
+
 /// The series with these values; what rounding alone keeps from zero is cut off.
-fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
-    let term = |order: usize| {
-        let terms = values.iter().enumerate().map(|(i, value)| value * cosines[order * (2 * i + 1) % (4 * POINTS)]);
-        terms.sum::<f64>() / if order == 0 { 24.0 } else { 12.0 }
+pub(super) fn series(values: &[f64; POINTS], transform: &Transform) -> Vec<f64> {
+    let term = |row: &[f64; POINTS]| {
+        let mut sums = [0.0; 4];
+        for (row, values) in row.chunks_exact(4).zip(values.chunks_exact(4)) {
+            for lane in 0..4 {
+                sums[lane] += row[lane] * values[lane];
+            }
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
     };
-    let mut series: Vec<f64> = (0..POINTS).map(term).collect();
+    let mut series: Vec<f64> = transform.iter().map(term).collect();
     let size = series.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     while series.last().is_some_and(|a| a.abs() <= ROUNDED * size) {
         series.pop();
@@ -62,9 +75,12 @@ fn series(values: &[f64; POINTS], cosines: &[f64; 4 * POINTS]) -> Vec<f64> {
     series
 }
 
-/// The cosines that all series need.
-pub(super) fn cosines() -> [f64; 4 * POINTS] {
-    std::array::from_fn(cosine)
+/// The transform that all series need.
+pub(super) fn transform() -> Transform {
+    std::array::from_fn(|order| {
+        let share = if order == 0 { 1.0 / 24.0 } else { 1.0 / 12.0 };
+        std::array::from_fn(|index| share * cosine(order * (2 * index + 1)))
+    })
 }
 
 impl Panel {
@@ -73,9 +89,9 @@ impl Panel {
         (base, singularity): (f64, f64),
         (low, high): (f64, f64),
         values: &[f64; POINTS],
-        cosines: &[f64; 4 * POINTS],
+        transform: &Transform,
     ) -> Panel {
-        let slope = series(values, cosines);
+        let slope = series(values, transform);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         // t q in the same terms, t = middle + half u and 2 u T_k = T_(k+1) + T_(k-1), then its primitive.
         let term = |k: usize| slope.get(k).copied().unwrap_or(0.0);
@@ -94,7 +110,7 @@ impl Panel {
         let square = DoubleDouble::square_of(base) + DoubleDouble::square_of(low);
         let size = primitive.iter().fold(0.0_f64, |size, a| size.max(a.abs()));
         let terms = primitive.iter().rposition(|a| a.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
-        Panel {
+        let mut panel = Panel {
             base,
             singularity,
             low,
@@ -103,24 +119,29 @@ impl Panel {
             square,
             level: 0.0,
             load: 0.0,
+            powers: near_kernel::powers(&slope, low, high),
             slope: slope.into(),
             primitive: primitive.into(),
+            integrals: PanelIntegrals::default(),
             terms,
-        }
+        };
+        panel.integrals = PanelIntegrals::new(&panel, transform);
+        panel
     }
 
-    fn place(&self, t: f64) -> f64 {
+    /// g from the beginning to t, m, to round-off of that over all of the panel.
+    pub(super) fn rise_to(&self, t: f64) -> f64 {
+        chebyshev(&self.primitive, self.place(t)) - chebyshev(&self.primitive, -1.0)
+    }
+
+    /// t as a place from -1 to 1.
+    pub(super) fn place(&self, t: f64) -> f64 {
         ((t - self.low) - (self.high - t)) / (self.high - self.low)
     }
 
     /// q at t.
     pub(super) fn slope_over_radius(&self, t: f64) -> f64 {
-        let u = self.place(t);
-        let (mut b1, mut b2) = (0.0, 0.0);
-        for &a in self.slope.iter().skip(1).rev() {
-            (b1, b2) = (a + 2.0 * u * b1 - b2, b1);
-        }
-        self.slope.first().copied().unwrap_or(0.0) + u * b1 - b2
+        chebyshev(&self.slope, self.place(t))
     }
 
     /// A bound of |dq/dt|: that of a Chebyshev polynomial of the order k is k^2 at most.
@@ -244,6 +265,15 @@ impl SmoothCoordinate for Panel {
     fn jumps(&self) -> bool {
         false
     }
+}
+
+/// The value of a Chebyshev series at u.
+fn chebyshev(series: &[f64], u: f64) -> f64 {
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for &a in series.iter().skip(1).rev() {
+        (b1, b2) = ((a - b2) + 2.0 * u * b1, b1);
+    }
+    (series.first().copied().unwrap_or(0.0) - b2) + u * b1
 }
 
 /// (p(u) - p(v))/(u - v), also at u = v, by Clenshaw's recurrence carried for both.

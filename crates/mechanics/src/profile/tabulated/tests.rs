@@ -2,6 +2,8 @@
 
 use super::super::{Profile, Ring, RoundedPunch, Sphere, StressRadius, Sum};
 use super::*;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Radii and jumps of f'' of a convex profile, the first at the centre.
 const BENDS: [(f64, f64); 8] =
@@ -78,5 +80,119 @@ fn rings_of_a_table_are_those_of_the_sum() {
                 assert!(worst(&pairs) < allowed, "{idle} {inner} {outer} {share}: {:e} {pairs:?}", worst(&pairs));
             }
         }
+    }
+}
+
+/// A convex table of uneven steps, and bends of any size between them.
+fn uneven(steps: &[(f64, f64)]) -> Tabulated {
+    let (mut radii, mut heights, mut slope) = (vec![0.0], vec![0.0], 0.0);
+    for (index, (step, bend)) in steps.iter().enumerate() {
+        slope += bend * step;
+        radii.push(radii[index] + step);
+        heights.push(heights[index] + slope * step);
+    }
+    Tabulated::new(&radii, &heights).unwrap()
+}
+
+/// Rings between the levels at these shares of the largest radius, with weights.
+fn rings(table: &Tabulated, shares: &[(f64, f64)]) -> Vec<(Ring, f64)> {
+    let mut shares = shares.to_vec();
+    shares.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let point = |share: f64| {
+        let level = DoubleDouble::from(table.level(0.99 * share * table.end.0));
+        let square = table.square(level);
+        Point { level, radius: square.value().sqrt(), square }
+    };
+    let between = |pair: &[(f64, f64)]| (Ring::between(point(pair[0].0), point(pair[1].0)), pair[1].1);
+    shares.windows(2).map(between).collect()
+}
+
+/// The kernel of a part of a panel as int q dv, v = sqrt(x^2 - r^2), by Gauss's rule on stretches that halve towards the lower end, where t may
+/// begin like a root of v.
+fn graded_kernel(panel: &Panel, at: &StressRadius, span: &Span) -> f64 {
+    let (inner, outer) = ((span.inner - at.square).value().max(0.0).sqrt(), (span.outer - at.square).value());
+    let kappa = (at.square - DoubleDouble::square_of(panel.base)).value();
+    let (mut sum, mut width) = (0.0, outer.max(0.0).sqrt() - inner);
+    if outer <= 0.0 {
+        return 0.0;
+    }
+    for _ in 0..50 {
+        width *= 0.5;
+        gauss::Panel::fine(width).visit(|step, weight| {
+            let v = inner + width + step;
+            sum += weight * panel.slope_over_radius((kappa + v * v).max(0.0).sqrt().clamp(panel.low, panel.high));
+        });
+    }
+    sum
+}
+
+fn steps() -> impl Strategy<Value = Vec<(f64, f64)>> {
+    prop::collection::vec(((-3.0..0.0_f64).prop_map(|power| 10.0_f64.powf(power)), 0.01..1.0_f64), 3..120)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, rng_seed: RngSeed::Fixed(0), ..ProptestConfig::default() })]
+
+    #[test]
+    fn weighted_kernels_are_the_sums_of_those_of_panels(
+        steps in steps(),
+        shares in prop::collection::vec((0.0..1.0_f64, -1.0..1.0_f64), 2..12),
+        radii in prop::collection::vec(0.0..1.0_f64, 1..20),
+    ) {
+        let table = uneven(&steps);
+        let rings = rings(&table, &shares);
+        let radii: Vec<StressRadius> = radii.iter().map(|share| StressRadius::new(share * table.end.0)).collect();
+        let by_panels = |at: &StressRadius, ring: &Ring| {
+            let (low, whole, high) = table.parts(&table.span(ring));
+            let whole = whole.map(|index| (index, table.span_of_panel(index)));
+            let kernel = |(index, span): (usize, Span)| graded_kernel(&table.panels[index], at, &span);
+            low.into_iter().chain(whole).chain(high).map(kernel).sum::<f64>()
+        };
+        let size: f64 = rings.iter().map(|(ring, _)| by_panels(&StressRadius::new(0.0), ring)).sum();
+        let sums = kernel_sums::sums(&table, &rings, &radii).unwrap();
+        for (at, sum) in radii.iter().zip(sums) {
+            let exact: f64 = rings.iter().map(|(ring, weight)| weight * by_panels(at, ring)).sum();
+            prop_assert!((sum - exact).abs() <= 3e-14 * size, "{:e}: {sum:e} {exact:e}", at.radius);
+            for (ring, _) in &rings {
+                let (kernel, exact) = (table.kernel(at, &table.span(ring)), by_panels(at, ring));
+                prop_assert!((kernel - exact).abs() <= 3e-14 * size, "{:e}: {kernel:e} {exact:e}", at.radius);
+            }
+        }
+    }
+
+    #[test]
+    fn moments_by_series_are_those_by_quadrature(
+        steps in steps(),
+        shares in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 2..30),
+    ) {
+        let table = uneven(&steps);
+        for (ring, _) in rings(&table, &shares) {
+            let Some(ours) = table.moments_across(&ring) else { continue };
+            let exact = Shape::moments(&table, &table.span(&ring));
+            let error = worst(&[(ours.width, exact.width), (ours.first, exact.first), (ours.second, exact.second)]);
+            prop_assert!(error < 3e-14, "{:e} {:e}: {error:e}", ring.inner.radius, ring.outer.radius);
+        }
+    }
+
+    #[test]
+    fn a_radius_is_found_again_by_its_level(steps in steps(), shares in prop::collection::vec(0.0..1.0_f64, 1..30)) {
+        let table = uneven(&steps);
+        for share in shares {
+            let radius = share * table.end.0;
+            let level = DoubleDouble::from(table.level(radius));
+            let found = table.level(table.square(level).value().sqrt());
+            prop_assert!((found - level.value()).abs() <= 1e-14 * level.value() + 1e-16 * table.end.1, "{radius:e}: {found:e}");
+        }
+    }
+}
+
+#[test]
+fn most_panels_of_a_smooth_table_take_the_short_way() {
+    for count in [100_u32, 1000, 10_000] {
+        let radii: Vec<f64> = (0..count).map(|index| 0.02 * f64::from(index) / f64::from(count)).collect();
+        let heights: Vec<f64> = radii.iter().map(|r| r * r / (1.0 + ((1.0 - r) * (1.0 + r)).sqrt())).collect();
+        let table = Tabulated::new(&radii, &heights).unwrap();
+        let long = table.panels.iter().filter(|panel| panel.powers.is_empty()).count();
+        assert!(100 * long < table.panels.len(), "{long} of {}", table.panels.len());
     }
 }
