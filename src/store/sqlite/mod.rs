@@ -32,8 +32,8 @@ use uuid::Uuid;
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, Heading, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
-    Whole,
+    Changes, Commits, Extent, Heading, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+    Usage, Whole,
 };
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};

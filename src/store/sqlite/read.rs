@@ -46,11 +46,7 @@ pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
 }
 
 /// The extent of a session, and if that is small, the session with its moves.
-pub(super) fn load(
-    database: &Connection,
-    id: Uuid,
-    is_small: IsSmall,
-) -> Result<(Extent, Option<Whole>), Fault> {
+pub(super) fn load(database: &Connection, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>), Fault> {
     let extent = extent(database, id)?;
     if !is_small(&extent) {
         return Ok((extent, None));
