@@ -84,7 +84,7 @@ impl Sessions {
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
-                    if !caught_up && self.catch_up(&mut guard).await? =>
+                    if !caught_up && Box::pin(self.catch_up(&mut guard)).await? =>
                 {
                     caught_up = true;
                     continue;
@@ -92,7 +92,7 @@ impl Sessions {
                 Err(error) => return Err(error),
             };
             if let Plan::Observations(_) = advance.plan {
-                reply.body = self.observed(&mut guard, &mut live, &records, &stop).await?;
+                reply.body = Box::pin(self.observed(&mut guard, &mut live, &records, &stop)).await?;
             }
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.

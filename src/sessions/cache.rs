@@ -69,7 +69,7 @@ pub(super) struct Guard {
 
 /// A user who waits for the lock.
 pub(super) struct Waiting {
-    pub(super) lock: Arc<SessionLock<()>>,
+    lock: Arc<SessionLock<()>>,
     user: LockUser,
 }
 
@@ -96,12 +96,7 @@ impl Cache {
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
         match self.try_lock(tenant, id) {
             Ok(guard) => guard,
-            Err(waiting) => {
-                let place = waiting.stand(None);
-                let lock = Arc::clone(&waiting.lock).lock_owned().await;
-                drop(place);
-                waiting.guard(lock)
-            }
+            Err(waiting) => waiting.lock().await,
         }
     }
 
@@ -193,6 +188,16 @@ impl Guard {
 }
 
 impl Waiting {
+    /// The session.
+    pub(super) fn id(&self) -> Uuid {
+        self.user.key.1
+    }
+
+    /// The lock that is waited for.
+    pub(super) fn awaited(&self) -> Arc<SessionLock<()>> {
+        Arc::clone(&self.lock)
+    }
+
     /// A place at the end of the line.
     pub(super) fn stand(&self, member: Option<Member>) -> PlaceInLine<'_> {
         let mut locks = self.user.cache.locks();
@@ -203,6 +208,14 @@ impl Waiting {
             number
         });
         PlaceInLine { user: &self.user, number }
+    }
+
+    /// Waits for exclusive use.
+    pub(super) async fn lock(self) -> Guard {
+        let place = self.stand(None);
+        let lock = Arc::clone(&self.lock).lock_owned().await;
+        drop(place);
+        self.guard(lock)
     }
 
     /// Exclusive use, by the lock that has been acquired.

@@ -18,7 +18,7 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::{Plan, limits};
 
 use super::apply::{Done, PIECES_OF_A_MOVE, attempt};
-use super::cache::Guard;
+use super::cache::{Guard, Waiting};
 use super::room::Room;
 use super::{SessionError, Sessions};
 
@@ -78,15 +78,25 @@ impl Sessions {
         advance: &Arc<Advance>,
         expected: Option<u64>,
     ) -> Result<Turn, SessionError> {
-        let waiting = match self.common.cache.try_lock(&self.tenant, id) {
-            Ok(guard) => return Ok(Turn::Own(guard)),
-            Err(waiting) => waiting,
-        };
+        match self.common.cache.try_lock(&self.tenant, id) {
+            Ok(guard) => Ok(Turn::Own(guard)),
+            // In a box, so that a move that need not wait is not as large as one that does.
+            Err(waiting) => Box::pin(self.turn_in_line(waiting, advance, expected)).await,
+        }
+    }
+
+    async fn turn_in_line(
+        &self,
+        waiting: Waiting,
+        advance: &Arc<Advance>,
+        expected: Option<u64>,
+    ) -> Result<Turn, SessionError> {
+        let id = waiting.id();
         let room = self.room(Usage::of(0, self.common.store.move_bytes(), None)).await?;
         let (outcome, mut settled) = oneshot::channel();
         let (advance, by) = (Arc::clone(advance), self.by.clone());
         let place = waiting.stand(Some(Member { advance, expected, by, room, span: Span::current(), outcome }));
-        let lock = Arc::clone(&waiting.lock).lock_owned();
+        let lock = waiting.awaited().lock_owned();
         let wait = async {
             tokio::select! {
                 biased;
@@ -111,7 +121,11 @@ impl Sessions {
             (Err(busy), Some(_)) => Err(busy.into()),
             (Ok(Err(done)), _) => self.outcome(id, done).await,
             // Another one has taken it: from then on nothing else says what has become of it.
-            (Ok(Ok(_)) | Err(_), None) => self.outcome(id, settled.await).await,
+            (waited, None) => {
+                // With the lock in hand it could not wait for the lock again.
+                drop(waited);
+                self.outcome(id, settled.await).await
+            }
         }
     }
 

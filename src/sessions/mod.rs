@@ -138,7 +138,10 @@ impl Sessions {
 
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
-        Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
+        match self.common.cache.try_lock(&self.tenant, id) {
+            Ok(guard) => Ok(guard),
+            Err(waiting) => Ok(Box::pin(self.common.pool.wait(waiting.lock())).await?),
+        }
     }
 
     /// Makes a session.

@@ -32,7 +32,8 @@ impl Sessions {
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.is_none() {
-            self.load(guard).await?;
+            // In a box, so that a request whose session is cached is not as large as one that has to load it.
+            Box::pin(self.load(guard)).await?;
         }
         let id = guard.id();
         guard.live.as_deref_mut().ok_or(SessionError::NotFound(id))
@@ -47,7 +48,7 @@ impl Sessions {
                 live.session.label = stored.label;
             }
             if stored.sequence > cached {
-                self.catch_up(guard).await?;
+                Box::pin(self.catch_up(guard)).await?;
             } else if stored.sequence < cached {
                 // The store has been restored from a backup.
                 guard.live = None;
