@@ -216,8 +216,9 @@ impl Pool {
         if let Ok(permit) = Arc::clone(semaphore).try_acquire_many_owned(number) {
             return Ok(permit);
         }
-        // The semaphores are never closed, so their own error cannot occur.
-        self.wait(Arc::clone(semaphore).acquire_many_owned(number)).await?.map_err(|_| PoolError::Busy)
+        // In a box, so that a request that need not wait is not as large as one that does. The semaphores are never closed, so their own
+        // error cannot occur.
+        Box::pin(self.wait(Arc::clone(semaphore).acquire_many_owned(number))).await?.map_err(|_| PoolError::Busy)
     }
 
     /// Acquires a place among the requests that are served.
@@ -279,6 +280,16 @@ impl Pool {
         if cost < INLINE {
             return Ok(self.0.meters.timed(work));
         }
+        // In a box, so that short work is not as large as long work.
+        Box::pin(self.run_on_thread(cost, work)).await
+    }
+
+    /// Runs `work` on a thread of the blocking pool.
+    async fn run_on_thread<T: Send + 'static>(
+        &self,
+        cost: Nanoseconds,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, PoolError> {
         let turn = self.turn(Client::current(), Kind::of(cost)).await?;
         let (meters, request) = (Arc::clone(&self.0.meters), Span::current());
         let task = spawn_blocking(move || {

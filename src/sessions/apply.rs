@@ -16,6 +16,7 @@ use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, Steps, limits};
 
 use super::cache::Guard;
+use super::group::{Turn, may_join};
 use super::loaded::LoadedSession;
 use super::observe::check_plausible;
 use super::relax::{find_protocol, without_step};
@@ -25,13 +26,13 @@ use super::{ATTEMPTS, SessionError, Sessions, written};
 const REASON: &str = "stored contacts use the exact solver";
 
 /// The results of a computation that are to be stored.
-struct Done {
-    records: Vec<Record>,
-    reply: Reply,
+pub(super) struct Done {
+    pub(super) records: Vec<Record>,
+    pub(super) reply: Reply,
 }
 
 /// The most pieces that one straight move can add to the slip history, with a margin.
-const PIECES_OF_A_MOVE: usize = 8;
+pub(super) const PIECES_OF_A_MOVE: usize = 8;
 
 impl Sessions {
     /// Applies moves to a session, all or none of them, if it is at the sequence that the client expects.
@@ -50,10 +51,17 @@ impl Sessions {
         if let Some(reply) = request.earlier_reply().await? {
             return Ok(reply);
         }
-        // A client that hangs up in the queue leaves it.
-        let mut guard = self.lock(id).await?;
-        let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let advance = Arc::new(advance);
+        // A client that hangs up in the queue leaves it.
+        let mut guard = if !request.has_key() && may_join(&advance) {
+            match self.turn(id, &advance, expected).await? {
+                Turn::Own(guard) => guard,
+                Turn::Settled(settled) => return settled,
+            }
+        } else {
+            self.lock(id).await?
+        };
+        let (stop, _raised_at_the_end) = self.common.pool.deadline();
         let move_bytes = self.common.store.move_bytes();
         let mut room = self.room(Usage::of(0, advance.plan.length() as u64 * move_bytes, None)).await?;
         // A cached state may be behind the store. A refusal counts only once the state has caught up.
@@ -76,7 +84,7 @@ impl Sessions {
             let (mut live, Done { records, mut reply }) = match self.compute(&advance, &mut guard, &stop).await {
                 Ok(done) => done,
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
-                    if !caught_up && self.catch_up(&mut guard).await? =>
+                    if !caught_up && Box::pin(self.catch_up(&mut guard)).await? =>
                 {
                     caught_up = true;
                     continue;
@@ -84,7 +92,7 @@ impl Sessions {
                 Err(error) => return Err(error),
             };
             if let Plan::Observations(_) = advance.plan {
-                reply.body = self.observed(&mut guard, &mut live, &records, &stop).await?;
+                reply.body = Box::pin(self.observed(&mut guard, &mut live, &records, &stop)).await?;
             }
             // Until the store has answered the new state is in doubt. What the guard holds meanwhile is the state
             // before, or nothing: if the store fails or the client hangs up, the next request asks the store.
@@ -158,7 +166,8 @@ impl Sessions {
     }
 }
 
-fn attempt(
+/// Makes the moves, and returns the state whether they are made or refused.
+pub(super) fn attempt(
     mut live: Box<LoadedSession>,
     advance: &Advance,
     by: Option<&Arc<str>>,

@@ -4,7 +4,7 @@
 //! then. A session that no request uses has no lock, and one that is not cached takes no memory: requests for
 //! identifiers that do not exist leave nothing behind, and a million idle sessions take space in the store alone.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hashlink::LruCache;
@@ -15,6 +15,7 @@ use uuid::Uuid;
 use crate::admission::Reservation;
 use crate::store::Tenant;
 
+use super::group::Member;
 use super::loaded::LoadedSession;
 
 /// How many bytes of states are cached by default.
@@ -40,6 +41,10 @@ struct LockEntry {
     // The lock is fair, so that moves apply in the order of their arrival.
     lock: Arc<SessionLock<()>>,
     users: usize,
+    /// Who waits for the lock, in that order, with a number each: a move that whoever has the lock may make, or anything else.
+    line: VecDeque<(u64, Option<Member>)>,
+    /// The number of the next one in the line.
+    next: u64,
 }
 
 /// States that no request uses, with their bytes; `bytes` are theirs and those of the states that requests have taken out.
@@ -62,6 +67,18 @@ pub(super) struct Guard {
     user: LockUser,
 }
 
+/// A user who waits for the lock.
+pub(super) struct Waiting {
+    lock: Arc<SessionLock<()>>,
+    user: LockUser,
+}
+
+/// A place in the line before a lock, which is left when this is dropped.
+pub(super) struct PlaceInLine<'a> {
+    user: &'a LockUser,
+    number: u64,
+}
+
 /// One of the users of a lock.
 struct LockUser {
     cache: Arc<Cache>,
@@ -77,10 +94,19 @@ impl Cache {
 
     /// Waits for exclusive use of a session. A dropped future no longer waits.
     pub(super) async fn lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Guard {
+        match self.try_lock(tenant, id) {
+            Ok(guard) => guard,
+            Err(waiting) => waiting.lock().await,
+        }
+    }
+
+    /// Exclusive use of a session if nobody else has it.
+    pub(super) fn try_lock(self: &Arc<Self>, tenant: &Tenant, id: Uuid) -> Result<Guard, Waiting> {
         let (lock, user) = self.enter((tenant.clone(), id));
-        let lock = lock.lock_owned().await;
-        let (live, taken) = self.take(&user.key).unzip();
-        Guard { live, held: Reservation::default(), taken: taken.unwrap_or(0), _lock: lock, user }
+        match Arc::clone(&lock).try_lock_owned() {
+            Ok(free) => Ok(user.guard(free)),
+            Err(_) => Err(Waiting { lock, user }),
+        }
     }
 
     /// Whether the state of a session is cached.
@@ -150,6 +176,79 @@ impl Guard {
     /// The session.
     pub(super) fn id(&self) -> Uuid {
         self.user.key.1
+    }
+
+    /// Takes the moves at the head of the line, at most so many, up to whatever else waits there.
+    pub(super) fn take_moves(&self, most: usize) -> Vec<Member> {
+        let mut locks = self.user.cache.locks();
+        let Some(entry) = locks.get_mut(&self.user.key) else { return Vec::new() };
+        let moves = entry.line.iter().take(most).take_while(|(_, member)| member.is_some()).count();
+        entry.line.drain(..moves).filter_map(|(_, member)| member).collect()
+    }
+}
+
+impl Waiting {
+    /// The session.
+    pub(super) fn id(&self) -> Uuid {
+        self.user.key.1
+    }
+
+    /// The lock that is waited for.
+    pub(super) fn awaited(&self) -> Arc<SessionLock<()>> {
+        Arc::clone(&self.lock)
+    }
+
+    /// A place at the end of the line.
+    pub(super) fn stand(&self, member: Option<Member>) -> PlaceInLine<'_> {
+        let mut locks = self.user.cache.locks();
+        let number = locks.get_mut(&self.user.key).map_or(0, |entry| {
+            let number = entry.next;
+            entry.next += 1;
+            entry.line.push_back((number, member));
+            number
+        });
+        PlaceInLine { user: &self.user, number }
+    }
+
+    /// Waits for exclusive use.
+    pub(super) async fn lock(self) -> Guard {
+        let place = self.stand(None);
+        let lock = Arc::clone(&self.lock).lock_owned().await;
+        drop(place);
+        self.guard(lock)
+    }
+
+    /// Exclusive use, by the lock that has been acquired.
+    pub(super) fn guard(self, lock: OwnedMutexGuard<()>) -> Guard {
+        self.user.guard(lock)
+    }
+}
+
+impl LockUser {
+    fn guard(self, lock: OwnedMutexGuard<()>) -> Guard {
+        let (live, taken) = self.cache.take(&self.key).unzip();
+        Guard { live, held: Reservation::default(), taken: taken.unwrap_or(0), _lock: lock, user: self }
+    }
+}
+
+impl PlaceInLine<'_> {
+    /// Leaves the line, with the move if nobody has taken it.
+    pub(super) fn leave(self) -> Option<Member> {
+        self.remove()
+    }
+
+    fn remove(&self) -> Option<Member> {
+        let mut locks = self.user.cache.locks();
+        let line = &mut locks.get_mut(&self.user.key)?.line;
+        let place = line.iter().position(|(number, _)| *number == self.number)?;
+        line.remove(place)?.1
+    }
+}
+
+impl Drop for PlaceInLine<'_> {
+    fn drop(&mut self) {
+        // A member that is dropped gives its room back, for which the lock of the cache is not needed.
+        drop(self.remove());
     }
 }
 

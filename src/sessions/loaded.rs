@@ -13,8 +13,9 @@ use super::friction::Estimated;
 use super::snapshot::ReplayCost;
 use super::{SessionError, written};
 
-/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache.
-const FIXED: usize = 2 * 1024;
+/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The process grows by
+/// 800.
+const FIXED: usize = 1024;
 
 /// Bytes of a definition as JSON besides its tables, and of a number in these.
 const DEFINITION: usize = 256;

@@ -1,6 +1,7 @@
 //! Living contacts: one writer for each, a cache of states, and a replay of the moves if a state is not cached.
 //!
-//! Moves of one session queue at its lock in the order of their arrival; sessions do not wait for each other. A move is
+//! Moves of one session queue at its lock in the order of their arrival, and those that wait together are made together
+//! ([`group`]); sessions do not wait for each other. A move is
 //! computed, appended to the store, and only then visible: a read shows a state that is stored. A client that
 //! hangs up while its move is computed leaves no trace; one that hangs up later has its move stored or not, as a client
 //! that loses its connection must expect, and the next request asks the store.
@@ -22,6 +23,7 @@ mod error;
 mod events;
 mod expiry;
 mod friction;
+mod group;
 mod loaded;
 mod metrics;
 mod observe;
@@ -136,7 +138,10 @@ impl Sessions {
 
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
-        Ok(self.common.pool.wait(self.common.cache.lock(&self.tenant, id)).await?)
+        match self.common.cache.try_lock(&self.tenant, id) {
+            Ok(guard) => Ok(guard),
+            Err(waiting) => Ok(Box::pin(self.common.pool.wait(waiting.lock())).await?),
+        }
     }
 
     /// Makes a session.

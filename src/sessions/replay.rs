@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
+use jiff::Timestamp;
 use uuid::Uuid;
 
 use crate::admission::Reservation;
 use crate::simulation::cost::{EXPANSION, Work};
-use crate::store::{Extent, RECORD_BYTES, Record, Session, StoreError};
+use crate::store::{Extent, RECORD_BYTES, Record, Session, StoreError, Whole};
 use stickslip_wire::limits;
 
 use super::cache::Guard;
@@ -23,13 +24,16 @@ pub(super) const PIECE_BYTES: usize = 96;
 const COPIES: usize = 3;
 /// Bytes of a definition that holds no table.
 const SHORT_DEFINITION: u64 = 1_024;
+/// Moves that are read together with the session that made them: with their records they take less than a small request.
+const SMALL_HISTORY: u64 = 64;
 
 impl Sessions {
     /// The session as it is cached, or else as it is stored. Other processes may have moved or deleted it since: the
     /// result is to be checked against the store.
     pub(super) async fn cached<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
         if guard.live.is_none() {
-            self.load(guard).await?;
+            // In a box, so that a request whose session is cached is not as large as one that has to load it.
+            Box::pin(self.load(guard)).await?;
         }
         let id = guard.id();
         guard.live.as_deref_mut().ok_or(SessionError::NotFound(id))
@@ -44,7 +48,7 @@ impl Sessions {
                 live.session.label = stored.label;
             }
             if stored.sequence > cached {
-                self.catch_up(guard).await?;
+                Box::pin(self.catch_up(guard)).await?;
             } else if stored.sequence < cached {
                 // The store has been restored from a backup.
                 guard.live = None;
@@ -83,24 +87,16 @@ impl Sessions {
     /// Loads a session that is not cached from the store.
     async fn load(&self, guard: &mut Guard) -> Result<(), SessionError> {
         let (id, begin) = (guard.id(), Instant::now());
-        let extent = self.own_extent(id).await?;
+        let (extent, whole) = match self.common.store.load(id, is_small).await {
+            Ok((extent, whole)) if extent.tenant == self.tenant => (extent, whole),
+            Ok(_) => return Err(SessionError::NotFound(id)),
+            Err(error) => return Err(self.store_error(id, error)),
+        };
         guard.held = self.common.pool.reserve_states(bytes_to_load(&extent)).await?;
-        let mut session = self.find_own(id).await?;
-        let snapshot = self.common.store.snapshot(id).await;
-        // The session may have moved on in between.
-        if matches!(&snapshot, Ok(Some(snapshot)) if snapshot.sequence > session.sequence) {
-            session = self.find_own(id).await?;
-        }
-        let (sequence, updated_at) = (session.sequence, session.updated_at);
-        if let Ok(Some(ahead)) = &snapshot
-            && ahead.sequence > sequence
-        {
-            return Err(damaged(id, &format_args!("move {} is missing", sequence + 1)));
-        }
-        let mut live = Box::new(LoadedSession::of_stored(session).map_err(|error| damaged(id, &error))?);
-        (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, sequence).await?;
-        guard.live = Some(live);
-        self.catch_up(guard).await?;
+        let (sequence, updated_at) = match whole {
+            Some(whole) => self.load_whole(guard, whole).await?,
+            None => self.load_in_parts(guard).await?,
+        };
         if let Some(live) = guard.live.as_mut() {
             let reached = live.session.sequence;
             if reached < sequence {
@@ -116,6 +112,42 @@ impl Sessions {
         }
         self.common.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
+    }
+
+    /// Replays a session from what one read of the store has returned. Returns the sequence that the store named, and when the session
+    /// last moved.
+    async fn load_whole(&self, guard: &mut Guard, whole: Whole) -> Result<(u64, Timestamp), SessionError> {
+        let Whole { session, moves } = whole;
+        let last = (session.sequence, session.updated_at);
+        let mut live = first_state(session)?;
+        live.session.sequence = 0;
+        if !moves.is_empty() {
+            live = self.follow(live, moves).await?;
+        }
+        guard.live = Some(live);
+        Ok(last)
+    }
+
+    /// The same of a session that may be large: its snapshot, then its moves, page by page.
+    async fn load_in_parts(&self, guard: &mut Guard) -> Result<(u64, Timestamp), SessionError> {
+        let id = guard.id();
+        let mut session = self.find_own(id).await?;
+        let snapshot = self.common.store.snapshot(id).await;
+        // The session may have moved on in between.
+        if matches!(&snapshot, Ok(Some(snapshot)) if snapshot.sequence > session.sequence) {
+            session = self.find_own(id).await?;
+        }
+        let last = (session.sequence, session.updated_at);
+        if let Ok(Some(ahead)) = &snapshot
+            && ahead.sequence > session.sequence
+        {
+            return Err(damaged(id, &format_args!("move {} is missing", session.sequence + 1)));
+        }
+        let mut live = first_state(session)?;
+        (live.contact, live.session.sequence) = self.load_snapshot(snapshot, live.contact, last.0).await?;
+        guard.live = Some(live);
+        self.catch_up(guard).await?;
+        Ok(last)
     }
 
     /// A copy of the session after so many of its moves, or after all of them, and the memory of a state that is made for it.
@@ -179,15 +211,6 @@ impl Sessions {
         })
     }
 
-    /// How much of a session there is to read, if it belongs to the tenant.
-    async fn own_extent(&self, id: Uuid) -> Result<Extent, SessionError> {
-        match self.common.store.extent(id).await {
-            Ok(extent) if extent.tenant == self.tenant => Ok(extent),
-            Ok(_) => Err(SessionError::NotFound(id)),
-            Err(error) => Err(self.store_error(id, error)),
-        }
-    }
-
     /// The session as it is stored, if it belongs to the tenant.
     pub(super) async fn find_own(&self, id: Uuid) -> Result<Session, SessionError> {
         match self.common.store.find(id).await {
@@ -213,6 +236,17 @@ impl Sessions {
             other => SessionError::Store(other),
         }
     }
+}
+
+/// The state of a stored session before its first move. The sequence of the session is that of the store.
+fn first_state(session: Session) -> Result<Box<LoadedSession>, SessionError> {
+    let id = session.id;
+    Ok(Box::new(LoadedSession::of_stored(session).map_err(|error| damaged(id, &error))?))
+}
+
+/// Whether a session takes so little that it may be read before memory is reserved for it.
+fn is_small(extent: &Extent) -> bool {
+    extent.sequence <= SMALL_HISTORY && extent.definition <= SHORT_DEFINITION && extent.snapshot == 0
 }
 
 /// Bytes that a session takes while it is brought from the store, with a copy of its state; rather too many than too few.

@@ -88,20 +88,8 @@ impl Accounts {
             }
             _ => {}
         }
-        let begin = Instant::now();
-        let _counting = pool.wait(account.counting.lock()).await?;
-        // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
-        if account.has_failed_since(begin) {
-            return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
-        }
-        if account.is_older_than(RECOUNT_FULL) {
-            account.count(&**store, tenant).await?;
-        }
-        match account.reserve(pool, wanted) {
-            Some(Ok(room)) => Ok(room),
-            Some(Err(quota)) => Err(PoolError::Quota(pool.quotas().exceeded(quota)).into()),
-            None => Err(SessionError::Broken("what a tenant has stored is not known".to_owned())),
-        }
+        // In a box, so that a change that has room is not as large as one that waits for a count.
+        Box::pin(account.counted_room(store, pool, tenant, wanted)).await
     }
 
     /// A tenant has deleted so much.
@@ -146,6 +134,30 @@ impl Account {
         }
         known.pending = sum(known.pending, wanted);
         Some(Ok(Room { account: Arc::clone(self), reserved: wanted }))
+    }
+
+    /// Room by a count that is a second old or little more.
+    async fn counted_room(
+        self: &Arc<Account>,
+        store: &Arc<dyn Store>,
+        pool: &Pool,
+        tenant: &Tenant,
+        wanted: Usage,
+    ) -> Result<Room, SessionError> {
+        let begin = Instant::now();
+        let _counting = pool.wait(self.counting.lock()).await?;
+        // Whoever had the lock before may have counted, or may have waited in vain for a store that does not answer.
+        if self.has_failed_since(begin) {
+            return Err(StoreError::Unavailable("what the tenant has stored cannot be counted".to_owned()).into());
+        }
+        if self.is_older_than(RECOUNT_FULL) {
+            self.count(&**store, tenant).await?;
+        }
+        match self.reserve(pool, wanted) {
+            Some(Ok(room)) => Ok(room),
+            Some(Err(quota)) => Err(PoolError::Quota(pool.quotas().exceeded(quota)).into()),
+            None => Err(SessionError::Broken("what a tenant has stored is not known".to_owned())),
+        }
     }
 
     async fn count(&self, store: &dyn Store, tenant: &Tenant) -> Result<(), SessionError> {

@@ -201,6 +201,18 @@ pub struct Extent {
     pub snapshot: u64,
 }
 
+/// Says of a session whether it may be read at once.
+pub type IsSmall = fn(&Extent) -> bool;
+
+/// A session with all of its moves, as one moment of the storage had them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whole {
+    /// The session.
+    pub session: Session,
+    /// Its moves, from the first to the last.
+    pub moves: Vec<Record>,
+}
+
 /// What is stored for a tenant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Usage {
@@ -283,6 +295,13 @@ pub trait Store: JobStore {
 
     /// What can be known of a session without reading it.
     async fn extent(&self, id: Uuid) -> Result<Extent>;
+
+    /// What can be known of a session without reading it; and the session with its moves, where `is_small` says so of that and the
+    /// store can read it in the same step.
+    async fn load(&self, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>)> {
+        let _ = is_small;
+        Ok((self.extent(id).await?, None))
+    }
 
     /// What is stored for a tenant. It reads a row or two of each contact, and no moves.
     async fn usage(&self, tenant: &Tenant) -> Result<Usage>;

@@ -10,6 +10,7 @@ mod durability;
 mod fixtures;
 mod frozen;
 mod gaps;
+mod groups;
 mod guarantees;
 mod migrations;
 mod outside;

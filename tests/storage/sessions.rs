@@ -14,7 +14,7 @@ use reqwest::Method;
 use serde_json::json;
 use stickslip::admission::Pool;
 use stickslip::sessions::Sessions;
-use stickslip::store::{MemoryStore, Snapshot, Store};
+use stickslip::store::{MemoryStore, Snapshot, SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Client, Event, Options};
 use stickslip_wire::{
@@ -46,7 +46,7 @@ async fn replayed(store: &dyn Store, id: Uuid) -> Contact {
     let session = store.find(id).await.unwrap();
     let setup = session.definition.check(JsonPath::Root, &mut Faults::default()).unwrap();
     let mut contact = Contact::new(setup).unwrap();
-    for record in store.history(id, 0, usize::MAX).await.unwrap() {
+    for record in store.history(id, 0, 1_000_000).await.unwrap() {
         contact.apply_within(&record.step.step(), record.tolerance).unwrap();
         assert_eq!(bits(&contact.state().into()), bits(&record.state));
     }
@@ -137,6 +137,26 @@ async fn a_snapshot_is_read_where_it_is_sound_and_ignored_where_it_is_not() {
     store.save_snapshot(third, Snapshot { sequence: 1, state: taken.state }).await.unwrap();
     let (found, expected) = (client.contact(third).await.unwrap(), client.contact(one).await.unwrap());
     assert_eq!((found.sequence, bits(&found.state)), (1, bits(&expected.state)));
+}
+
+/// Small contacts are read from a file in one step, and larger ones in several.
+#[tokio::test]
+async fn contacts_of_any_number_of_moves_are_opened_from_a_file_as_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Arc::new(SqliteStore::open(&folder.path().join("opened.db")).unwrap());
+    let server = Server::with(store.clone(), NO_CACHE).await;
+    let (client, options) = (&server.client, Options::default());
+    for count in [0, 1, 2, 63, 64, 65, 200] {
+        let id = client.create(&create(), &options).await.unwrap().id;
+        if count > 0 {
+            client.path(id, &along(wandering(count, count as f64)), &options).await.unwrap();
+        }
+        let (shown, contact) = (client.contact(id).await.unwrap(), replayed(&*store, id).await);
+        assert_eq!((shown.sequence, bits(&shown.state)), (count as u64, bits(&contact.state().into())));
+        let stored = store.find(id).await.unwrap();
+        assert_eq!((shown.created_at, shown.updated_at), (stored.created_at, stored.updated_at));
+    }
+    assert_eq!(client.contact(Uuid::now_v7()).await.unwrap_err().problem().unwrap().code, "contact_not_found");
 }
 
 fn table(points: usize) -> CreateRequest {

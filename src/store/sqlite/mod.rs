@@ -32,7 +32,8 @@ use uuid::Uuid;
 use super::jobs::ChunkQueue;
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, Heading, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant, Usage,
+    Changes, Commits, Extent, Heading, IsSmall, Receipt, Record, Result, Session, Snapshot, Store, StoreError, Tenant,
+    Usage, Whole,
 };
 use crate::metrics::Counted;
 use change::{Change, Done, Transaction};
@@ -177,6 +178,10 @@ impl Store for SqliteStore {
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
         self.readers.read(move |database| read::extent(database, id)).await
+    }
+
+    async fn load(&self, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>)> {
+        self.readers.read(move |database| read::load(database, id, is_small)).await
     }
 
     async fn usage(&self, tenant: &Tenant) -> Result<Usage> {

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{
-    CONTACT_BYTES, Extent, Heading, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot, Tenant, Usage,
+    CONTACT_BYTES, Extent, Heading, IsSmall, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot, Tenant, Usage, Whole,
 };
 use stickslip_wire::SessionSummary;
 
@@ -43,6 +43,17 @@ pub(super) fn extent(database: &Connection, id: Uuid) -> Result<Extent, Fault> {
         Ok(Extent { tenant, sequence, definition, snapshot: snapshot.map_or(0, bytes) })
     });
     found.optional()?.ok_or_else(|| missing(database, id))
+}
+
+/// The extent of a session, and if that is small, the session with its moves.
+pub(super) fn load(database: &Connection, id: Uuid, is_small: IsSmall) -> Result<(Extent, Option<Whole>), Fault> {
+    let extent = extent(database, id)?;
+    if !is_small(&extent) {
+        return Ok((extent, None));
+    }
+    let most = usize::try_from(extent.sequence).unwrap_or(usize::MAX);
+    let (session, moves) = (find(database, id)?, history(database, id, 0, most)?);
+    Ok((extent, Some(Whole { session, moves })))
 }
 
 /// Bytes that a move takes in the file, with the longest name of a key and the unused part of its page.

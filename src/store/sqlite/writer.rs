@@ -27,7 +27,7 @@ const BATCH: usize = 512;
 /// Rows that they may write before the transaction ends.
 const BATCH_WEIGHT: usize = 10_000;
 /// Contacts in the cache of sequences, of some 64 bytes each.
-const CACHED: usize = 16_384;
+const CACHED: usize = 131_072;
 
 /// A change whose caller waits.
 pub(super) struct Request {

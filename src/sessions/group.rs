@@ -1,0 +1,245 @@
+//! Moves of several clients on one session that wait for its lock at the same time: whoever gets the lock makes them all, in the order
+//! of their arrival, and they share one append to the store. Each has a reply, or a refusal, of its own.
+//!
+//! Only single straight moves without stresses and without an idempotency key are made for others: they take about a microsecond,
+//! and a refused one has changed nothing. Whatever a group does not settle, its client does alone, as if it had not waited.
+
+use std::sync::Arc;
+
+use tokio::sync::oneshot;
+use tracing::{Instrument as _, Span};
+use uuid::Uuid;
+
+use crate::admission::Client;
+use crate::otlp;
+use crate::simulation::cost::Work;
+use crate::store::{Record, Reply, StoreError, Usage};
+use stickslip_wire::session::Advance;
+use stickslip_wire::{Plan, limits};
+
+use super::apply::{Done, PIECES_OF_A_MOVE, attempt};
+use super::cache::{Guard, Waiting};
+use super::room::Room;
+use super::{SessionError, Sessions};
+
+/// Moves that are made together at most.
+const GROUP: usize = 64;
+
+/// A move that may be made by whoever has the lock.
+pub(super) struct Member {
+    advance: Arc<Advance>,
+    /// The sequence that the client expects.
+    expected: Option<u64>,
+    /// The name of its key.
+    by: Option<Arc<str>>,
+    room: Room,
+    span: Span,
+    outcome: oneshot::Sender<Outcome>,
+}
+
+/// What a group has done of a move.
+enum Outcome {
+    /// It is stored, or the store has refused the group.
+    Settled(Result<Reply, SessionError>),
+    /// Nothing.
+    Left,
+}
+
+/// Who makes a move.
+pub(super) enum Turn {
+    /// Whoever has asked.
+    Own(Guard),
+    /// Another one has made it.
+    Settled(Result<Reply, SessionError>),
+}
+
+/// Moves under way together.
+struct Group {
+    sessions: Sessions,
+    guard: Guard,
+    members: Vec<Member>,
+}
+
+/// Whether a move may be made together with others.
+pub(super) fn may_join(advance: &Advance) -> bool {
+    matches!(advance.plan, Plan::Single(step) if !step.is_curved())
+        && advance.stress.is_none()
+        && advance.relax.is_none()
+}
+
+impl Sessions {
+    /// Waits until the session is free for this move, or until another one has made it.
+    ///
+    /// # Errors
+    /// [`SessionError`]; nothing has changed then.
+    pub(super) async fn turn(
+        &self,
+        id: Uuid,
+        advance: &Arc<Advance>,
+        expected: Option<u64>,
+    ) -> Result<Turn, SessionError> {
+        match self.common.cache.try_lock(&self.tenant, id) {
+            Ok(guard) => Ok(Turn::Own(guard)),
+            // In a box, so that a move that need not wait is not as large as one that does.
+            Err(waiting) => Box::pin(self.turn_in_line(waiting, advance, expected)).await,
+        }
+    }
+
+    async fn turn_in_line(
+        &self,
+        waiting: Waiting,
+        advance: &Arc<Advance>,
+        expected: Option<u64>,
+    ) -> Result<Turn, SessionError> {
+        let id = waiting.id();
+        let room = self.room(Usage::of(0, self.common.store.move_bytes(), None)).await?;
+        let (outcome, mut settled) = oneshot::channel();
+        let (advance, by) = (Arc::clone(advance), self.by.clone());
+        let place = waiting.stand(Some(Member { advance, expected, by, room, span: Span::current(), outcome }));
+        let lock = waiting.awaited().lock_owned();
+        let wait = async {
+            tokio::select! {
+                biased;
+                done = &mut settled => Err(done),
+                lock = lock => Ok(lock),
+            }
+        };
+        let waited = self.common.pool.wait(wait).await;
+        match (waited, place.leave()) {
+            (Ok(Ok(lock)), Some(member)) => {
+                let guard = waiting.guard(lock);
+                let others = if is_groupable(&guard) { guard.take_moves(GROUP - 1) } else { Vec::new() };
+                if others.is_empty() {
+                    return Ok(Turn::Own(guard));
+                }
+                let members = std::iter::once(member).chain(others).collect();
+                let group = Group { sessions: self.clone(), guard, members };
+                // In a task of its own: whose client leaves does not take the others with it.
+                tokio::spawn(Client::current().serve(group.make().in_current_span()));
+                self.outcome(id, settled.await).await
+            }
+            (Err(busy), Some(_)) => Err(busy.into()),
+            (Ok(Err(done)), _) => self.outcome(id, done).await,
+            // Another one has taken it: from then on nothing else says what has become of it.
+            (waited, None) => {
+                // With the lock in hand it could not wait for the lock again.
+                drop(waited);
+                self.outcome(id, settled.await).await
+            }
+        }
+    }
+
+    async fn outcome(&self, id: Uuid, done: Result<Outcome, oneshot::error::RecvError>) -> Result<Turn, SessionError> {
+        match done {
+            Ok(Outcome::Settled(settled)) => Ok(Turn::Settled(settled)),
+            Ok(Outcome::Left) => Ok(Turn::Own(self.lock(id).await?)),
+            Err(_) => Err(StoreError::Unavailable("the move was given up with others".to_owned()).into()),
+        }
+    }
+}
+
+/// Whether the state is there, and no other process is likely to move the session first.
+fn is_groupable(guard: &Guard) -> bool {
+    guard.live.as_ref().is_some_and(|live| !live.shared)
+}
+
+impl Member {
+    fn settle(self, settled: Result<Reply, SessionError>) {
+        // The client may have left.
+        let _ = self.outcome.send(Outcome::Settled(settled));
+    }
+
+    fn leave(self) {
+        let _ = self.outcome.send(Outcome::Left);
+    }
+}
+
+impl Group {
+    /// Makes the moves, stores them, and tells each member what has become of its own. The guard is dropped last.
+    async fn make(mut self) {
+        let Some(before) = self.guard.live.as_ref().map(|live| live.session.sequence) else {
+            return self.members.into_iter().for_each(Member::leave);
+        };
+        let Ok((made, records)) = self.compute().await else { return };
+        if records.is_empty() {
+            return;
+        }
+        let common = &self.sessions.common;
+        // Until the store has answered the new state is in doubt, as for a move that is made alone.
+        let live = self.guard.live.take();
+        let moves = records.len() as u64;
+        let stored = common.store.append(self.guard.id(), before, records, None);
+        match stored.instrument(otlp::part!("store")).await {
+            Ok(()) => {
+                common.metrics.moves.inc_by(moves);
+                self.guard.live = live.map(|mut live| {
+                    self.sessions.offer_snapshot(&mut live);
+                    live
+                });
+                let added = Usage::of(0, common.store.move_bytes(), None);
+                for (member, reply) in made {
+                    let Member { room, outcome, .. } = member;
+                    room.used(added);
+                    let _ = outcome.send(Outcome::Settled(Ok(reply)));
+                }
+            }
+            // Nothing has changed: each finds out for itself what is wrong.
+            Err(StoreError::Stale { .. } | StoreError::NotFound | StoreError::Expired(_)) => {
+                made.into_iter().for_each(|(member, _)| member.leave());
+            }
+            Err(error) => made.into_iter().for_each(|(member, _)| member.settle(Err(again(&error).into()))),
+        }
+    }
+
+    /// Makes the moves one after the other. The guard has the state after them, or, if one of them has spoiled it, nothing; nothing is
+    /// to be stored then, and every member has been told to go on alone.
+    async fn compute(&mut self) -> Result<(Vec<(Member, Reply)>, Vec<Record>), ()> {
+        let (stop, _raised_at_the_end) = self.sessions.common.pool.deadline();
+        let (mut made, mut records) = (Vec::with_capacity(self.members.len()), Vec::with_capacity(self.members.len()));
+        let mut members = std::mem::take(&mut self.members).into_iter();
+        while let Some(member) = members.next() {
+            let fits = |guard: &Guard| {
+                guard.live.as_ref().is_some_and(|live| {
+                    member.expected.is_none_or(|expected| expected == live.session.sequence)
+                        && live.contact.memory_depth() + PIECES_OF_A_MOVE <= limits::MEMORY_DEPTH
+                })
+            };
+            // A refusal counts only once the store has been asked, which its client does alone.
+            let Some(live) = (if fits(&self.guard) { self.guard.live.take() } else { None }) else {
+                member.leave();
+                continue;
+            };
+            let work = Work { moves: 1, depth: live.contact.memory_depth(), ..Work::default() };
+            let cost = work.cost(live.contact.profile());
+            let (advance, by, stop, span) =
+                (Arc::clone(&member.advance), member.by.clone(), stop.clone(), member.span.clone());
+            let solve = move || span.in_scope(|| attempt(live, &advance, by.as_ref(), &stop));
+            match self.sessions.common.pool.run(cost, solve).await {
+                Ok((live, Ok(Done { records: more, reply }))) => {
+                    self.guard.live = Some(live);
+                    records.extend(more);
+                    made.push((member, reply));
+                }
+                Ok((live, Err(SessionError::Failure(_)))) => {
+                    self.guard.live = Some(live);
+                    member.leave();
+                }
+                _ => {
+                    made.into_iter().map(|(member, _)| member).chain([member]).chain(members).for_each(Member::leave);
+                    return Err(());
+                }
+            }
+        }
+        Ok((made, records))
+    }
+}
+
+/// The same failure for another member.
+fn again(error: &StoreError) -> StoreError {
+    match error {
+        StoreError::Full(why) => StoreError::Full(why.clone()),
+        StoreError::Unavailable(why) => StoreError::Unavailable(why.clone()),
+        StoreError::Damaged { contact, what } => StoreError::Damaged { contact: *contact, what: what.clone() },
+        other => StoreError::Failed(other.to_string()),
+    }
+}
