@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::profile::{Point, StressRadius};
+use super::profile::StressRadius;
 use super::slip_history::SlipHistory;
 use super::{ContactSummary, DoubleDouble, Elasticity, Error, Preload, Profile, Setup, normal, range};
 
@@ -101,7 +101,7 @@ impl Contact {
             Preload::NormalForce(force) => force,
             Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
         };
-        let initial = summary_of(&profile, &elasticity, friction, history.edge(), normal_force);
+        let initial = ContactSummary::of(&profile, &elasticity, friction, history.edge(), normal_force);
         let inverse_scale = if friction > 0.0 {
             DoubleDouble::from(elasticity.g_star()).over(DoubleDouble::from(elasticity.e_star()) * friction)
         } else {
@@ -185,7 +185,7 @@ impl Contact {
         range::PRELOAD_INDENTATION.check(indentation.value())?;
         self.check_indentation(indentation.value())?;
         let history = SlipHistory::new(&self.profile, indentation);
-        let initial = summary_of(&self.profile, &self.elasticity, self.friction, history.edge(), normal_force);
+        let initial = ContactSummary::of(&self.profile, &self.elasticity, self.friction, history.edge(), normal_force);
         Ok(Contact { history, normal_force, initial, ..self.virgin() })
     }
 
@@ -375,7 +375,7 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn summary(&self) -> ContactSummary {
-        summary_of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
+        ContactSummary::of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
     /// The summary at the preload of the definition.
@@ -389,29 +389,5 @@ impl Contact {
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
         self.initial
-    }
-}
-
-fn summary_of(
-    profile: &Profile,
-    elasticity: &Elasticity,
-    friction: f64,
-    edge: &Point,
-    normal_force: f64,
-) -> ContactSummary {
-    let indentation = edge.level.value();
-    ContactSummary {
-        e_star: elasticity.e_star(),
-        g_star: elasticity.g_star(),
-        indentation,
-        contact_radius: edge.radius,
-        normal_force,
-        max_pressure: normal::max_pressure(profile, elasticity, edge),
-        semi_axes: match profile {
-            Profile::Ellipsoid(ellipsoid) => Some(ellipsoid.semi_axes(indentation)),
-            _ => None,
-        },
-        gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
-        gross_slip_force: friction * normal_force,
     }
 }

@@ -49,6 +49,31 @@ pub struct ContactSummary {
 }
 
 impl ContactSummary {
+    /// What follows from an indentation and its normal force, N.
+    pub(super) fn of(
+        profile: &Profile,
+        elasticity: &Elasticity,
+        friction: f64,
+        edge: &Point,
+        normal_force: f64,
+    ) -> ContactSummary {
+        let indentation = edge.level.value();
+        ContactSummary {
+            e_star: elasticity.e_star(),
+            g_star: elasticity.g_star(),
+            indentation,
+            contact_radius: edge.radius,
+            normal_force,
+            max_pressure: max_pressure(profile, elasticity, edge),
+            semi_axes: match profile {
+                Profile::Ellipsoid(ellipsoid) => Some(ellipsoid.semi_axes(indentation)),
+                _ => None,
+            },
+            gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
+            gross_slip_force: friction * normal_force,
+        }
+    }
+
     /// The pressure that stresses are related to, Pa: the largest, or the mean where that is infinite.
     ///
     /// ```
