@@ -256,8 +256,10 @@ pub fn follow<S: Solver>(
     Ok(())
 }
 
-/// Radii between two checks of the flag.
-const RADII_PER_CHECK: usize = 64;
+/// Radii times pieces between two checks of the flag: some milliseconds.
+const TERMS_PER_CHECK: usize = 1 << 17;
+/// The least and the most radii between two checks. What they share is made once for all of them.
+const RADII_PER_CHECK: (usize, usize) = (64, 512);
 
 /// The requested stresses.
 ///
@@ -266,9 +268,12 @@ const RADII_PER_CHECK: usize = 64;
 pub fn stresses<S: Solver>(solver: &S, sampling: &Sampling, stop: &Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let radius = sampling.radii(solver.state().contact_radius);
+    let (least, most) = RADII_PER_CHECK;
+    // Springs have no pieces, and each radius costs as many terms as there are springs.
+    let at_once = TERMS_PER_CHECK.checked_div(solver.depth()).map_or(least, |radii| radii.clamp(least, most));
     let along = |field: &dyn Fn(&[f64]) -> Vec<f64>| -> Result<Vec<Option<f64>>, Failure> {
         let mut all = Vec::with_capacity(radius.len());
-        for radii in radius.chunks(RADII_PER_CHECK) {
+        for radii in radius.chunks(at_once) {
             stop.check()?;
             all.extend(field(radii).into_iter().map(finite));
         }

@@ -178,14 +178,16 @@ impl SeriesRings<'_> {
         if parabola && self.rings.len() >= MANY.0 && radii.len() >= MANY.1 {
             return self.sums_by_clusters(radii);
         }
-        let mut sums = Vec::with_capacity(radii.len());
+        let (order, mut sums) = (in_order(radii), vec![0.0; radii.len()]);
         let mut antiderivative = Antiderivative::of(self.series);
-        for radii in radii.chunks(LANES) {
-            let place = Place::of(radii.iter().map(|at| at.square));
+        for order in order.chunks(LANES) {
+            let place = Place::of(order.iter().map(|&index| radii[index].square));
             let mut lanes = [0.0; LANES];
             antiderivative.fill(self.series, &place.square.map(|square| square * self.unit));
             self.add(0..self.rings.len(), &place, &antiderivative, &mut lanes);
-            sums.extend_from_slice(&lanes[..radii.len()]);
+            for (&index, lane) in order.iter().zip(lanes) {
+                sums[index] = lane;
+            }
         }
         sums
     }
@@ -194,9 +196,7 @@ impl SeriesRings<'_> {
     fn sums_by_clusters(&self, radii: &[StressRadius]) -> Vec<f64> {
         let rings: Vec<(f64, f64)> = self.rings.iter().map(|ring| (ring.gap, ring.weight)).collect();
         let distant = DistantRings::new(&rings);
-        let mut order: Vec<usize> = (0..radii.len()).collect();
-        order.sort_unstable_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
-        let mut sums = vec![0.0; radii.len()];
+        let (order, mut sums) = (in_order(radii), vec![0.0; radii.len()]);
         let (mut far, mut near) = (Vec::new(), Vec::new());
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
@@ -317,6 +317,13 @@ impl Antiderivative {
         }
         sum
     }
+}
+
+/// The indices of radii from the smallest on: neighbours lie within the same rings.
+fn in_order(radii: &[StressRadius]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..radii.len()).collect();
+    order.sort_unstable_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
+    order
 }
 
 /// The root of what is positive, and zero of all else.
