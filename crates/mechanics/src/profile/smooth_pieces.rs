@@ -186,6 +186,11 @@ impl<'a> SmoothPieces<'a> {
         self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
     }
 
+    /// The sums at each radius, unless the profile has a quicker way.
+    pub(super) fn kernel_sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
+        Shape::slope_series(self.profile, 1.0).is_none().then(|| self.sums(radii))
+    }
+
     /// The sums at each radius.
     pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
