@@ -76,8 +76,13 @@ impl Contact {
     pub(super) fn shears_at(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut rings: Vec<_> = self.shear_rings().collect();
         rings.reverse();
+        self.shears_of(self.profile.kernel_sums_at(&rings, radii))
+    }
+
+    /// Shear stresses, Pa, of weighted sums of kernels.
+    fn shears_of(&self, sums: Vec<f64>) -> Vec<f64> {
         let unit = self.shear_unit();
-        self.profile.kernel_sums_at(&rings, radii).into_iter().map(|sum| unit * sum).collect()
+        sums.into_iter().map(|sum| unit * sum).collect()
     }
 
     /// The rings of the slip history from the edge inward, each with its -dw/dy.
@@ -133,9 +138,11 @@ impl Contact {
         let spikes = self.profile.singular_radii().into_iter().filter(|&radius| radius <= edge).chain([edge]);
         let mut radii: Vec<StressRadius> = [0.0].into_iter().chain(spikes).map(StressRadius::new).collect();
         let others = radii.len();
-        radii.extend(self.extrema(keep_going)?);
-        // All at once: what the rings add up to from afar is found once.
-        let shears = self.shears_at(&radii);
+        let found = self.extrema(keep_going)?;
+        radii.extend(found.places);
+        // All at once, and by what the search has made: what the rings add up to from afar is found once.
+        let sums = found.slopes.and_then(|slopes| slopes.sums(&radii));
+        let shears = sums.map_or_else(|| self.shears_at(&radii), |sums| self.shears_of(sums));
         let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
         let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();
         Some(Residual::of(shears[0], peaks, shears[1..others].iter().all(|shear| shear.is_finite())))

@@ -48,16 +48,21 @@ impl Pace<'_> {
 }
 
 /// The derivative of a contact's shear stress.
-pub(super) struct Derivative<'a> {
-    contact: &'a Contact,
-    pace: &'a Pace<'a>,
+pub(super) struct Derivative<'c, 'p> {
+    contact: &'c Contact,
+    pace: &'p Pace<'p>,
     /// Made when first asked for: between settled kinks there is nothing to search.
-    slopes: OnceCell<Option<KernelSlopes<'a>>>,
+    slopes: OnceCell<Option<KernelSlopes<'c>>>,
 }
 
-impl<'a> Derivative<'a> {
-    pub(super) fn new(contact: &'a Contact, pace: &'a Pace<'a>) -> Derivative<'a> {
+impl<'c, 'p> Derivative<'c, 'p> {
+    pub(super) fn new(contact: &'c Contact, pace: &'p Pace<'p>) -> Derivative<'c, 'p> {
         Derivative { contact, pace, slopes: OnceCell::new() }
+    }
+
+    /// What it is summed up by, if it was asked for and there is one.
+    pub(super) fn into_slopes(self) -> Option<KernelSlopes<'c>> {
+        self.slopes.into_inner().flatten()
     }
 
     /// d tau/d(r^2) but for a positive factor, from the right at a kink; zero where its sign is lost in round-off.

@@ -10,26 +10,43 @@ mod derivative;
 mod interval;
 mod settled;
 
-use super::profile::StressRadius;
+use super::profile::{KernelSlopes, StressRadius};
 use super::{Contact, DoubleDouble};
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, SmoothInterval};
+use settled::Known;
 
 /// With more intervals than this between the knots of a table, each is sampled at its middle and its ends alone.
 const SPARSE_ABOVE: usize = 100;
 
-/// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself.
-const RESOLUTION: f64 = 1e-14;
+/// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself. The
+/// stress at the extremum is then off by the square of this, which is far below its rounding.
+const RESOLUTION: f64 = 1e-12;
+/// After this many steps towards a root every second one halves the interval.
+const QUICK_STEPS: usize = 12;
+
+/// The extrema of the shear stress.
+pub(super) struct Extrema<'a> {
+    /// Their radii, from the centre outward.
+    pub(super) places: Vec<StressRadius>,
+    /// What the derivative was summed up by, if it was asked for.
+    pub(super) slopes: Option<KernelSlopes<'a>>,
+}
 
 impl Contact {
-    /// The radii of all extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
-    pub(super) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Vec<StressRadius>> {
+    /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
+    pub(super) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Extrema<'_>> {
         let edge = StressRadius::of_point(self.history.edge());
         let bends = self.bends();
-        let settled = self.settled();
         let pieces = self.history.pieces();
+        // From kink `index` (the centre for the first) outward.
+        let from = |index: usize| {
+            if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) }
+        };
+        let settled = self.settled();
+        let known: Vec<Known> = (0..pieces.len()).map(|index| settled.known(index, from(index).radius)).collect();
         // A long table has many, which no settled interval needs.
-        let searched = settled.contains(&false);
+        let searched = known.iter().any(|known| *known != Known::Sign);
         let knots = if searched { self.profile.knots_below(edge.radius) } else { Vec::new() };
         let singular = self.profile.singular_radii();
         let pace = Pace::new(&keep_going);
@@ -39,18 +56,18 @@ impl Contact {
             if !pace.goes_on() {
                 return None;
             }
-            // From kink `index` (the centre for the first) out to kink `index + 1`, which bends by `bend`.
-            let from = if index == 0 { StressRadius::new(0.0) } else { StressRadius::of_point(&pieces[index].inner) };
+            // Out to kink `index + 1`, which bends by `bend`.
+            let from = from(index);
             if from.square >= edge.square {
                 // The rest is at a vertical edge.
                 break;
             }
-            let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
-            let to = StressRadius::of_point(&outer);
-            if settled[index] {
+            if known[index] == Known::Sign {
                 search.cross(&from, -bend);
                 continue;
             }
+            let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
+            let to = StressRadius::of_point(&outer);
             let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
             let last =
                 if to.square >= edge.square && self.history.edge().level.value() > self.profile.level(edge.radius) {
@@ -82,20 +99,35 @@ impl Contact {
             });
             let mut start = self.start(index, &from, &knots, &derivative);
             let mut inner = from;
-            for (outer, end, next) in within.chain([(to, last, last)]) {
+            for (position, (outer, end, next)) in within.chain([(to, last, last)]).enumerate() {
                 if !pace.goes_on() {
                     return None;
                 }
-                search.search_interval(&SmoothInterval { inner, outer, start, end, sparse });
+                // Beyond the last knot, what the flat or the bend inside it hides may be known.
+                let outermost = begins + position == ends;
+                let known = if !outermost {
+                    Known::Nothing
+                } else if position == 0 {
+                    known[index]
+                } else {
+                    settled.known(index, inner.radius)
+                };
+                let one_change = known == Known::OneChange;
+                if known == Known::Sign || one_change && start.1 * end.1 > 0.0 {
+                    search.cross(&inner, -bend);
+                } else {
+                    search.search_interval(&SmoothInterval { inner, outer, start, end, sparse, one_change });
+                }
                 (inner, start) = (outer, next);
             }
         }
         if pace.stopped() {
             return None;
         }
+        let Search { mut places, .. } = search;
         let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
-        search.places.retain(|place| !spike(place) && place.radius > 0.0);
-        Some(search.places)
+        places.retain(|place| !spike(place) && place.radius > 0.0);
+        Some(Extrema { places, slopes: derivative.into_slopes() })
     }
 
     /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
@@ -104,7 +136,7 @@ impl Contact {
         index: usize,
         from: &StressRadius,
         knots: &[f64],
-        derivative: &Derivative<'_>,
+        derivative: &Derivative<'_, '_>,
     ) -> (EndBehaviour, f64) {
         let sign = derivative.at(from);
         let end = if index == 0 {
@@ -126,14 +158,14 @@ impl Contact {
 }
 
 /// The search on its way from the centre outward.
-struct Search<'a> {
-    derivative: &'a Derivative<'a>,
+struct Search<'s, 'c, 'p> {
+    derivative: &'s Derivative<'c, 'p>,
     /// The sign that the derivative had last, zero before the first.
     sign: f64,
     places: Vec<StressRadius>,
 }
 
-impl Search<'_> {
+impl Search<'_, '_, '_> {
     fn record(&mut self, at: &StressRadius) {
         self.places.push(*at);
     }
@@ -171,7 +203,8 @@ impl Search<'_> {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
                 self.find_root(interval, before, after);
-            } else if let Some(&next) = samples.get(index + 2)
+            } else if !interval.one_change
+                && let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
                 && before.place.is_finite()
                 && next.place.is_finite()
@@ -206,38 +239,52 @@ impl Search<'_> {
         None
     }
 
-    /// Finds the change of sign between a sample and a place: false position with the weight of an end halved that stays (Illinois),
-    /// and every third step halves the interval, since the derivative can be as steep as an inverse root. There is no value at an end
-    /// that is infinitely far.
+    /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving (Chandrupatla
+    /// 1997). There is no value at an end that is infinitely far.
     fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample) {
-        let finite = |sample: Sample| if sample.place.is_finite() { sample.value.abs() } else { 0.0 };
-        let (mut low, mut high) = (from.place.max(-MAX_PLACE), to.place.min(MAX_PLACE));
-        let (mut at_low, mut at_high) = (finite(from), finite(to));
-        for step in 1.. {
-            let middle = 0.5 * (low + high);
-            let least = RESOLUTION * (1.0 + middle.abs());
-            if high - low <= 2.0 * least {
-                break;
-            }
-            let known = at_low > 0.0 && at_high > 0.0 && step % 3 != 0;
-            // No step is so short that it could leave the root just beyond its end.
-            let chord = || (low + (high - low) * (at_low / (at_low + at_high))).clamp(low + least, high - least);
-            let place = if known { chord() } else { middle };
-            let value = self.sample(interval, place).value * from.value.signum();
-            if value > 0.0 {
-                (low, at_low, at_high) = (place, value, 0.5 * at_high);
-            } else {
-                (high, at_high, at_low) = (place, -value, 0.5 * at_low);
-            }
-            if value.abs() <= 0.0 {
+        let known = |sample: Sample| if sample.place.is_finite() { sample.value } else { f64::NAN };
+        // The last place and the one across the root from it.
+        let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
+        let mut across = Sample { place: from.place.max(-MAX_PLACE), value: known(from) };
+        let mut share = 0.5;
+        let sign = from.value.signum();
+        let mut last_is_low = false;
+        for step in 0.. {
+            let next = self.sample(interval, last.place + share * (across.place - last.place));
+            if next.value.abs() <= 0.0 {
                 // Beyond this it is lost in round-off.
+                (last, across) = (next, next);
                 break;
             }
+            let low = next.value * sign > 0.0;
+            let third = if low == last_is_low { last } else { std::mem::replace(&mut across, last) };
+            (last, last_is_low) = (next, low);
+            let width = (across.place - last.place).abs();
+            let least = RESOLUTION * (1.0 + last.place.abs());
+            if width <= 2.0 * least {
+                break;
+            }
+            let halve = step > QUICK_STEPS && step % 2 == 0;
+            let quadratic = if halve { None } else { inverse_quadratic(last, across, third) };
+            // No step is so short that it could leave the root just beyond its end.
+            share = quadratic.map_or(0.5, |share| share.clamp(least / width, 1.0 - least / width));
         }
-        self.sign = -from.value.signum();
+        let (low, high) = if last_is_low { (last.place, across.place) } else { (across.place, last.place) };
+        self.sign = -sign;
         // An extremum this near to the centre cannot be distinguished from the centre.
         if interval.inner.square.value() > 0.0 || low > -MAX_PLACE {
             self.record(&interval.at(high));
         }
     }
+}
+
+/// Where inverse quadratic interpolation puts a root between `last` and `across`, as a share of the way; `None` where the curve
+/// through these and the `third` sample may not be monotone, or a value is unknown.
+fn inverse_quadratic(last: Sample, across: Sample, third: Sample) -> Option<f64> {
+    let (a, b, c) = (last.value, across.value, third.value);
+    let xi = (last.place - across.place) / (third.place - across.place);
+    let phi = (a - b) / (c - b);
+    let safe = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
+    let beyond = (third.place - last.place) / (across.place - last.place);
+    safe.then(|| a / (b - a) * (c / (b - c)) + beyond * (a / (c - a)) * (b / (c - b)))
 }

@@ -1,4 +1,4 @@
-//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search.
+//! Intervals between kinks of the slip history in which the sign of d tau/d(r^2) is known without a search, or has one change at most.
 //!
 //! With s_i the slope of the piece over the ring i and r in the ring j, whose outer end is c, d tau/d(r^2) is a positive factor times
 //! s_j D - sum over i > j of s_i R_i. D = -dK(r, c)/d(r^2) falls as c grows, and R_i = int dy/(2 v^3) > 0 over the levels of the ring i,
@@ -9,7 +9,10 @@
 //! - The slopes alternate in sign, their size times the depth of the ring does not grow outward beyond the ring j, and the kernel up to
 //!   c falls: v only grows outward, so each R_i outweighs the next, and the first of them has the sign of s_j D.
 //!
-//! Whether a kernel falls is known from [`Profile::least_fall`](super::super::Profile), once for all r of an interval.
+//! Whether a kernel falls is known from [`Profile::least_fall`](super::super::Profile), once for all r of an interval. Where it may not,
+//! but g'/x rises ever less with x^2 ([`Profile::rises_concavely`](super::super::Profile)), D grows with r. Then the derivative over that
+//! of the factor grows away from zero too, and changes its sign once at most, in the same two cases: dD/d(r^2) falls as c grows, as
+//! D does, by d^2 D/(d(r^2) dc) = -3 g'(c)/(4 v^5), and of the dR_i/d(r^2) = int 3 dy/(4 v^5) each outweighs the next.
 
 use super::super::Contact;
 use super::super::profile::Ring;
@@ -18,6 +21,7 @@ use super::super::profile::Ring;
 const ROUNDED: f64 = super::NOISE;
 
 /// What is known about the pieces from one of them outward.
+#[derive(Clone, Copy)]
 struct Outward {
     /// The bends alternate and do not grow.
     bends: bool,
@@ -25,9 +29,43 @@ struct Outward {
     slopes: bool,
 }
 
+/// What is known about the derivative in the ring of a piece, from a radius in it outward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Known {
+    /// It has the sign of the piece's slope.
+    Sign,
+    /// It changes its sign once at most, to that of the piece's slope.
+    OneChange,
+    /// Nothing.
+    Nothing,
+}
+
+/// The pieces of a slip history, and what is known about the bends and slopes from each outward.
+pub(super) struct Settled<'a> {
+    contact: &'a Contact,
+    pieces: Vec<Outward>,
+}
+
+impl Settled<'_> {
+    /// What is known about the derivative in the ring of a piece from the radius `from`, m, on.
+    pub(super) fn known(&self, index: usize, from: f64) -> Known {
+        let Outward { bends, slopes } = self.pieces[index];
+        let profile = &self.contact.profile;
+        let (outer, edge) = (self.contact.history.ring(index).outer.radius, self.contact.history.edge().radius);
+        let falls_to = |radius: f64| profile.least_fall(from, radius) > 0.0;
+        if bends && falls_to(edge) || slopes && falls_to(outer) {
+            Known::Sign
+        } else if (bends || slopes) && profile.rises_concavely(from) {
+            Known::OneChange
+        } else {
+            Known::Nothing
+        }
+    }
+}
+
 impl Contact {
-    /// Whether the derivative has the sign of the piece's slope all over the ring of each piece.
-    pub(super) fn settled(&self) -> Vec<bool> {
+    /// What is known about the bends and slopes of the slip history.
+    pub(super) fn settled(&self) -> Settled<'_> {
         let pieces = self.history.pieces();
         let slope = |index: usize| pieces.get(index).map_or(0.0, |piece| piece.line.slope.value());
         let bend = |index: usize| slope(index + 1) - slope(index);
@@ -35,12 +73,10 @@ impl Contact {
         let share = |index: usize| slope(index).abs() * rings[index].depth;
         // At a vertical edge stresses are infinite, whatever lies inside it.
         let upright = rings.last().is_some_and(|ring| self.profile.edge_depth(ring) > 0.0);
-        let edge = self.history.edge().radius;
-        let mut settled = vec![false; pieces.len()];
+        let mut settled = vec![Outward { bends: false, slopes: false }; pieces.len()];
         let mut beyond = Outward { bends: true, slopes: true };
         for index in (0..pieces.len()).rev() {
             let last = index + 1 == pieces.len();
-            let from = if index == 0 { 0.0 } else { rings[index].inner.radius };
             beyond.bends &= if last {
                 // Without a bend at the edge there is no first term to lead.
                 bend(index).abs() > 0.0 && !upright
@@ -53,10 +89,8 @@ impl Contact {
                 let falls = index + 2 >= pieces.len() || share(index + 1) * (1.0 + ROUNDED) >= share(index + 2);
                 slope(index) * slope(index + 1) < 0.0 && falls
             };
-            let falls_to = |radius: f64| self.profile.least_fall(from, radius) > 0.0;
-            settled[index] = beyond.bends && falls_to(edge)
-                || beyond.slopes && !(last && upright) && falls_to(rings[index].outer.radius);
+            settled[index] = Outward { slopes: beyond.slopes && !(last && upright), ..beyond };
         }
-        settled
+        Settled { contact: self, pieces: settled }
     }
 }

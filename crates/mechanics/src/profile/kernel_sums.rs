@@ -68,6 +68,14 @@ pub(crate) enum KernelSlopes<'a> {
 }
 
 impl KernelSlopes<'_> {
+    /// The sums that [`Profile::kernel_sums`] gives, at each radius, where what they are made of is the same.
+    pub(crate) fn sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
+        match self {
+            KernelSlopes::Pieces(pieces) => pieces.kernel_sums(radii),
+            KernelSlopes::Panels(_) => None,
+        }
+    }
+
     /// The derivative, 1/m^2, at each radius, with the sum of the sizes of what it adds up from.
     /// `goes_on` is told how many terms follow; once it is false, derivatives are zero.
     pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {

@@ -340,6 +340,14 @@ impl Profile {
         Shape::least_fall(self, inner, outer)
     }
 
+    /// Whether q = g'/x, as a function of x^2, neither falls nor bends upward from the radius `inner`, m, on; `false` is always safe.
+    ///
+    /// Then dK(r, c)/d(r^2) = int q'(r^2 + t^2) dt - q(c^2)/(2 v) over t up to v = sqrt(c^2 - r^2) falls all the way from r = `inner` to c,
+    /// since its derivative with respect to r^2 is int q'' dt - q'(c^2)/(2 v) - q(c^2)/(4 v^3).
+    pub(super) fn rises_concavely(&self, inner: f64) -> bool {
+        Shape::rises_concavely(self, inner)
+    }
+
     /// The radii, m, increasing, at which pressure and shear are infinite once the contact has grown over them: the tip of a
     /// cone, a rim where the slope jumps. The vertical edge of a punch is not among them.
     ///
@@ -436,6 +444,7 @@ dispatch! {
     cancellation(x: f64) -> f64;
     kernel_falls() -> bool;
     least_fall(inner: f64, outer: f64) -> f64;
+    rises_concavely(inner: f64) -> bool;
     singular_radii() -> Vec<f64>;
     smooth_centre() -> bool;
     smooth_tip() -> bool;

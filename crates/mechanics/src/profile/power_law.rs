@@ -23,7 +23,6 @@ const MOST_OF_SERIES: i32 = 60;
 const MOST_HALVES: i32 = 16;
 /// Beyond this many r the r under the root is negligible.
 const FAR: f64 = 1e8;
-
 /// The largest exponent of which a series of few terms is made.
 const STEEPEST: f64 = 16.0;
 
@@ -47,8 +46,7 @@ impl PowerLaw {
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::EXPONENT`] and [`range::COEFFICIENT`].
     pub fn new(exponent: f64, coefficient: f64) -> Result<PowerLaw, Error> {
-        let exponent = range::EXPONENT.check(exponent)?;
-        let coefficient = range::COEFFICIENT.check(coefficient)?;
+        let (exponent, coefficient) = (range::EXPONENT.check(exponent)?, range::COEFFICIENT.check(coefficient)?);
         let scale = kappa(exponent) * coefficient;
         let order = (1..=MOST_TERMS).find(|&n| f64::from(n).to_bits() == exponent.to_bits());
         let halves = (1..=MOST_HALVES).find(|&m| (0.5 * f64::from(m)).to_bits() == exponent.to_bits());
@@ -81,8 +79,7 @@ impl PowerLaw {
 
     /// int h dx and int h^2 dx over x_outer y and x_outer y^2, y the outer level, of a whole n up to [`MOST_FOR_EIGHT`].
     fn whole_moments(order: u16, share: f64) -> (f64, f64) {
-        let below = EIGHT_POINTS.map(|(u, _)| share * u);
-        let mut chords = [1.0; EIGHT_POINTS.len()];
+        let (below, mut chords) = (EIGHT_POINTS.map(|(u, _)| share * u), [1.0; EIGHT_POINTS.len()]);
         for _ in 1..order {
             for (chord, below) in chords.iter_mut().zip(below) {
                 *chord = *chord * (1.0 - below) + 1.0;
@@ -332,9 +329,8 @@ impl Shape for PowerLaw {
             return self.far(span);
         }
         let limit = DoubleDouble::square_of(far);
-        let (near, beyond) = (span.below(limit, far), span.above(limit, far));
-        let near = near.map_or(0.0, |span| smooth_coordinate::kernel(self, at, &span));
-        near + beyond.map_or(0.0, |span| self.far(&span))
+        let near = span.below(limit, far).map_or(0.0, |span| smooth_coordinate::kernel(self, at, &span));
+        near + span.above(limit, far).map_or(0.0, |span| self.far(&span))
     }
 
     fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
@@ -345,8 +341,7 @@ impl Shape for PowerLaw {
             return smooth_coordinate::kernel_slope(self, at, span);
         }
         // At the tip: (n/2) B x^(n-3)/(n - 3), where that integral exists.
-        let n = self.exponent;
-        let x = span.outer_radius;
+        let (n, x) = (self.exponent, span.outer_radius);
         if x <= 0.0 {
             0.0
         } else if n > 3.0 {
@@ -384,6 +379,11 @@ impl Shape for PowerLaw {
         let steepest = if power < 1.0 { share.powf(power - 1.0) } else { 1.0 };
         let rise = if power > 0.0 { 2.0 * power * (1.0 - share) * steepest } else { 0.0 };
         self.slope(outer) / outer * (1.0 - rise)
+    }
+
+    fn rises_concavely(&self, _inner: f64) -> bool {
+        // q is x^2 to the power n/2 - 1, which is from zero to one.
+        (2.0..=4.0).contains(&self.exponent)
     }
 
     fn singular_radii(&self) -> Vec<f64> {

@@ -145,6 +145,12 @@ flat_core!(RoundedPunch {
         self.slope(outer) / outer - rise
     }
 
+    fn rises_concavely(&self, inner: f64) -> bool {
+        // With u = t/b, R dq/d(u^2) = (1 + u phi)/(2 u (1 + u^2)^(3/2)) > 0, whose logarithm has the slope (phi + u/(1 + u^2))/(1 + u phi)
+        // - 1/u - 3 u/(1 + u^2) < 0, since u phi + u^2/(1 + u^2) < 1 + u phi.
+        inner >= self.flat_radius
+    }
+
     fn surface_slope(&self, r: f64) -> f64 {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }

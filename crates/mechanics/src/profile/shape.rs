@@ -219,6 +219,11 @@ pub(super) trait Shape {
         if self.kernel_falls() { self.slope(outer) / outer } else { f64::NEG_INFINITY }
     }
 
+    /// See [`Profile::rises_concavely`](super::Profile).
+    fn rises_concavely(&self, _inner: f64) -> bool {
+        false
+    }
+
     /// Radii at which f' jumps by a finite amount, so that stresses are log-infinite, increasing.
     fn singular_radii(&self) -> Vec<f64> {
         Vec::new()
@@ -288,4 +293,45 @@ pub(super) fn moments<S: Shape + ?Sized>(shape: &S, span: &Span) -> Moments {
         rest = inner;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{PowerLaw, Profile, RoundedPunch, Sphere, Sum, TruncatedCone, TruncatedSphere};
+
+    #[test]
+    fn what_is_said_to_rise_concavely_does() {
+        let power = |exponent| Profile::PowerLaw(PowerLaw::new(exponent, 0.2).unwrap());
+        let punch = || Profile::RoundedPunch(RoundedPunch::new(0.2, 1.0).unwrap());
+        let sum = |parts: Vec<Profile>| Profile::Sum(Sum::new(parts).unwrap());
+        let sphere = || Profile::Sphere(Sphere::new(1.0).unwrap());
+        let mut profiles: Vec<Profile> = [1.3, 1.9, 2.0, 2.1, 2.7, 3.0, 3.9, 4.0, 4.1, 6.0].map(power).into();
+        profiles.extend([sphere(), punch(), sum(vec![punch(), power(3.0), sphere()]), sum(vec![punch(), power(6.0)])]);
+        profiles.push(Profile::TruncatedCone(TruncatedCone::new(0.1, 0.1).unwrap()));
+        profiles.push(Profile::TruncatedSphere(TruncatedSphere::new(1.0, 0.1).unwrap()));
+        let mut claims = 0;
+        for profile in profiles {
+            for inner in [0.0, 0.1, 0.2, 0.3] {
+                if !profile.rises_concavely(inner) {
+                    continue;
+                }
+                claims += 1;
+                let ratio = |index: u32| {
+                    let x = (inner * inner + 1e-3 * f64::from(index)).sqrt();
+                    profile.slope(x) / x
+                };
+                for index in 1..1000 {
+                    let [low, middle, high] = [index, index + 1, index + 2].map(ratio);
+                    let noise = 1e-13 * high;
+                    assert!(middle - low >= -noise, "{profile:?} falls beyond {inner} at {index}");
+                    assert!(
+                        high - middle <= middle - low + noise,
+                        "{profile:?} bends upward beyond {inner} at {index}"
+                    );
+                }
+            }
+        }
+        // The six powers from two to four and the sphere; the punch and its sum with a cubic and a sphere from their flat on.
+        assert_eq!(claims, 7 * 4 + 2 * 2);
+    }
 }

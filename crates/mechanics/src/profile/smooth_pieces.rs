@@ -44,6 +44,27 @@ const MOST_CUTS: f64 = 48.0;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
+/// binom(-1/2, k).
+const BINOMIALS: [f64; TERMS] = {
+    let mut binomials = [1.0; TERMS];
+    let mut k = 1;
+    while k < TERMS {
+        binomials[k] = binomials[k - 1] * -(k as f64 - 0.5) / k as f64;
+        k += 1;
+    }
+    binomials
+};
+/// The even numbers.
+const PAIRS: [f64; TERMS / 2] = {
+    let mut pairs = [0.0; TERMS / 2];
+    let mut index = 1;
+    while index < pairs.len() {
+        pairs[index] = pairs[index - 1] + 2.0;
+        index += 1;
+    }
+    pairs
+};
+
 /// The pieces of a profile's rings, from the edge inward.
 pub(crate) struct SmoothPieces<'a> {
     profile: &'a Profile,
@@ -186,6 +207,11 @@ impl<'a> SmoothPieces<'a> {
         self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
     }
 
+    /// The sums at each radius, unless the profile has a quicker way.
+    pub(super) fn kernel_sums(&self, radii: &[StressRadius]) -> Option<Vec<f64>> {
+        Shape::slope_series(self.profile, 1.0).is_none().then(|| self.sums(radii))
+    }
+
     /// The sums at each radius.
     pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
@@ -311,20 +337,22 @@ fn counted(series: &[f64], unit: f64) -> Vec<f64> {
 }
 
 /// binom(-1/2, k) times what `moment` gives for k.
-fn binomials(moment: impl FnMut(usize) -> f64) -> Vec<f64> {
-    let shares = (0..TERMS).scan(1.0, |binomial, k| {
-        let next = *binomial * -(0.5 + k as f64) / (k + 1) as f64;
-        Some(std::mem::replace(binomial, next))
-    });
-    shares.zip((0..TERMS).map(moment)).map(|(binomial, moment)| binomial * moment).collect()
+fn binomials(mut moment: impl FnMut(usize) -> f64) -> Vec<f64> {
+    (0..TERMS).map(|k| BINOMIALS[k] * moment(k)).collect()
 }
 
 /// The coefficients of z^k of a smooth piece: (h/2) binom(-1/2, k) m_k.
 fn moments(series: &[f64], half: f64) -> Vec<f64> {
-    binomials(|k| {
-        let even = series.iter().enumerate().skip(k % 2).step_by(2);
-        half * even.map(|(j, c)| c / (j + k + 1) as f64).sum::<f64>()
-    })
+    // m_k for even and for odd k, side by side.
+    let mut sums = [[0.0; TERMS / 2]; 2];
+    for (j, c) in series.iter().enumerate() {
+        let odd = j % 2;
+        let first = (j + odd + 1) as f64;
+        for (index, sum) in sums[odd].iter_mut().enumerate() {
+            *sum += c / (first + PAIRS[index]);
+        }
+    }
+    binomials(|k| half * sums[k % 2][k / 2])
 }
 
 /// Those of a piece at a kink that ends at the t `top`: in units of that, Y = 2 t^2 - 1.

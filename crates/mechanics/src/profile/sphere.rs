@@ -131,6 +131,10 @@ impl Shape for Sphere {
         true
     }
 
+    fn rises_concavely(&self, _inner: f64) -> bool {
+        true
+    }
+
     fn slope_series(&self, a: f64) -> Option<Vec<f64>> {
         Some(vec![0.0, self.slope(a)])
     }

@@ -352,6 +352,10 @@ impl Shape for Sum {
         self.total(|part| part.least_fall(inner, outer))
     }
 
+    fn rises_concavely(&self, inner: f64) -> bool {
+        self.parts.iter().all(|part| part.rises_concavely(inner))
+    }
+
     fn singular_radii(&self) -> Vec<f64> {
         let mut radii: Vec<f64> = self.parts.iter().flat_map(Profile::singular_radii).collect();
         radii.sort_by(f64::total_cmp);

@@ -17,7 +17,7 @@ fn pressed(profile: Profile, preload: Preload) -> Contact {
 }
 
 /// A contact of this radius, moved to displacements in units of that of gross slip.
-fn moved(profile: Profile, radius: f64, path: &[f64]) -> Contact {
+pub fn moved(profile: Profile, radius: f64, path: &[f64]) -> Contact {
     displaced(pressed(profile, Preload::ContactRadius(radius)), path)
 }
 
@@ -38,11 +38,11 @@ fn cone(slope: f64) -> Profile {
     Profile::Cone(Cone::new(slope).unwrap())
 }
 
-fn power(exponent: f64, coefficient: f64) -> Profile {
+pub fn power(exponent: f64, coefficient: f64) -> Profile {
     Profile::PowerLaw(PowerLaw::new(exponent, coefficient).unwrap())
 }
 
-fn truncated_cone(slope: f64, flat: f64) -> Profile {
+pub fn truncated_cone(slope: f64, flat: f64) -> Profile {
     Profile::TruncatedCone(TruncatedCone::new(slope, flat).unwrap())
 }
 
@@ -54,7 +54,7 @@ fn table(radii: &[f64], heights: &[f64]) -> Profile {
     Profile::Tabulated(Tabulated::new(radii, heights).unwrap())
 }
 
-fn sum<const N: usize>(parts: [Profile; N]) -> Profile {
+pub fn sum<const N: usize>(parts: [Profile; N]) -> Profile {
     Profile::Sum(Sum::new(parts.into()).unwrap())
 }
 
@@ -136,7 +136,7 @@ fn any_profile() -> impl Strategy<Value = (Profile, Vec<f64>)> {
 }
 
 /// Compares the list with what the stress looks like; gives the number of extrema seen.
-fn check(contact: &Contact, notes: &[f64]) -> usize {
+pub fn check(contact: &Contact, notes: &[f64]) -> usize {
     let residual = contact.residual();
     let edge = contact.contact_radius();
     let peaks = &residual.peaks;

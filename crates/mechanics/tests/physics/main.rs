@@ -14,6 +14,7 @@ mod equal_peaks;
 mod equator;
 mod exactness;
 mod extrema;
+mod falling_reversals;
 mod fatigue;
 mod few_springs;
 mod hard_cases;
