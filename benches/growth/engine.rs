@@ -13,7 +13,7 @@ use stickslip_wire::{self as wire, SweepRequest};
 use crate::law::{fit, seconds};
 use crate::scenes::{contact, shapes, sphere, table};
 
-const LENGTHS: [usize; 4] = [10, 100, 1_000, 10_000];
+const LENGTHS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 const RADII: [usize; 3] = [50, 200, 800];
 const REVERSALS: [usize; 4] = [1, 10, 100, 1_000];
 const TABLE_POINTS: [u32; 4] = [100, 300, 1_000, 10_000];
@@ -21,19 +21,20 @@ const SWEEP_POINTS: [usize; 4] = [10, 100, 1_000, 10_000];
 
 /// Prints all of it, with the memory of a contact.
 pub fn all() {
-    println!("| shape | a move, ns | of a radius, ns | and for each piece, ns | of a piece, ns | off by |");
-    println!("|---|---|---|---|---|---|");
+    println!("Moves: a each. Stress at R radii after N pieces: R (b + c log2 N + d N) + e N. Times in ns.\n");
+    println!("| shape | a | off by | b | c | d | e | off by |\n|---|---|---|---|---|---|---|---|");
     for (name, profile) in shapes() {
         let virgin = contact(profile);
         let ([a_move], length_error) = fit(&LENGTHS.map(|length| path(&virgin, length)));
         let stresses: Vec<_> = REVERSALS.into_iter().flat_map(|reversals| stress(&virgin, reversals)).collect();
-        let ([radius, radius_and_piece, piece], error) = fit(&stresses);
+        let ([radius, doubling, term, piece], error) = fit(&stresses);
         println!(
-            "| {name} | {:.0} (off by {:.0} %) | {:.0} | {:.2} | {:.1} | {:.0} % |",
+            "| {name} | {:.0} | {:.0} % | {:.0} | {:.1} | {:.2} | {:.0} | {:.0} % |",
             1e9 * a_move,
             100.0 * length_error,
             1e9 * radius,
-            1e9 * radius_and_piece,
+            1e9 * doubling,
+            1e9 * term,
             1e9 * piece,
             100.0 * error
         );
@@ -69,14 +70,15 @@ fn path(virgin: &Contact, length: usize) -> ([f64; 1], f64) {
     ([length as f64], time)
 }
 
-/// The shear stress: the radii, the radii times the pieces, the pieces, and the time.
-fn stress(virgin: &Contact, reversals: usize) -> [([f64; 3], f64); 3] {
+/// The shear stress: the terms of its law, and the time.
+fn stress(virgin: &Contact, reversals: usize) -> [([f64; 4], f64); 3] {
     let contact = reversed(virgin, reversals);
     let (edge, pieces) = (contact.contact_radius(), contact.memory_depth() as f64);
     RADII.map(|count| {
         let radii: Vec<f64> = (0..count).map(|index| edge * index as f64 / count as f64).collect();
         let time = seconds(|| drop(black_box(contact.shears(&radii))));
-        ([count as f64, count as f64 * pieces, pieces], time)
+        let radii = count as f64;
+        ([radii, radii * pieces.log2(), radii * pieces, pieces], time)
     })
 }
 

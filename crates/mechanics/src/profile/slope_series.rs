@@ -19,6 +19,8 @@ use super::{DoubleDouble, Ring, StressRadius};
 pub(super) const LANES: usize = 8;
 /// The most powers of x in a series.
 pub(super) const MOST_POWERS: usize = 40;
+/// With fewer rings than this, bringing radii in order costs more than it saves.
+const WORTH_SORTING: usize = 8;
 /// From so many rings and radii on those of a parabola are summed by clusters.
 const MANY: (usize, usize) = (128, 48);
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
@@ -178,7 +180,8 @@ impl SeriesRings<'_> {
         if parabola && self.rings.len() >= MANY.0 && radii.len() >= MANY.1 {
             return self.sums_by_clusters(radii);
         }
-        let (order, mut sums) = (in_order(radii), vec![0.0; radii.len()]);
+        let order = if self.rings.len() < WORTH_SORTING { (0..radii.len()).collect() } else { in_order(radii) };
+        let mut sums = vec![0.0; radii.len()];
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
             let place = Place::of(order.iter().map(|&index| radii[index].square));
