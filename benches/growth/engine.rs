@@ -15,30 +15,22 @@ use crate::scenes::{contact, shapes, sphere, table};
 
 const LENGTHS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 const RADII: [usize; 3] = [50, 200, 800];
-const REVERSALS: [usize; 4] = [1, 10, 100, 1_000];
+const REVERSALS: [usize; 4] = [3, 10, 30, 100];
+/// Those of a history that is summed by clusters.
+const MANY_REVERSALS: [usize; 3] = [300, 1_000, 3_000];
 const TABLE_POINTS: [u32; 4] = [100, 300, 1_000, 10_000];
 const SWEEP_POINTS: [usize; 4] = [10, 100, 1_000, 10_000];
 
 /// Prints all of it, with the memory of a contact.
 pub fn all() {
-    println!("Moves: a each. Stress at R radii after N pieces: R (b + c log2 N + d N) + e N. Times in ns.\n");
-    println!("| shape | a | off by | b | c | d | e | off by |\n|---|---|---|---|---|---|---|---|");
+    println!("Stress at R radii after N pieces: s + R (b + c log2 N + d N) + e N. Moves: a each. Times in ns.\n");
+    println!("| shape | s | b | c | d | e | off by | a | off by |\n|---|---|---|---|---|---|---|---|---|");
     for (name, profile) in shapes() {
         let virgin = contact(profile);
-        let ([a_move], length_error) = fit(&LENGTHS.map(|length| path(&virgin, length)));
-        let stresses: Vec<_> = REVERSALS.into_iter().flat_map(|reversals| stress(&virgin, reversals)).collect();
-        let ([radius, doubling, term, piece], error) = fit(&stresses);
-        println!(
-            "| {name} | {:.0} | {:.0} % | {:.0} | {:.1} | {:.2} | {:.0} | {:.0} % |",
-            1e9 * a_move,
-            100.0 * length_error,
-            1e9 * radius,
-            1e9 * doubling,
-            1e9 * term,
-            1e9 * piece,
-            100.0 * error
-        );
+        let ([a_move], error) = fit(&LENGTHS.map(|length| path(&virgin, length)));
+        println!("| {name} | {} | {:.0} | {:.0} % |", stresses(&virgin, &REVERSALS), 1e9 * a_move, 100.0 * error);
     }
+    println!("| sphere, from 300 pieces on | {} | | |", stresses(&contact(sphere()), &MANY_REVERSALS));
     tables();
     sweeps();
     let virgin = contact(sphere());
@@ -46,6 +38,14 @@ pub fn all() {
     let pieces = thousand.memory_depth() - virgin.memory_depth();
     let bytes = (thousand.memory_bytes() - virgin.memory_bytes()) as f64 / pieces as f64;
     println!("\nA contact takes {} bytes, and {bytes:.0} for each piece more.", virgin.memory_bytes());
+}
+
+/// The coefficients of the law of the shear stress, and how far it is off.
+fn stresses(virgin: &Contact, reversals: &[usize]) -> String {
+    let samples: Vec<_> = reversals.iter().flat_map(|&reversals| stress(virgin, reversals)).collect();
+    let ([start, radius, doubling, term, piece], error) = fit(&samples);
+    let [start, radius, doubling, term, piece] = [start, radius, doubling, term, piece].map(|time| 1e9 * time);
+    format!("{start:.0} | {radius:.0} | {doubling:.1} | {term:.2} | {piece:.0} | {:.0} %", 100.0 * error)
 }
 
 fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
@@ -71,14 +71,14 @@ fn path(virgin: &Contact, length: usize) -> ([f64; 1], f64) {
 }
 
 /// The shear stress: the terms of its law, and the time.
-fn stress(virgin: &Contact, reversals: usize) -> [([f64; 4], f64); 3] {
+fn stress(virgin: &Contact, reversals: usize) -> [([f64; 5], f64); 3] {
     let contact = reversed(virgin, reversals);
     let (edge, pieces) = (contact.contact_radius(), contact.memory_depth() as f64);
     RADII.map(|count| {
         let radii: Vec<f64> = (0..count).map(|index| edge * index as f64 / count as f64).collect();
         let time = seconds(|| drop(black_box(contact.shears(&radii))));
         let radii = count as f64;
-        ([radii, radii * pieces.log2(), radii * pieces, pieces], time)
+        ([1.0, radii, radii * pieces.log2(), radii * pieces, pieces], time)
     })
 }
 
