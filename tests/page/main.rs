@@ -54,8 +54,8 @@ fn hertz(force: f64, radius: f64, modulus: f64) -> String {
 }
 
 const E_STAR: f64 = 2.1e11 / (1.0 - 0.3 * 0.3);
-/// The drawn path of the loop: `[x, y]` in pixels.
-const WAY: &str = "document.querySelector('#plot-loop .line.past').getAttribute('d').slice(1).split('L').map((p) => p.split(',').map(Number))";
+/// The drawn path of the loop, `[x, y]` in pixels; an empty one while the page draws it.
+const WAY: &str = "(document.querySelector('#plot-loop .line.past')?.getAttribute('d') ?? '').slice(1).split('L').map((p) => p.split(',').map(Number))";
 
 #[tokio::test]
 async fn a_contact_is_made_moved_reloaded_and_followed() {
@@ -92,7 +92,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
         "(() => {{ const way = {WAY}; const x = way.map((p) => p[0]); const top = x.indexOf(Math.max(...x)); \
          const middle = (x[0] + x[top]) / 2; const out = way.slice(0, top).find((p) => p[0] >= middle); \
          const back = way.slice(top).find((p) => p[0] <= middle); \
-         return back !== undefined && x.at(-1) < x[0] && back[1] > out[1] + 10; }})()"
+         return out !== undefined && back !== undefined && x.at(-1) < x[0] && back[1] > out[1] + 10; }})()"
     );
     browser.until(&turned).await;
     let id = server.client.contacts(None, None).await.unwrap().items[0].id;
