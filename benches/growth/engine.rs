@@ -6,12 +6,11 @@ use std::hint::black_box;
 use serde_json::json;
 use stickslip::admission::{Stop, Turn};
 use stickslip::simulation::{Sweep, SweepResult};
-use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::{Contact, Move, Tangential};
+use stickslip_mechanics::Contact;
 use stickslip_wire::{self as wire, SweepRequest};
 
 use crate::law::{fit, seconds};
-use crate::scenes::{contact, shapes, sphere, table};
+use crate::scenes::{contact, radii, reversed, shapes, slide, sphere, table};
 
 const LENGTHS: [usize; 4] = [100, 1_000, 10_000, 100_000];
 const RADII: [usize; 3] = [50, 200, 800];
@@ -48,34 +47,23 @@ fn stresses(virgin: &Contact, reversals: &[usize]) -> String {
     format!("{start:.0} | {radius:.0} | {doubling:.1} | {term:.2} | {piece:.0} | {:.0} %", 100.0 * error)
 }
 
-fn follow(contact: &mut Contact, path: impl IntoIterator<Item = f64>) {
-    for target in path {
-        let to = Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
-        contact.apply(&to).expect("a displacement has no limit");
-    }
-}
-
-/// The contact after reversals of falling amplitude: about as many pieces of slip history.
-fn reversed(virgin: &Contact, reversals: usize) -> Contact {
-    let mut contact = virgin.clone();
-    follow(&mut contact, falling_amplitude(reversals, virgin.gross_slip_displacement()));
-    contact
-}
-
 /// Random moves: their number, and the time of all of them.
 fn path(virgin: &Contact, length: usize) -> ([f64; 1], f64) {
     let (mut random, unit) = (fastrand::Rng::with_seed(1), virgin.gross_slip_displacement());
     let path: Vec<f64> = (0..length).map(|_| (2.0 * random.f64() - 1.0) * unit).collect();
-    let time = seconds(|| follow(black_box(&mut virgin.clone()), path.iter().copied()));
+    let time = seconds(|| {
+        let mut contact = black_box(virgin.clone());
+        path.iter().for_each(|target| slide(&mut contact, *target));
+    });
     ([length as f64], time)
 }
 
 /// The shear stress: the terms of its law, and the time.
 fn stress(virgin: &Contact, reversals: usize) -> [([f64; 5], f64); 3] {
     let contact = reversed(virgin, reversals);
-    let (edge, pieces) = (contact.contact_radius(), contact.memory_depth() as f64);
+    let pieces = contact.memory_depth() as f64;
     RADII.map(|count| {
-        let radii: Vec<f64> = (0..count).map(|index| edge * index as f64 / count as f64).collect();
+        let radii = radii(&contact, count);
         let time = seconds(|| drop(black_box(contact.shears(&radii))));
         let radii = count as f64;
         ([1.0, radii, radii * pieces.log2(), radii * pieces, pieces], time)
@@ -89,7 +77,7 @@ fn tables() {
     let moves = contacts.each_ref().map(|(doublings, virgin)| ([1.0, *doublings], path(virgin, 1_000).1 / 1e3));
     let stresses = contacts.each_ref().map(|(doublings, virgin)| {
         let contact = reversed(virgin, 20);
-        let radii: Vec<f64> = (0..200).map(|index| contact.contact_radius() * f64::from(index) / 200.0).collect();
+        let radii = radii(&contact, 200);
         ([1.0, *doublings], seconds(|| drop(black_box(contact.shears(&radii)))))
     });
     for (name, samples) in [("a move", moves), ("stress at 200 radii", stresses)] {

@@ -10,9 +10,9 @@ mod scenes;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use scenes::{contact, shapes, sphere};
-use stickslip_mechanics::protocol::{falling_amplitude, minimax};
-use stickslip_mechanics::{Contact, Move, Tangential};
+use scenes::{contact, radii, reversed, shapes, slide, sphere};
+use stickslip_mechanics::Contact;
+use stickslip_mechanics::protocol::minimax;
 
 const REVERSALS: usize = 20;
 const RADII: usize = 200;
@@ -26,26 +26,11 @@ const PROTOCOL: usize = 50;
 /// The time of a piece of work on a new contact.
 type Scene = fn(&Contact) -> Duration;
 
-fn slide(contact: &mut Contact, target: f64) {
-    let step = Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
-    contact.apply(&step).expect("a displacement has no limit");
-}
-
-/// A new contact after falling reversals.
-fn reversed(virgin: &Contact) -> Contact {
-    let mut contact = virgin.clone();
-    for target in falling_amplitude(REVERSALS, virgin.gross_slip_displacement()) {
-        slide(&mut contact, target);
-    }
-    contact
-}
-
 /// The time of the reversals and the shear stress.
 fn stresses(virgin: &Contact) -> Duration {
-    let edge = virgin.contact_radius();
-    let radii: Vec<f64> = (0..RADII).map(|index| edge * index as f64 / RADII as f64).collect();
+    let radii = radii(virgin, RADII);
     let start = Instant::now();
-    black_box(reversed(virgin).shears(&radii));
+    black_box(reversed(virgin, REVERSALS).shears(&radii));
     start.elapsed()
 }
 
@@ -63,8 +48,7 @@ fn moves(virgin: &Contact) -> Duration {
 
 /// The time of the displacement of the surface.
 fn displacements(virgin: &Contact) -> Duration {
-    let (contact, edge) = (reversed(virgin), virgin.contact_radius());
-    let radii: Vec<f64> = (0..RADII).map(|index| edge * index as f64 / RADII as f64).collect();
+    let (contact, radii) = (reversed(virgin, REVERSALS), radii(virgin, RADII));
     let start = Instant::now();
     black_box(contact.surface_displacements(&radii));
     start.elapsed()
@@ -72,7 +56,7 @@ fn displacements(virgin: &Contact) -> Duration {
 
 /// The time of the extrema.
 fn extrema(virgin: &Contact) -> Duration {
-    let contact = reversed(virgin);
+    let contact = reversed(virgin, REVERSALS);
     let start = Instant::now();
     black_box(contact.residual());
     start.elapsed()

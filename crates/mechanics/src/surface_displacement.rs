@@ -133,6 +133,7 @@ fn arc_to(point: &Point, at: &StressRadius) -> f64 {
     let beyond = (at.square - point.square).value();
     if beyond > 0.0 { point.radius.atan2(beyond.sqrt()) } else { std::f64::consts::FRAC_PI_2 }
 }
+
 #[cfg(test)]
 mod tests {
     use super::super::profile::Tabulated;

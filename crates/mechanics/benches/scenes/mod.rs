@@ -3,7 +3,8 @@
 use stickslip_mechanics::profile::{
     Cone, ExactSphere, PowerLaw, RoundedCone, RoundedPunch, Sum, Tabulated, TruncatedCone, TruncatedSphere,
 };
-use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup, Sphere};
+use stickslip_mechanics::protocol::falling_amplitude;
+use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
 const BALL: f64 = 0.01;
 const VALID: &str = "valid parameters";
@@ -24,6 +25,26 @@ pub fn table(points: u32) -> Profile {
 pub fn contact(profile: Profile) -> Contact {
     let elasticity = Elasticity::effective(1.15e11, 8.5e10).expect(VALID);
     Contact::new(Setup { profile, elasticity, friction: 0.3, preload: Preload::NormalForce(10.0) }).expect(VALID)
+}
+
+/// Moves to a displacement, m.
+pub fn slide(contact: &mut Contact, target: f64) {
+    let step = Move { tangential: Some(Tangential::Displacement(target)), ..Move::default() };
+    contact.apply(&step).expect("a displacement has no limit");
+}
+
+/// The contact after reversals of falling amplitude: about as many pieces of slip history.
+pub fn reversed(virgin: &Contact, reversals: usize) -> Contact {
+    let mut contact = virgin.clone();
+    for target in falling_amplitude(reversals, virgin.gross_slip_displacement()) {
+        slide(&mut contact, target);
+    }
+    contact
+}
+
+/// So many radii from the centre on, evenly spaced below the edge, m.
+pub fn radii(contact: &Contact, count: usize) -> Vec<f64> {
+    (0..count).map(|index| contact.contact_radius() * index as f64 / count as f64).collect()
 }
 
 /// Every shape with its name, the sphere first.

@@ -306,11 +306,10 @@ impl<'a> SteadyCycle<'a> {
         let mut turned = Contact { history: SlipHistory::new(&contact.profile, edge), ..contact.clone() };
         let displacement = DoubleDouble::from(self.displacement);
         turned.advance(&PathPoint { indentation, normal_force: contact.normal_force, displacement });
-        let pressures = contact.pressures(radii);
-        let work = |(&radius, pressure): (&f64, f64)| {
-            let slip = turned.slip(radius).unwrap_or(0.0).max(0.0);
+        let work = |(slip, pressure): (Option<f64>, f64)| {
+            let slip = slip.unwrap_or(0.0).max(0.0);
             if slip > 0.0 { 4.0 * contact.friction * pressure * slip } else { 0.0 }
         };
-        radii.iter().zip(pressures).map(work).collect()
+        turned.slips(radii).into_iter().zip(contact.pressures(radii)).map(work).collect()
     }
 }

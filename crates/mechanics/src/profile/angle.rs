@@ -20,6 +20,11 @@ pub(super) fn tangent_less_angle(u: f64) -> f64 {
         let w = u / (1.0 + (1.0 + u * u).sqrt());
         return 2.0 * (w * w * w / (1.0 - w * w) + tangent_less_angle(w));
     }
+    series(u)
+}
+
+/// The same by its series, for u up to a fifth.
+fn series(u: f64) -> f64 {
     let square = u * u;
     // Every other term on its own, so that neither sum waits for the other.
     let fourth = square * square;
@@ -46,16 +51,7 @@ pub(super) fn angles<const N: usize>(u: [f64; N]) -> ([f64; N], [f64; N]) {
     for count in 0..halvings {
         tangents[count + 1] = tangents[count].map(|u| u / (1.0 + (1.0 + u * u).sqrt()));
     }
-    let mut lacking = tangents[halvings].map(|w| {
-        let square = w * w;
-        let fourth = square * square;
-        let (mut falling, mut rising) = (0.0, 0.0);
-        for [plus, minus] in SHARES {
-            falling = falling * fourth + plus;
-            rising = rising * fourth + minus;
-        }
-        w * square * (falling - square * rising)
-    });
+    let mut lacking = tangents[halvings].map(series);
     let turns = f64::from(1_u8 << halvings);
     let angle = std::array::from_fn(|lane| turns * (tangents[halvings][lane] - lacking[lane]));
     for count in (0..halvings).rev() {

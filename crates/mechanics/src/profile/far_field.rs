@@ -91,8 +91,8 @@ fn shares(low: f64, high: f64, at: f64) -> [f64; PROXIES] {
     shares.map(|share| share * scale)
 }
 
-/// The sum of what stands for a cluster, four by four.
-fn total(terms: &[f64; PROXIES]) -> f64 {
+/// The sum of terms, four by four.
+pub(super) fn total(terms: &[f64; PROXIES]) -> f64 {
     let mut sums = [0.0; 4];
     for four in terms.chunks_exact(4) {
         for (sum, term) in sums.iter_mut().zip(four) {

@@ -56,6 +56,13 @@ impl StressRadius {
         radii.iter().map(|&radius| StressRadius::new(radius)).collect()
     }
 
+    /// The indices of radii from the smallest on: neighbours share what is near to them.
+    pub(super) fn rising(radii: &[StressRadius]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..radii.len()).collect();
+        order.sort_by(|&a, &b| radii[a].square.value().total_cmp(&radii[b].square.value()));
+        order
+    }
+
     /// The radius of `point`, to all the digits of its square.
     #[must_use]
     pub fn of_point(point: &Point) -> StressRadius {

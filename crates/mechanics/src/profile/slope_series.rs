@@ -180,7 +180,8 @@ impl SeriesRings<'_> {
         if parabola && self.rings.len() >= MANY.0 && radii.len() >= MANY.1 {
             return self.sums_by_clusters(radii);
         }
-        let order = if self.rings.len() < WORTH_SORTING { (0..radii.len()).collect() } else { in_order(radii) };
+        let order =
+            if self.rings.len() < WORTH_SORTING { (0..radii.len()).collect() } else { StressRadius::rising(radii) };
         let mut sums = vec![0.0; radii.len()];
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
@@ -199,7 +200,7 @@ impl SeriesRings<'_> {
     fn sums_by_clusters(&self, radii: &[StressRadius]) -> Vec<f64> {
         let rings: Vec<(f64, f64)> = self.rings.iter().map(|ring| (ring.gap, ring.weight)).collect();
         let distant = DistantRings::new(&rings);
-        let (order, mut sums) = (in_order(radii), vec![0.0; radii.len()]);
+        let (order, mut sums) = (StressRadius::rising(radii), vec![0.0; radii.len()]);
         let (mut far, mut near) = (Vec::new(), Vec::new());
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
@@ -320,13 +321,6 @@ impl Antiderivative {
         }
         sum
     }
-}
-
-/// The indices of radii from the smallest on: neighbours lie within the same rings.
-fn in_order(radii: &[StressRadius]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..radii.len()).collect();
-    order.sort_unstable_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
-    order
 }
 
 /// The root of what is positive, and zero of all else.

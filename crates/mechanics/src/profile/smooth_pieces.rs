@@ -214,10 +214,8 @@ impl<'a> SmoothPieces<'a> {
 
     /// The sums at each radius.
     pub(super) fn sums(&self, radii: &[StressRadius]) -> Vec<f64> {
-        let mut order: Vec<usize> = (0..radii.len()).collect();
-        order.sort_by(|&a, &b| radii[a].radius.total_cmp(&radii[b].radius));
         let mut sums = vec![0.0; radii.len()];
-        for chunk in order.chunks(LANES) {
+        for chunk in StressRadius::rising(radii).chunks(LANES) {
             let found = self.lanes::<LANES, false>(&filled(chunk, |&index| radii[index].square));
             for (&index, kernel) in chunk.iter().zip(found.kernels) {
                 sums[index] =

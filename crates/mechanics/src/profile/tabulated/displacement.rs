@@ -14,8 +14,9 @@
 use std::f64::consts::FRAC_2_PI;
 use std::sync::LazyLock;
 
+use super::super::far_field::total;
 use super::kernel_sums::WeightedPanels;
-use super::legendre::{LegendreMoments, ORDERS};
+use super::legendre::{LegendreMoments, ORDERS, add_sources};
 use super::{Panel, Ring, Span, StressRadius, Tabulated, gauss, smooth_coordinate};
 
 /// The kernel of a place.
@@ -102,17 +103,6 @@ fn far_angle((low, high): (f64, f64), moments: &LegendreMoments, square: f64, an
     angle.at(centre.sqrt(), square - centre) * moments[0] + angle.sign() * 0.5 * half * total(&sums)
 }
 
-/// The sum, four by four.
-fn total(terms: &[f64; ORDERS]) -> f64 {
-    let mut sums = [0.0; 4];
-    for four in terms.chunks_exact(4) {
-        for (sum, term) in sums.iter_mut().zip(four) {
-            *sum += term;
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
 /// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of P_k in the primitive
 /// from 0 on of the polynomial that is one at the point and zero at the others.
 struct Nodes {
@@ -143,13 +133,9 @@ static NODES: LazyLock<Nodes> = LazyLock::new(|| {
     nodes
 });
 
-/// The Legendre polynomials at a place.
+/// The Legendre polynomials at a place: the moments of one source.
 fn polynomials(place: f64) -> LegendreMoments {
-    let (mut this, mut before, mut order) = (1.0, 0.0, 0.0);
-    std::array::from_fn(|_| {
-        let value = this;
-        (this, before) = (((2.0 * order + 1.0) * place * this - order * before) / (order + 1.0), this);
-        order += 1.0;
-        value
-    })
+    let mut values = [0.0; ORDERS];
+    add_sources(&mut values, &[place], &[1.0]);
+    values
 }

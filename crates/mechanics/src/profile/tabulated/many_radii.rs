@@ -27,8 +27,7 @@ pub(super) struct ManyRadii<'a> {
 impl ManyRadii<'_> {
     /// The sums of the kernels at each radius.
     pub(super) fn sums(panels: &WeightedPanels, radii: &[StressRadius]) -> Vec<f64> {
-        let mut order: Vec<usize> = (0..radii.len()).collect();
-        order.sort_by(|&a, &b| radii[a].square.value().total_cmp(&radii[b].square.value()));
+        let order = StressRadius::rising(radii);
         let sorted: Vec<StressRadius> = order.iter().map(|&index| radii[index]).collect();
         let mut many = ManyRadii {
             panels,
