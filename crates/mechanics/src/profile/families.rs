@@ -4,8 +4,8 @@
 ///
 /// An entry is a description, `module::Family`, the description and the name of its JSON document, and the parameters in the
 /// order of the constructor: a description with the unit, the name and the constant of [`range`](crate::range) that bounds it.
-/// The `type` in JSON is the name of the family in snake case. The families made of other things, such as [`Tabulated`] and
-/// [`Sum`], are not in the table.
+/// The `type` in JSON is the name of the family in snake case. The families made of other things, such as
+/// [`Tabulated`](crate::profile::Tabulated) and [`Sum`](crate::profile::Sum), are not in the table.
 #[macro_export]
 macro_rules! for_each_family {
     ($callback:ident $($prefix:tt)*) => {
