@@ -15,6 +15,8 @@ const CHEBYSHEV: usize = 16;
 const DEPTH: usize = 44;
 /// Panels that halving may add at most: where the rule still misses the rise, what it misses is the rounding of g.
 const SPARE: usize = 1_024;
+/// Panels that are closer together, over their radius, have no room for points that stand for them.
+const CLOSEST: f64 = 1e-10;
 /// A larger relative error of the stresses leaves no digit to resolve.
 const WORTHLESS: f64 = 1.0;
 
@@ -65,26 +67,13 @@ impl Mesh {
     /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m, whose stresses are off by
     /// this relative error.
     pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], radius: f64, stress_error: f64) -> Mesh {
-        let mut stretches = Vec::new();
+        let slack = if stress_error > WORTHLESS { f64::INFINITY } else { 0.0 };
+        let mut resolution = Resolution { profile, radius, slack, spare: SPARE, panels: Vec::new() };
         let mut edge = Source { t: 1.0, normal: 0.0, tangential: 0.0 };
         for (ring, share) in rings {
             let above = profile.edge_depth(ring);
             edge = Source { normal: edge.normal + above, tangential: edge.tangential + above * share, ..edge };
-            let (inner, outer) = (ring.inner.radius, ring.outer.radius);
-            let knots = profile.knots_below(outer);
-            let first = knots.partition_point(|&knot| knot <= inner);
-            let mut high = outer;
-            for low in knots[first..].iter().rev().copied().chain([inner]) {
-                if low < high {
-                    stretches.push(((low / radius, high / radius), *share));
-                    high = low;
-                }
-            }
-        }
-        let slack = if stress_error > WORTHLESS { f64::INFINITY } else { 0.0 };
-        let mut resolution = Resolution { profile, radius, slack, most: stretches.len() + SPARE, panels: Vec::new() };
-        for (ends, share) in stretches {
-            resolution.resolve(ends, share, DEPTH);
+            resolution.resolve_ring(ring, above, *share);
         }
         let mut panels = resolution.panels;
         panels.reverse();
@@ -115,38 +104,77 @@ struct Resolution<'a> {
     radius: f64,
     /// What the rule may miss of g beside its rounding, m.
     slack: f64,
-    /// How many panels there may be.
-    most: usize,
+    /// How often a panel may still be halved.
+    spare: usize,
     panels: Vec<Node>,
 }
 
 impl Resolution<'_> {
-    /// Appends the panels of a stretch.
+    /// Appends the panels of a ring of which the levels `above` lie on a vertical edge.
+    fn resolve_ring(&mut self, ring: &Ring, above: f64, share: f64) {
+        let profile = self.profile;
+        let (inner, outer, top) = (ring.inner.radius, ring.outer.radius, ring.outer.level.value() - above);
+        // Where g is steep a radius has too few digits for its level: all of it in a contact just wider than a flat.
+        let rounding = 16.0 * f64::EPSILON * (profile.cancellation(outer) * top + ring.depth) + self.slack;
+        let beyond = top - profile.level(outer);
+        if beyond.abs() > rounding {
+            self.panels.push(self.at(outer, share, beyond));
+        }
+        let knots = profile.knots_below(outer);
+        let first = knots.partition_point(|&knot| knot <= inner);
+        let mut high = outer;
+        for low in knots[first..].iter().rev().copied().chain([inner]) {
+            if low < high {
+                self.resolve((low, high), share, DEPTH);
+                high = low;
+            }
+        }
+        let before = profile.level(inner) - ring.inner.level.value();
+        if before.abs() > rounding {
+            self.panels.push(self.at(inner, share, before));
+        }
+    }
+
+    /// A rise of g, m, at one radius, m.
+    fn at(&self, radius: f64, share: f64, rise: f64) -> Node {
+        let t = radius / self.radius;
+        let sources = vec![Source { t, normal: rise, tangential: rise * share }];
+        Node { low: t, high: t, share, rooted: false, sources, below: None }
+    }
+
+    /// Appends the panels of a stretch of radii, m.
     fn resolve(&mut self, (low, high): (f64, f64), share: f64, depth: usize) {
         let (profile, radius) = (self.profile, self.radius);
-        let top = profile.level(radius * high);
-        let rise = top - profile.level(radius * low);
+        let top = profile.level(high);
+        let rise = top - profile.level(low);
         let middle = 0.5 * (low + high);
-        let last = depth == 0 || self.panels.len() >= self.most || middle <= low || middle >= high;
+        let last = depth == 0 || self.spare == 0 || middle <= low || middle >= high;
+        let ends = (low / radius, high / radius);
         for rooted in [false, true] {
-            let mut sources = sources(profile, radius, (low, high), rooted, share);
+            let mut sources = sources(profile, radius, ends, rooted, share);
             let sum: f64 = sources.iter().map(|source| source.normal).sum();
+            if last && !(sum > 0.0 && sum.is_finite()) {
+                self.panels.push(self.at(middle, share, rise));
+                return;
+            }
             // Rounding of the level, which has no digits left where it underflows, and of the radii where g is steep.
             let steepest = profile.slope(radius * sources[0].t).max(profile.slope(radius * sources[11].t));
-            let rounding = f64::EPSILON * (profile.cancellation(radius * high) * top + radius * high * steepest);
-            let noise = 4.0 * rounding + self.slack + f64::MIN_POSITIVE;
-            if last && rise > 0.0 && sum > 0.0 {
-                // Too short for more than the right sum.
-                for source in &mut sources {
-                    source.normal *= rise / sum;
-                    source.tangential *= rise / sum;
+            let levels = 4.0 * f64::EPSILON * profile.cancellation(high) * top + 1e-13 * rise;
+            let noise = levels + 4.0 * f64::EPSILON * high * steepest + self.slack + f64::MIN_POSITIVE;
+            let off = (sum - rise).abs();
+            if last || sum.is_finite() && off <= noise {
+                if rise > 0.0 && sum > 0.0 && (last || off > levels) {
+                    // The rise is known better than what the rule makes of it.
+                    for source in &mut sources {
+                        source.normal *= rise / sum;
+                        source.tangential *= rise / sum;
+                    }
                 }
-            }
-            if last || (sum - rise).abs() <= 1e-13 * rise + noise {
-                self.panels.push(Node { low, high, share, rooted, sources, below: None });
+                self.panels.push(Node { low: ends.0, high: ends.1, share, rooted, sources, below: None });
                 return;
             }
         }
+        self.spare -= 1;
         self.resolve((middle, high), share, depth - 1);
         self.resolve((low, middle), share, depth - 1);
     }
@@ -172,7 +200,8 @@ fn gather(mut panels: Vec<Node>) -> Option<Node> {
     let mut all = Vec::new();
     inner.each_source(&mut |source| all.push(*source));
     outer.each_source(&mut |source| all.push(*source));
-    let sources = if all.len() > CHEBYSHEV { condense(low, high, &all) } else { Vec::new() };
+    let long = high - low > CLOSEST * high;
+    let sources = if long && all.len() > CHEBYSHEV { condense(low, high, &all) } else { Vec::new() };
     Some(Node { low, high, share: 0.0, rooted: false, sources, below: Some(Box::new([inner, outer])) })
 }
 

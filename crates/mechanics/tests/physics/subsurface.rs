@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use stickslip_mechanics::profile::{Cone, FlatPunch, PowerLaw, TruncatedCone};
+use stickslip_mechanics::profile::{Cone, FlatPunch, PowerLaw, TruncatedCone, TruncatedSphere};
 use stickslip_mechanics::subsurface::{Side, Subsurface};
 use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup, Stress};
 
@@ -315,6 +315,27 @@ fn what_is_infinite_is_not_finite_and_a_lifted_contact_has_no_stress() {
     let mut lifted = unit(&[0.5]);
     lifted.apply(&oblique(-0.1, 0.0)).unwrap();
     assert_eq!(second(&lifted).at([0.1, 0.2, 0.3]), Stress::default());
+}
+
+#[test]
+fn a_contact_hardly_wider_than_a_flat_has_the_stress_of_a_flat_punch() {
+    let flat = 0.5;
+    // From some units in the last place of the radius wider to none.
+    for depth in (0..60).map(|step| 1e-7 * 0.6_f64.powi(step)) {
+        let punch = second(&moved(Profile::FlatPunch(FlatPunch::new(flat).unwrap()), depth, &[0.5]));
+        for profile in [
+            Profile::TruncatedSphere(TruncatedSphere::new(1.0, flat).unwrap()),
+            Profile::TruncatedCone(TruncatedCone::new(0.1, flat).unwrap()),
+        ] {
+            let field = second(&moved(profile.clone(), depth, &[0.5]));
+            for place in [[0.0, 0.0, 0.2], [0.3, 0.2, 0.1], [0.5, 0.0, 0.05], [-0.7, 0.1, 0.0]] {
+                let theirs = punch.at(place).components();
+                let size = theirs.iter().fold(0.0, |size: f64, part| size.max(part.abs()));
+                let place_of = format!("{profile:?} under {depth:e} at {place:?}");
+                assert_close(field.at(place), theirs, 1e-6 * size, &place_of);
+            }
+        }
+    }
 }
 
 proptest! {
