@@ -15,7 +15,7 @@ use sha2::{Digest as _, Sha256};
 use crate::admission::{INLINE, Place, Pool, PoolError, Quota, Reservation, UNCOUNTED};
 use crate::otlp;
 use crate::server::connections::SlowBody;
-use crate::simulation::cost;
+use crate::simulation::{bytes, cost};
 use crate::store::RequestKey;
 use stickslip_wire::{self as wire, Document};
 
@@ -92,7 +92,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         let length = bytes.len();
         let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
         if cost > 0 {
-            app.pool.resize(&mut memory, length.saturating_mul(cost::EXPANSION)).await?;
+            app.pool.resize(&mut memory, length.saturating_mul(bytes::EXPANSION)).await?;
         }
         let work = move || {
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });

@@ -9,7 +9,7 @@ use std::time::Duration;
 use uuid::Uuid;
 
 use crate::admission::Stop;
-use crate::simulation::cost;
+use crate::simulation::{bytes, cost};
 use crate::store;
 use stickslip_measured::loops::{Error, Known, LoopFit, Noise, Note, Parameter, Record, Start, Task, fit};
 use stickslip_mechanics::Contact;
@@ -114,7 +114,7 @@ impl Sessions {
         if moves >= *limits::PATH_MOVES.end() {
             return Ok(unknown);
         }
-        let _held = self.common.pool.reserve(cost::bytes_of_friction(moves) + PAGE * store::RECORD_BYTES).await?;
+        let _held = self.common.pool.reserve(bytes::of_friction(moves) + PAGE * store::RECORD_BYTES).await?;
         let mut cycle = MeasuredCycle::default();
         let stored = to.min(log.sequence - new.len() as u64);
         let mut read = from.saturating_sub(1);

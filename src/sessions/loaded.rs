@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::simulation::{self, cost::bytes_of_shape, present_warnings};
+use crate::simulation::{self, bytes, present_warnings};
 use crate::store::{CONTACT_BYTES, Reply, Session};
 use stickslip_mechanics::{Contact, Setup};
 use stickslip_wire::profile::{Profile, SumProfile, TabulatedProfile};
@@ -75,7 +75,7 @@ impl LoadedSession {
             + label
             + warnings
             + cycles
-            + bytes_of_shape(&self.session.definition.profile)
+            + bytes::of_shape(&self.session.definition.profile)
     }
 
     /// Bytes that its definition takes in the store, roughly, without its moves.

@@ -8,7 +8,7 @@ use uuid::Uuid;
 use crate::admission::{Nanoseconds, Reservation};
 use crate::otlp;
 use crate::simulation::cost::{self, Work};
-use crate::simulation::{self, Timer, stresses};
+use crate::simulation::{self, Timer, bytes, stresses};
 use stickslip_mechanics::Contact;
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::subsurface::SubsurfaceTask;
@@ -45,7 +45,7 @@ impl Sessions {
             }
         };
         let points = table_points(&definition.profile);
-        let held = self.common.pool.reserve(points * cost::WRITTEN_POINT_BYTES).await?;
+        let held = self.common.pool.reserve(points * bytes::WRITTEN_POINT_BYTES).await?;
         let work = move || written(&*definition);
         Ok((self.common.pool.run(cost::writing_table(points), work).await??, held))
     }
@@ -64,7 +64,7 @@ impl Sessions {
         write: impl FnOnce(&StressReply, &Contact, u64) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let held = self.common.pool.reserve(cost::bytes_of_stress(sampling.length()) + more).await?;
+        let held = self.common.pool.reserve(bytes::of_stress(sampling.length()) + more).await?;
         let (contact, sequence, state) = self.copy(id).await?;
         let looking = Work { depth: contact.memory_depth(), radii: sampling.length(), residual, ..Work::default() };
         let cost = looking.cost(contact.profile()).saturating_add(longer);
@@ -98,7 +98,7 @@ impl Sessions {
         write: impl FnOnce(&CycleReply, &Contact, &CycleTask) -> T + Send + 'static,
     ) -> Result<(u64, T, Reservation), SessionError> {
         let (stop, _guard) = self.common.pool.deadline();
-        let held = self.common.pool.reserve(cost::bytes_of_cycle(&task) + more).await?;
+        let held = self.common.pool.reserve(bytes::of_cycle(&task) + more).await?;
         let (contact, sequence, state) = self.copy(id).await?;
         let cost = cost::of_cycle(contact.profile(), &task).saturating_add(longer);
         let work = move || {
@@ -128,7 +128,7 @@ impl Sessions {
             let mut guard = self.lock(id).await?;
             request.of_contact(&self.current(&mut guard).await?.session.definition)?
         };
-        let held = self.common.pool.reserve(cost::bytes_of_subsurface(&task) + more(task.places.count())).await?;
+        let held = self.common.pool.reserve(bytes::of_subsurface(&task) + more(task.places.count())).await?;
         let (contact, sequence, state) = self.copy(id).await?;
         let cost = cost::of_subsurface(contact.profile(), &task, contact.memory_depth()).saturating_add(longer);
         let work = move || {

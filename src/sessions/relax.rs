@@ -3,7 +3,7 @@
 use uuid::Uuid;
 
 use crate::admission::{Reservation, Stop};
-use crate::simulation::{self, Failure, Subject, cost, follow};
+use crate::simulation::{self, Failure, Subject, bytes, cost, follow};
 use stickslip_mechanics::DEFAULT_TOLERANCE;
 use stickslip_wire::protocol::{ProtocolTask, Relaxation};
 use stickslip_wire::{ContactDefinition, Plan, ProtocolReply, RelaxReply, Steps};
@@ -91,7 +91,7 @@ impl Sessions {
         work: impl FnOnce(&mut LoadedSession, &Stop) -> Result<Vec<u8>, SessionError> + Send + 'static,
     ) -> Result<(u64, Vec<u8>, Reservation), SessionError> {
         let (stop, _raised_at_the_end) = self.common.pool.deadline();
-        let held = self.common.pool.reserve(cost::bytes_of_protocol(&task)).await?;
+        let held = self.common.pool.reserve(bytes::of_protocol(&task)).await?;
         let (mut live, state) = {
             let mut guard = self.lock(id).await?;
             let live = self.current(&mut guard).await?;

@@ -6,7 +6,8 @@ use jiff::Timestamp;
 use uuid::Uuid;
 
 use crate::admission::Reservation;
-use crate::simulation::cost::{EXPANSION, Work};
+use crate::simulation::bytes::EXPANSION;
+use crate::simulation::cost::Work;
 use crate::store::{Extent, RECORD_BYTES, Record, Session, StoreError, Whole};
 use stickslip_wire::limits;
 

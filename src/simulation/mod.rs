@@ -4,6 +4,7 @@
 //! storage. Long loops check a [`Stop`](crate::admission::Stop) between moves and between radii. [`cost`] estimates the
 //! work.
 
+pub mod bytes;
 mod compare_solvers;
 pub mod cost;
 mod cycle;

@@ -9,7 +9,7 @@ use crate::api::extract::CheckedBody;
 use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::App;
-use crate::simulation::{self, cost};
+use crate::simulation::{self, bytes, cost};
 use stickslip_wire::{AccuracyReply, AccuracyRequest, ContactDefinition};
 
 /// Compare solvers
@@ -45,7 +45,7 @@ pub async fn compare_solvers(
 ) -> Result<Response, Problem> {
     let (stop, _guard) = app.pool.deadline();
     let (comparison, mut held) = (request.body, request.held);
-    held.resize(&app.pool, cost::bytes_of_comparison(&comparison)).await?;
+    held.resize(&app.pool, bytes::of_comparison(&comparison)).await?;
     let cost = cost::of_comparison(&comparison);
     let work = move || reply::written(&simulation::compare_solvers(&comparison, &stop)?);
     Ok(held.on(reply::json(app.pool.run(cost, work).await??)))

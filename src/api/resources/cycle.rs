@@ -20,7 +20,7 @@ use crate::api::query::{COUNT, CheckedQuery, QueryParams, QueryReader};
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
 use crate::otlp;
-use crate::simulation::{self, cost};
+use crate::simulation::{self, bytes, cost};
 
 /// How the cycles are written.
 #[derive(IntoParams)]
@@ -148,8 +148,8 @@ pub async fn compute_steady_cycle(
     let format = Format::chosen(query.format, &headers, &Format::ALL)?;
     let (stop, _guard) = app.pool.deadline();
     let CheckedBody { body: (definition, setup, task), mut held, .. } = request;
-    let bytes = cost::bytes_of_cycle(&task) + cost::bytes_of_shape(&definition.profile);
-    held.resize(&app.pool, bytes + format.bytes(task.rows(), cost::cycle_row(&task))).await?;
+    let bytes = bytes::of_cycle(&task) + bytes::of_shape(&definition.profile);
+    held.resize(&app.pool, bytes + format.bytes(task.rows(), bytes::cycle_row(&task))).await?;
     let cost = cost::of_cycle(&setup.profile, &task).saturating_add(format.cost());
     let work = move || {
         let solve = || simulation::cycle_of(setup, &task, &stop);
@@ -182,7 +182,7 @@ pub async fn get_steady_cycle(
             return Ok(reply::not_modified(&tag));
         }
     }
-    let extra = (format.bytes(task.rows(), cost::cycle_row(&task)), format.cost());
+    let extra = (format.bytes(task.rows(), bytes::cycle_row(&task)), format.cost());
     let write = move |cycles: &CycleReply, contact: &Contact, task: &CycleTask| written(format, cycles, contact, task);
     let (sequence, body, memory) = app.sessions.cycle(id, task, extra, write).await?;
     let tag = format.tag(&sequence.to_string());

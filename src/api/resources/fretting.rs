@@ -15,7 +15,7 @@ use crate::api::problem::{Code, Problem};
 use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
 use crate::api::state::App;
 use crate::otlp;
-use crate::simulation::{self, cost};
+use crate::simulation::{self, bytes, cost};
 
 /// How the criteria are written.
 #[derive(IntoParams)]
@@ -68,7 +68,7 @@ pub async fn rate_fretting(
     let format = Format::chosen(query.format, &headers, &Format::ALL)?;
     let (stop, _guard) = app.pool.deadline();
     let CheckedBody { body: (definition, setup, task), mut held, .. } = request;
-    let bytes = cost::bytes_of_fretting(&task) + cost::bytes_of_shape(&definition.profile);
+    let bytes = bytes::of_fretting(&task) + bytes::of_shape(&definition.profile);
     held.resize(&app.pool, bytes + format.bytes(task.places.count(), SUBSURFACE_ROW)).await?;
     let cost = cost::of_fretting(&setup.profile, &task).saturating_add(format.cost());
     let work = move || {

@@ -8,7 +8,7 @@ use crate::api::params::{ContactPath, IdempotencyKey, IfMatch};
 use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::{App, TenantApp};
-use crate::simulation::cost;
+use crate::simulation::bytes;
 use stickslip_wire::session::Advance;
 use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
@@ -87,7 +87,7 @@ pub async fn relax_contact(
         return Ok(reply::holding(reply::at_sequence(sequence, body), memory));
     }
     let advance = Advance::from(body);
-    held.resize(&app.pool, cost::bytes_of_advance(&advance)).await?;
+    held.resize(&app.pool, bytes::of_advance(&advance)).await?;
     Ok(held.on(reply::of_change(app.sessions.apply_moves(id, advance, sequence, key).await?)))
 }
 
@@ -98,6 +98,6 @@ pub(super) async fn advance<T: Document<Checked = Advance>>(
     sequence: Option<u64>,
     CheckedBody { body, key, mut held }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
-    held.resize(&app.pool, cost::bytes_of_advance(&body)).await?;
+    held.resize(&app.pool, bytes::of_advance(&body)).await?;
     Ok(held.on(reply::of_change(app.sessions.apply_moves(id, body, sequence, key).await?)))
 }

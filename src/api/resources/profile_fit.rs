@@ -15,7 +15,7 @@ use crate::api::problem::Problem;
 use crate::api::query::{CheckedQuery, QueryParams, QueryReader};
 use crate::api::state::App;
 use crate::otlp;
-use crate::simulation::{self, cost};
+use crate::simulation::{self, bytes, cost};
 
 /// How the fit is written.
 #[derive(IntoParams)]
@@ -65,7 +65,7 @@ pub async fn fit_profile(
     let format = Format::chosen(query.format, &headers, &Format::ALL)?;
     let (stop, _guard) = app.pool.deadline();
     let CheckedBody { body: task, mut held, .. } = request;
-    held.resize(&app.pool, cost::bytes_of_profile_fit(&task) + format.bytes(tables::SCAN_ROWS, STRESS_ROW)).await?;
+    held.resize(&app.pool, bytes::of_profile_fit(&task) + format.bytes(tables::SCAN_ROWS, STRESS_ROW)).await?;
     let cost = cost::of_profile_fit(&task);
     let work = move || {
         let reply = otlp::part!("solve").in_scope(|| simulation::fit_profile(task, &stop))?;

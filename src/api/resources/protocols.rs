@@ -6,7 +6,7 @@ use crate::api::extract::CheckedBody;
 use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::TenantApp;
-use crate::simulation::{self, cost};
+use crate::simulation::{self, bytes, cost};
 use stickslip_wire::protocol::ProtocolSubject;
 use stickslip_wire::{ContactDefinition, ProtocolReply, ProtocolRequest};
 
@@ -48,7 +48,7 @@ pub async fn find_protocol(
         ProtocolSubject::Virgin(made, first) => {
             let (stop, _guard) = app.pool.deadline();
             let (definition, setup) = *made;
-            let bytes = cost::bytes_of_protocol(&task) + cost::bytes_of_shape(&definition.profile);
+            let bytes = bytes::of_protocol(&task) + bytes::of_shape(&definition.profile);
             held.resize(&app.pool, bytes).await?;
             let cost = cost::of_protocol(&setup.profile, &task, 0);
             let work = move || {

@@ -10,7 +10,7 @@ use crate::api::problem::Problem;
 use crate::api::reply;
 use crate::api::state::App;
 use crate::otlp;
-use crate::simulation::{self, cost};
+use crate::simulation::{self, bytes, cost};
 use stickslip_wire::{ContactDefinition, SimulateReply, SimulateRequest};
 
 /// Simulate a path
@@ -53,9 +53,9 @@ pub async fn simulate_path(
 ) -> Result<Response, Problem> {
     let (stop, _guard) = app.pool.deadline();
     let (simulation, mut held) = (request.body, request.held);
-    held.resize(&app.pool, cost::bytes_of_simulation(&simulation)).await?;
+    held.resize(&app.pool, bytes::of_simulation(&simulation)).await?;
     let cost = cost::of_simulation(&simulation);
-    let room = cost::length_of_simulation(&simulation);
+    let room = bytes::reply_length(&simulation);
     let solve = move || simulation::simulate(&simulation, &stop);
     let work = move || reply::written_in(room, &otlp::part!("solve").in_scope(solve)?);
     Ok(held.on(reply::json(app.pool.run(cost, work).await??)))

@@ -4,8 +4,8 @@ use serde_json::Value;
 
 use super::Sweep;
 use super::shared::{self, Shared};
-use crate::simulation::cost;
 use crate::simulation::reply_template::reply_template;
+use crate::simulation::{bytes, cost};
 use stickslip_wire::check::{Fault, Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
@@ -66,7 +66,7 @@ impl Sweep {
 
     fn inspect(&mut self, simulation: Simulation, outputs: &mut [Lookup]) {
         self.cost_per_point = self.cost_per_point.max(cost::of_simulation(&simulation));
-        self.bytes = self.bytes.max(cost::bytes_of_simulation(&simulation));
+        self.bytes = self.bytes.max(bytes::of_simulation(&simulation));
         let reply = reply_template(&simulation);
         for (output, found) in self.checked.outputs.iter().zip(outputs) {
             if !matches!(found, Lookup::Number(_)) {
