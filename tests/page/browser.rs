@@ -1,7 +1,7 @@
 //! Chromium without a window, driven over WebDriver.
 
 use std::io::{BufRead as _, BufReader};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -10,6 +10,7 @@ use fantoccini::elements::Element;
 use fantoccini::{Client, ClientBuilder, Locator};
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 /// The variable that names a folder for screenshots.
 const SCREENSHOTS: &str = "PAGE_SCREENSHOTS";
@@ -19,18 +20,21 @@ pub const PATIENCE: Duration = Duration::from_secs(30);
 /// A browser; it ends when it is dropped.
 pub struct Browser {
     driver: Child,
+    /// For the temporary files, which a browser that is killed leaves behind.
+    _folder: TempDir,
     /// The WebDriver session, as an address.
     session: String,
     pub page: Client,
     http: reqwest::Client,
 }
 
-/// A driver and its port. It looks for a free port on IPv6 and then takes the same on IPv4, where it may be in use; then
+/// A driver with its temporary files in a folder, and its port. It looks for a free port on IPv6 and then takes the same on IPv4, where it may be in use; then
 /// the driver ends, and another one is started.
-fn driver() -> (Child, String) {
+fn driver(folder: &Path) -> (Child, String) {
     let started = (0..10).find_map(|_| {
         let mut driver = Command::new("chromedriver")
             .arg("--port=0")
+            .env("TMPDIR", folder)
             .stdout(Stdio::piped())
             .spawn()
             .expect("./check installs chromium and chromedriver");
@@ -50,7 +54,9 @@ fn driver() -> (Child, String) {
 impl Browser {
     /// Starts one with a window of so many pixels.
     pub async fn start(width: u32, height: u32, dark: bool) -> Browser {
-        let (driver, port) = tokio::task::spawn_blocking(driver).await.unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_owned();
+        let (driver, port) = tokio::task::spawn_blocking(move || driver(&path)).await.unwrap();
         let address = format!("http://127.0.0.1:{port}");
         // Without a sandbox, because tests in containers run as root; it sees no page but ours.
         let options = json!({"args": ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu"]});
@@ -62,7 +68,7 @@ impl Browser {
         let mut builder = ClientBuilder::new(HttpConnector::new());
         let page = builder.capabilities(wanted.as_object().unwrap().clone()).connect(&address).await.unwrap();
         let session = format!("{address}/session/{}", page.session_id().await.unwrap().unwrap());
-        let browser = Browser { driver, session, page, http: reqwest::Client::new() };
+        let browser = Browser { driver, _folder: folder, session, page, http: reqwest::Client::new() };
         browser.look(width, height, dark).await;
         browser
     }

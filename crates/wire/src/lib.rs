@@ -23,6 +23,7 @@ pub mod definition;
 pub mod event;
 pub mod fit;
 pub mod fretting;
+pub mod history;
 pub mod job;
 pub mod json_value;
 pub mod limits;
@@ -57,6 +58,7 @@ pub use fretting::{
     BulkCycle, Criteria, FatemiSocie, Findley, FrettingReply, FrettingRequest, Largest, Rating, StrainBased,
     StressPath, SurfaceCriterion, Weighted,
 };
+pub use history::{HistoryItem, HistoryPage, LoopPage};
 pub use job::{JobEndEvent, JobList, JobProgress, JobReply, JobState};
 pub use observation::{
     FrictionEstimate, FrictionReply, Observation, ObservationsReply, ObservationsRequest, ObservedForce, ObservedMove,
@@ -69,8 +71,8 @@ pub use profile_fit::{ProfileFitReply, ProfileFitRequest};
 pub use protocol::{ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest};
 pub use reply::{Accuracy, ContactSummary, Peak, Protocol, Regime, Residual, SolverKind, State, Warning};
 pub use session::{
-    CreateRequest, ForkRequest, HistoryItem, HistoryPage, LoopPage, MoveReply, MoveRequest, NewSession, PathReply,
-    PathRequest, RenameRequest, SessionPage, SessionReply, SessionSummary, StressReply,
+    CreateRequest, ForkRequest, MoveReply, MoveRequest, NewSession, PathReply, PathRequest, RenameRequest, SessionPage,
+    SessionReply, SessionSummary, StressReply,
 };
 pub use simulate::{SimulateReply, SimulateRequest, Solver, Springs, Steps};
 pub use stress::{Field, Fields, Points, Sampling, Stress, StressRequest};

@@ -11,10 +11,8 @@ use uuid::Uuid;
 use stickslip_mechanics::{DEFAULT_TOLERANCE, Setup};
 
 use super::check::{Faults, JsonPath};
-use super::closed_cycle::Cycle;
 use super::definition::{ContactDefinition, Material, Preload};
 use super::limits::{Characters, Tolerance, limits};
-use super::observation::ObservedForce;
 use super::parse::{Document, Rejection};
 use super::path::{Move, Path, Plan};
 use super::profile::Profile;
@@ -244,96 +242,6 @@ pub struct StressReply {
     pub displacement: Option<Vec<Option<f64>>>,
     /// The extrema of the shear stress, if asked for.
     pub residual: Option<Residual>,
-}
-
-/// A move that has been applied.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct HistoryItem {
-    /// Its number, counted from 1.
-    pub sequence: u64,
-    /// The move as it was given.
-    #[serde(rename = "move")]
-    pub step: Move,
-    /// The state after it.
-    pub state: State,
-    /// The cycle that it closed; the outermost if several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub cycle: Option<Cycle>,
-    /// What was measured there, if it is an observation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub observation: Option<ObservedForce>,
-    /// The name of the key that made it. Left out of a move that was made without a key, and where no keys are in use.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub by: Option<String>,
-    /// When it was applied (ISO 8601, UTC).
-    pub at: Timestamp,
-}
-
-/// A page of the history of a contact, oldest first.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct HistoryPage {
-    /// The moves.
-    pub items: Vec<HistoryItem>,
-    /// What to give as `after` for the next page; `null` on the last.
-    pub next: Option<u64>,
-}
-
-/// A page of the hysteresis loop of a contact, oldest first. The first page begins with the virgin contact at sequence zero; the
-/// pages in sequence are the whole loop.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct LoopPage {
-    /// The number of the move that a point belongs to.
-    pub sequence: Vec<u64>,
-    /// Fraction of that move, a pure number: 1 at its end.
-    pub part: Vec<f64>,
-    /// Tangential displacement U of the indenter, m; positive along x.
-    pub displacement: Vec<f64>,
-    /// Tangential force F, N.
-    pub force: Vec<f64>,
-    /// Force that was measured at a point, N, `null` where none was; left out if there is none on the page.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(required = false)]
-    pub observed_force: Vec<Option<f64>>,
-    /// What to give as `after` for the next page; `null` on the last.
-    pub next: Option<u64>,
-}
-
-impl LoopPage {
-    /// A page without moves yet, of those after the move `after`.
-    #[must_use]
-    pub fn after(after: u64) -> LoopPage {
-        let mut page = LoopPage::default();
-        if after == 0 {
-            page.push(0, 1.0, 0.0, 0.0);
-        }
-        page
-    }
-
-    /// Adds a point within a move.
-    pub fn push(&mut self, sequence: u64, part: f64, displacement: f64, force: f64) {
-        self.sequence.push(sequence);
-        self.part.push(part);
-        self.displacement.push(displacement);
-        self.force.push(force);
-    }
-
-    /// Adds the end of a move, with the force that was measured there, N, if one was.
-    pub fn push_end(&mut self, sequence: u64, state: &State, observed_force: Option<f64>) {
-        if observed_force.is_some() || !self.observed_force.is_empty() {
-            self.observed_force.resize(self.force.len(), None);
-            self.observed_force.push(observed_force);
-        }
-        self.push(sequence, 1.0, state.displacement, state.force);
-    }
-
-    /// The force that was measured at a point, N, if one was.
-    #[must_use]
-    pub fn observed_force(&self, point: usize) -> Option<f64> {
-        self.observed_force.get(point).copied().flatten()
-    }
 }
 
 /// A contact that has passed all checks, to be created.
