@@ -17,8 +17,8 @@ const DEPTH: usize = 44;
 const SPARE: usize = 1_024;
 /// Panels that are closer together, over their radius, have no room for points that stand for them.
 const CLOSEST: f64 = 1e-10;
-/// Where x g'(x)/g(x) is larger, rounding of the radius is no longer noise that may be neglected.
-const STEEP: f64 = 1e3;
+/// What the level at a rounded radius may miss of the true one, relative to it, where g is not steep.
+const ROUNDING: f64 = 1e-11;
 /// A larger relative error of the stresses leaves no digit to resolve.
 const WORTHLESS: f64 = 1.0;
 
@@ -117,8 +117,7 @@ impl Resolution<'_> {
         let profile = self.profile;
         let (inner, outer, top) = (ring.inner.radius, ring.outer.radius, ring.outer.level.value() - above);
         // Where g is steep a radius has too few digits for its level: all of it in a contact just wider than a flat.
-        let steep = (outer * profile.slope(outer)).min(STEEP * top);
-        let rounding = 16.0 * f64::EPSILON * (profile.cancellation(outer) * top + steep + ring.depth) + self.slack;
+        let rounding = ROUNDING * (profile.cancellation(outer) * top + ring.depth) + self.slack;
         let beyond = top - profile.level(outer);
         if beyond.abs() > rounding {
             self.panels.push(self.at(outer, share, beyond));
