@@ -200,13 +200,11 @@ impl Shape for RoundedCone {
 
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         let Flank { slope, tip_radius: b, .. } = self.flank;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return self.tip.slope_over_radius_series(place);
-        }
-        // T (2 b/(x + t) + phi)/x.
-        let both = place.power(0.0, 0.5).plus(&place.power(b, 0.5)).inverse().scaled(2.0 * b);
-        let sum = both.plus(&place.angle(b, &place.power(b, -0.5)));
-        Some(place.power(0.0, -0.5).times(&sum).scaled(slope))
+        // T (2 b/(x + t) + phi)/x = T (2 (1 - t/x)/b + phi/x).
+        place.beyond(b).map_or_else(
+            || self.tip.slope_over_radius_series(place),
+            |beyond| Some(beyond.lacking().scaled(2.0 / b).plus(&beyond.angle()).scaled(slope)),
+        )
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {

@@ -4,7 +4,7 @@
 //! positive through t - b phi = b (u - atan u), u = t/b.
 
 use super::angle::{angles, tangent_less_angle};
-use super::power_series::{KinkSeries, Place, Series};
+use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -121,12 +121,11 @@ flat_core!(RoundedPunch {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         // (2 t - b phi)/(R x).
         let b = self.flat_radius;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return Some(place.constant(0.0));
-        }
-        let angle = place.angle(b, &place.power(b, -0.5)).scaled(-b);
-        let sum = place.power(b, 0.5).scaled(2.0).plus(&angle);
-        Some(place.power(0.0, -0.5).times(&sum).scaled(self.edge_radius.recip()))
+        let series = |beyond: BeyondKink<'_>| {
+            let sum = place.constant(2.0).plus(&beyond.lacking().scaled(-2.0)).plus(&beyond.angle().scaled(-b));
+            sum.scaled(self.edge_radius.recip())
+        };
+        Some(place.beyond(b).map_or(place.constant(0.0), series))
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {

@@ -18,6 +18,8 @@
 
 mod kernels;
 
+use std::ops::Range;
+
 #[cfg(test)]
 use super::call_count;
 use super::power_series::{KINK_TERMS, KinkSeries, Place, TERMS};
@@ -26,7 +28,7 @@ use super::{DoubleDouble, Profile, Ring, Span, StressRadius};
 use kernels::{far_kernels, kink_kernels, near_kernels};
 
 /// Radii that are summed for side by side.
-const LANES: usize = 8;
+const LANES: usize = 4;
 /// From this h/D on a piece is near.
 const FAR: f64 = 0.2;
 /// A piece is no wider than this share of its distance from a singularity.
@@ -54,24 +56,41 @@ const BINOMIALS: [f64; TERMS] = {
     }
     binomials
 };
-/// The even numbers.
-const PAIRS: [f64; TERMS / 2] = {
-    let mut pairs = [0.0; TERMS / 2];
+/// int Y^k dY/2 from -1 to 1 for even k, and int Y^(k + 1) dY/2 for odd k, are the entry k/2, rounded up.
+const MEANS: [f64; TERMS] = {
+    let mut means = [1.0; TERMS];
     let mut index = 1;
-    while index < pairs.len() {
-        pairs[index] = pairs[index - 1] + 2.0;
+    while index < TERMS {
+        means[index] = 1.0 / (2 * index + 1) as f64;
         index += 1;
     }
-    pairs
+    means
+};
+/// binom(-1/2, k) int (2 t^2 - 1)^k t^m dt from 0 to 1, a row for each m: by parts (m + 1 + 2 k) I_k = 1 - 2 k I_(k-1).
+const KINK_MEANS: [[f64; TERMS]; 2 * KINK_TERMS] = {
+    let mut means = [[0.0; TERMS]; 2 * KINK_TERMS];
+    let mut m = 0;
+    while m < means.len() {
+        let (mut k, mut last) = (0, 0.0);
+        while k < TERMS {
+            last = (1.0 - 2.0 * k as f64 * last) / (m + 1 + 2 * k) as f64;
+            means[m][k] = BINOMIALS[k] * last;
+            k += 1;
+        }
+        m += 1;
+    }
+    means
 };
 
 /// The pieces of a profile's rings, from the edge inward.
 pub(crate) struct SmoothPieces<'a> {
     profile: &'a Profile,
     pieces: Vec<Piece>,
-    /// The radius, m, that the pieces reach down to, and what is left of a ring inside it, with its weight.
+    /// The coefficients of all of them.
+    terms: Vec<f64>,
+    /// The radius, m, that the pieces reach down to, and what is left of rings inside it, with their weights.
     innermost: f64,
-    tip: Option<(Span, f64)>,
+    tip: Vec<(Span, f64)>,
     /// 1/a^2, m^-2: lengths are in units of the edge.
     unit: f64,
 }
@@ -87,15 +106,15 @@ struct Piece {
     weight: f64,
     near: Near,
     /// The coefficients of z^k for far radii.
-    far: Vec<f64>,
+    far: Range<usize>,
 }
 
-/// What serves near radii.
+/// What serves near radii, among the coefficients.
 enum Near {
     /// c_k.
-    Smooth(Vec<f64>),
+    Smooth(Range<usize>),
     /// g_k times the k-th power of the t where the piece ends, for even and for odd k.
-    Kink { even: Vec<f64>, odd: Vec<f64> },
+    Kink { even: Range<usize>, odd: Range<usize> },
 }
 
 /// Weighted sums of kernels, of their derivatives, and of the sizes of these.
@@ -109,21 +128,24 @@ impl<'a> SmoothPieces<'a> {
     /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such series, or
     /// levels at a vertical edge.
     pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
-        let edge = rings.last()?.0.outer.radius;
-        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
-        let mut made = SmoothPieces { profile, pieces: Vec::new(), innermost, tip: None, unit: 1.0 / (edge * edge) };
-        for (ring, weight) in rings.iter().rev() {
-            if profile.edge_depth(ring) > 0.0 {
-                return None;
-            }
-            made.cut(ring, *weight)?;
-        }
+        let mut made = SmoothPieces::within(profile, rings.last()?.0.outer.radius, least, rings.len());
+        rings.iter().rev().try_for_each(|(ring, weight)| made.add(ring, *weight))?;
         Some(made)
     }
 
+    /// None as yet, of so many rings inside an edge at a radius, m.
+    pub(super) fn within(profile: &'a Profile, edge: f64, least: f64, rings: usize) -> SmoothPieces<'a> {
+        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
+        let (pieces, terms) = (Vec::with_capacity(2 * rings), Vec::with_capacity(2 * TERMS * rings));
+        SmoothPieces { profile, pieces, terms, innermost, tip: Vec::new(), unit: 1.0 / (edge * edge) }
+    }
+
     /// Adds the pieces of a ring, from its outer end inward.
-    fn cut(&mut self, ring: &Ring, weight: f64) -> Option<()> {
+    pub(super) fn add(&mut self, ring: &Ring, weight: f64) -> Option<()> {
         let profile = self.profile;
+        if profile.edge_depth(ring) > 0.0 {
+            return None;
+        }
         let plain = (ring.outer.square - ring.inner.square).value();
         let thin = plain <= THIN * ring.outer.square.value();
         let (mut outer, mut radius) = (ring.outer.square, ring.outer.radius);
@@ -147,9 +169,10 @@ impl<'a> SmoothPieces<'a> {
                     self.smooth((from, outer), (gap - reach, false), (reach, weight))?;
                 }
                 let KinkSeries { even, odd } = profile.kink_series(kink, top.sqrt())?;
-                let (even, odd) = (counted(&even, 1.0), counted(&odd, 1.0));
-                let far = kink_moments(&even, &odd, (top * self.unit).sqrt());
-                self.push((base, from), (top, thin && gap <= reach), weight, (Near::Kink { even, odd }, far));
+                let (even, odd) = (counted(&even), counted(&odd));
+                let far = kink_moments(even, odd, (top * self.unit).sqrt());
+                let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
+                self.push((base, from), (top, thin && gap <= reach), weight, (near, far));
             } else {
                 let above = if kink > 0.0 || !profile.smooth_tip() { above } else { f64::INFINITY };
                 self.smooth((low, outer), (gap, thin), (above, weight))?;
@@ -158,7 +181,7 @@ impl<'a> SmoothPieces<'a> {
         }
         if outer > ring.inner.square {
             let left = Span::of(ring, 0.0, 0.0);
-            self.tip = left.below(outer, outer.value().sqrt()).map(|span| (span, weight));
+            self.tip.extend(left.below(outer, outer.value().sqrt()).map(|span| (span, weight)));
         }
         Some(())
     }
@@ -171,11 +194,12 @@ impl<'a> SmoothPieces<'a> {
         (above, weight): (f64, f64),
     ) -> Option<()> {
         let growth = gap / above;
-        let cuts = (growth.ln_1p() / WIDEST.ln_1p()).ceil().max(1.0);
-        if cuts.is_nan() || cuts > MOST_CUTS {
+        let steps = if growth <= WIDEST { 0.0 } else { growth.ln_1p() };
+        let cuts = (steps / WIDEST.ln_1p()).ceil().max(1.0);
+        if growth.is_nan() || cuts > MOST_CUTS {
             return None;
         }
-        let step = growth.ln_1p() / cuts;
+        let step = steps / cuts;
         let mut outer = high;
         for index in (0..cuts as u32).rev() {
             let last = index == 0;
@@ -188,12 +212,21 @@ impl<'a> SmoothPieces<'a> {
             // Without a singularity q is a polynomial, whose terms end by themselves.
             let terms = if below < f64::INFINITY { TERMS.min(terms as usize) } else { TERMS };
             let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
-            let near = counted(&self.profile.slope_over_radius_series(&place)?.coefficients, self.unit.sqrt().recip());
-            let far = moments(&near, half * self.unit);
-            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (Near::Smooth(near), far));
+            let series = self.profile.slope_over_radius_series(&place)?;
+            let (series, edge) = (counted(&series.coefficients), self.unit.sqrt().recip());
+            let far = moments(series, half * self.unit * edge);
+            let near = Near::Smooth(self.keep(series, edge));
+            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (near, far));
             outer = inner;
         }
         Some(())
+    }
+
+    /// Keeps coefficients, each times `unit`.
+    fn keep(&mut self, series: &[f64], unit: f64) -> Range<usize> {
+        let start = self.terms.len();
+        self.terms.extend(series.iter().map(|c| unit * c));
+        start..self.terms.len()
     }
 
     fn push(
@@ -201,8 +234,9 @@ impl<'a> SmoothPieces<'a> {
         (inner, outer): (DoubleDouble, DoubleDouble),
         (gap, thin): (f64, bool),
         weight: f64,
-        (near, far): (Near, Vec<f64>),
+        (near, far): (Near, [f64; TERMS]),
     ) {
+        let far = self.keep(&far, 1.0);
         let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);
         self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
     }
@@ -225,10 +259,16 @@ impl<'a> SmoothPieces<'a> {
         sums
     }
 
+    /// The sum at one radius.
+    pub(super) fn sum(&self, at: &StressRadius) -> f64 {
+        let [kernel] = self.lanes::<1, false>(&[at.square]).kernels;
+        kernel + self.in_tip(at, |span| Shape::kernel(self.profile, at, span))
+    }
+
     /// A share of what lies inside all pieces, for radii there.
     fn in_tip(&self, at: &StressRadius, share: impl Fn(&Span) -> f64) -> f64 {
-        let tip = self.tip.as_ref().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
-        tip.map_or(0.0, |(span, weight)| weight * share(span))
+        let tip = self.tip.iter().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
+        tip.map(|(span, weight)| weight * share(span)).sum()
     }
 
     /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told
@@ -275,14 +315,17 @@ impl<'a> SmoothPieces<'a> {
             let half = 0.5 * piece.gap;
             let shares: [f64; N] = below.map(|below| half / (below + half));
             let distant = shares.map(|z| z > 0.0 && z <= FAR);
-            let far = || far_kernels::<N, SLOPES>(&piece.far, half, &shares);
+            let far = || far_kernels::<N, SLOPES>(&self.terms[piece.far.clone()], half, &shares);
             let (kernel, slope) = if distant.iter().all(|&distant| distant) {
                 far()
             } else {
                 let above = piece.above(&below, excess);
+                let terms = |range: &Range<usize>| &self.terms[range.clone()];
                 let near = match &piece.near {
-                    Near::Smooth(series) => near_kernels::<N, SLOPES>(series, piece.gap, &below, &above),
-                    Near::Kink { even, odd } => kink_kernels::<N, SLOPES>(even, odd, piece.gap, &below, &above),
+                    Near::Smooth(series) => near_kernels::<N, SLOPES>(terms(series), piece.gap, &below, &above),
+                    Near::Kink { even, odd } => {
+                        kink_kernels::<N, SLOPES>(terms(even), terms(odd), piece.gap, &below, &above)
+                    }
                 };
                 if distant.iter().any(|&distant| distant) {
                     let far = far();
@@ -327,46 +370,36 @@ fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a > b { a } else { b }
 }
 
-/// The terms of a series that count, each times `unit`.
-fn counted(series: &[f64], unit: f64) -> Vec<f64> {
+/// The terms of a series that count.
+fn counted(series: &[f64]) -> &[f64] {
     let size = series.iter().fold(0.0f64, |size, c| size.max(c.abs()));
     let last = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
-    series[..last].iter().map(|c| unit * c).collect()
-}
-
-/// binom(-1/2, k) times what `moment` gives for k.
-fn binomials(mut moment: impl FnMut(usize) -> f64) -> Vec<f64> {
-    (0..TERMS).map(|k| BINOMIALS[k] * moment(k)).collect()
+    &series[..last]
 }
 
 /// The coefficients of z^k of a smooth piece: (h/2) binom(-1/2, k) m_k.
-fn moments(series: &[f64], half: f64) -> Vec<f64> {
-    // m_k for even and for odd k, side by side.
+fn moments(series: &[f64], half: f64) -> [f64; TERMS] {
+    // m_k/2 for even and for odd k, side by side.
     let mut sums = [[0.0; TERMS / 2]; 2];
-    for (j, c) in series.iter().enumerate() {
-        let odd = j % 2;
-        let first = (j + odd + 1) as f64;
-        for (index, sum) in sums[odd].iter_mut().enumerate() {
-            *sum += c / (first + PAIRS[index]);
+    for (parity, sums) in sums.iter_mut().enumerate() {
+        for (c, means) in series.iter().skip(parity).step_by(2).zip(MEANS[parity..].windows(TERMS / 2)) {
+            for index in 0..TERMS / 2 {
+                sums[index] += c * means[index];
+            }
         }
     }
-    binomials(|k| half * sums[k % 2][k / 2])
+    std::array::from_fn(|k| half * BINOMIALS[k] * sums[k % 2][k / 2])
 }
 
 /// Those of a piece at a kink that ends at the t `top`: in units of that, Y = 2 t^2 - 1.
-fn kink_moments(even: &[f64], odd: &[f64], top: f64) -> Vec<f64> {
-    let mut product = vec![0.0; 2 * (KINK_TERMS + TERMS)];
+fn kink_moments(even: &[f64], odd: &[f64], top: f64) -> [f64; TERMS] {
+    let mut sums = [0.0; TERMS];
     for (terms, first) in [(even, 0), (odd, 1)] {
-        product[first..].iter_mut().step_by(2).zip(terms).for_each(|(power, c)| *power = *c);
-    }
-    binomials(|k| {
-        if k > 0 {
-            for power in (0..product.len()).rev() {
-                product[power] = 2.0 * power.checked_sub(2).map_or(0.0, |below| product[below]) - product[power];
-            }
+        for (c, means) in terms.iter().zip(KINK_MEANS.iter().skip(first).step_by(2)) {
+            sums.iter_mut().zip(means).for_each(|(sum, mean)| *sum += top * c * mean);
         }
-        top * product.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum::<f64>()
-    })
+    }
+    sums
 }
 
 #[cfg(test)]

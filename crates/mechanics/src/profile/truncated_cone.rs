@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::angle::angles;
-use super::power_series::{KinkSeries, Place, Series};
+use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -107,12 +107,8 @@ flat_core!(TruncatedCone {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         // T (phi + b/t)/x.
         let b = self.flat_radius;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return Some(place.constant(0.0));
-        }
-        let over_t = place.power(b, -0.5);
-        let sum = place.angle(b, &over_t).plus(&over_t.scaled(b));
-        Some(place.power(0.0, -0.5).times(&sum).scaled(self.slope))
+        let series = |beyond: BeyondKink<'_>| beyond.inverse.scaled(b).plus(&beyond.angle()).scaled(self.slope);
+        Some(place.beyond(b).map_or(place.constant(0.0), series))
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {
