@@ -25,8 +25,8 @@ pub(super) enum EndBehaviour {
     InverseRoot(f64),
     /// It is infinite as the logarithm of the distance, or a power nearly so.
     Logarithm,
-    /// It is infinite as the inverse of the distance.
-    Inverse,
+    /// It is infinite as the inverse of the distance; the distance of the next kink beyond the end, in squares, m^2, or zero.
+    Inverse(f64),
 }
 
 /// An interval of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end
@@ -71,7 +71,7 @@ impl SmoothInterval {
         match end {
             EndBehaviour::Smooth | EndBehaviour::Logarithm => 1.0,
             EndBehaviour::InverseRoot(_) => (-0.5 * place.abs()).exp(),
-            EndBehaviour::Inverse => (-place.abs()).exp(),
+            EndBehaviour::Inverse(_) => (-place.abs()).exp(),
         }
     }
 
@@ -99,7 +99,7 @@ impl SmoothInterval {
         if self.one_change {
             // As many as are found side by side.
             let unknown = end == EndBehaviour::Logarithm && sign.abs() <= 0.0;
-            return [1.0, 3.0, 9.0].into_iter().chain(unknown.then_some(floor.max(10.0))).collect();
+            return [3.0].into_iter().chain(unknown.then_some(floor.max(4.0))).collect();
         }
         match end {
             EndBehaviour::Smooth => vec![0.6, 1.6, 4.0],
@@ -113,7 +113,7 @@ impl SmoothInterval {
                 let strides = std::iter::successors(Some(0.25), |place| Some(place * KNOT_STRIDE));
                 strides.take_while(|&place| place < floor).chain([floor]).collect()
             }
-            EndBehaviour::Inverse => by_steps(1.0, floor),
+            EndBehaviour::Inverse(beyond) => by_steps(1.0, (half / (KINK_FLOOR * beyond)).ln().clamp(0.0, floor)),
         }
     }
 }

@@ -22,6 +22,8 @@ const SPARSE_ABOVE: usize = 100;
 /// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself. The
 /// stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
+/// A step of interpolation this short, likewise, is one that leaves less than this resolution.
+const QUICK_STEP: f64 = 1e-7;
 /// After this many steps towards a root every second one halves the interval.
 const QUICK_STEPS: usize = 12;
 
@@ -78,7 +80,8 @@ impl Contact {
             let begins = knots.partition_point(|&knot| knot <= from.radius);
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
             let sparse = ends - begins > SPARSE_ABOVE;
-            let within = knots[begins..ends].iter().map(|&knot| {
+            let within = (begins..ends).map(|index| {
+                let knot = knots[index];
                 let at = StressRadius::new(knot);
                 let rim = singular.contains(&knot);
                 // At the same distance on either side a logarithm has the same value: one sample serves both.
@@ -92,7 +95,9 @@ impl Contact {
                 };
                 if rim && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
-                    (at, (EndBehaviour::Inverse, -infinite), (EndBehaviour::Inverse, infinite))
+                    let next = if index + 1 < ends { DoubleDouble::square_of(knots[index + 1]) } else { to.square };
+                    let end = EndBehaviour::Inverse((next - at.square).value());
+                    (at, (end, -infinite), (end, infinite))
                 } else {
                     (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
@@ -141,7 +146,7 @@ impl Contact {
         let sign = derivative.at(from);
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
-            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse }
+            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse(0.0) }
         } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
             return (EndBehaviour::Logarithm, 0.0);
         } else {
@@ -247,10 +252,12 @@ impl Search<'_, '_, '_> {
         let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
         let mut across = Sample { place: from.place.max(-MAX_PLACE), value: known(from) };
         let mut share = 0.5;
+        let mut quick = false;
         let sign = from.value.signum();
         let mut last_is_low = false;
         for step in 0.. {
-            let next = self.sample(interval, last.place + share * (across.place - last.place));
+            let before = last.place;
+            let next = self.sample(interval, before + share * (across.place - before));
             if next.value.abs() <= 0.0 {
                 // Beyond this it is lost in round-off.
                 (last, across) = (next, next);
@@ -261,6 +268,12 @@ impl Search<'_, '_, '_> {
             (last, last_is_low) = (next, low);
             let width = (across.place - last.place).abs();
             let least = RESOLUTION * (1.0 + last.place.abs());
+            let stepped = (next.place - before).abs();
+            if quick && stepped <= QUICK_STEP * (1.0 + last.place.abs()) {
+                // What is left is less than the square of this step.
+                across = last;
+                break;
+            }
             if width <= 2.0 * least {
                 break;
             }
@@ -268,6 +281,7 @@ impl Search<'_, '_, '_> {
             let quadratic = if halve { None } else { inverse_quadratic(last, across, third) };
             // No step is so short that it could leave the root just beyond its end.
             share = quadratic.map_or(0.5, |share| share.clamp(least / width, 1.0 - least / width));
+            quick = quadratic.is_some();
         }
         let (low, high) = if last_is_low { (last.place, across.place) } else { (across.place, last.place) };
         self.sign = -sign;
