@@ -47,11 +47,11 @@ pub(super) struct BeyondKink<'a> {
 }
 
 impl Place {
-    /// (x^2)^power.
-    pub(super) fn power(&self, power: f64) -> Series {
+    /// A multiple of (x^2)^power.
+    pub(super) fn power(&self, factor: f64, power: f64) -> Series {
         let middle = self.middle.value();
         let share = self.half / middle;
-        self.by(middle.powf(power), |k, [last, _]| (power - k) * share * last)
+        self.by(factor * middle.powf(power), |k, [last, _]| (power - k) * share * last)
     }
 
     /// A constant.
@@ -113,9 +113,12 @@ impl Series {
         sum
     }
 
-    /// A multiple.
-    pub(super) fn scaled(&self, factor: f64) -> Series {
-        Series { coefficients: self.coefficients.map(|a| factor * a) }
+    /// A constant and multiples of series.
+    pub(super) fn sum<const N: usize>(constant: f64, parts: [(f64, &Series); N]) -> Series {
+        let term = |k| parts.iter().map(|(factor, series)| factor * series.coefficients[k]).sum();
+        let mut sum = Series { coefficients: std::array::from_fn(term) };
+        sum.coefficients[0] += constant;
+        sum
     }
 }
 

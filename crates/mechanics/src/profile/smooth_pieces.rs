@@ -207,10 +207,9 @@ impl<'a> SmoothPieces<'a> {
             let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
             let half = 0.5 * gap;
             let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
-            // Each term is smaller than the one before by half over half + below.
-            let terms = (-NEGLIGIBLE.ln() / (below / half).ln_1p()).ceil() + 1.0;
-            // Without a singularity q is a polynomial, whose terms end by themselves.
-            let terms = if below < f64::INFINITY { TERMS.min(terms as usize) } else { TERMS };
+            // Each term is smaller than the one before by this. Without a singularity q is a polynomial, whose terms end by themselves.
+            let ratio = half / (half + below);
+            let terms = if ratio > 0.0 { counting(ratio).min(TERMS) } else { TERMS };
             let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
             let series = self.profile.slope_over_radius_series(&place)?;
             let (series, edge) = (counted(&series.coefficients), self.unit.sqrt().recip());
@@ -370,9 +369,16 @@ fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a > b { a } else { b }
 }
 
-/// The terms of a series that count.
+/// How many powers of a ratio below one count. The logarithm is taken from the bits: what a number has beyond a power of two is no more
+/// than 0.0861 below that of its own.
+fn counting(ratio: f64) -> usize {
+    let logarithm = ratio.to_bits() as f64 / (1_u64 << 52) as f64 - (1023.0 - 0.0861);
+    (NEGLIGIBLE.log2() / logarithm) as usize + 2
+}
+
+/// The terms of a series that count beside the first two.
 fn counted(series: &[f64]) -> &[f64] {
-    let size = series.iter().fold(0.0f64, |size, c| size.max(c.abs()));
+    let size = series[0].abs().max(series[1].abs());
     let last = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
     &series[..last]
 }

@@ -115,10 +115,10 @@ impl SmoothCoordinate for TruncatedSphere {
 flat_core!(TruncatedSphere {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         // (2 x^2 - b^2)/(R x t) = (2 t/x + b^2/(x t))/R.
-        let b = self.flat_radius;
+        let (b, curvature) = (self.flat_radius, self.curvature_radius.recip());
         let series = |beyond: BeyondKink<'_>| {
-            let sum = place.constant(2.0).plus(&beyond.lacking().scaled(-2.0)).plus(&beyond.inverse.scaled(b * b));
-            sum.scaled(self.curvature_radius.recip())
+            let parts = [(-2.0 * curvature, &beyond.lacking()), (b * b * curvature, &beyond.inverse)];
+            Series::sum(2.0 * curvature, parts)
         };
         Some(place.beyond(b).map_or(place.constant(0.0), series))
     }

@@ -1,18 +1,17 @@
 //! The kernel of one piece at several radii side by side, in the three forms of [`super`], and its derivative with respect to r^2.
 
 use super::super::logarithm::ln_1p;
-use super::{FAR, MEANS, NEGLIGIBLE};
+use super::{FAR, MEANS, counting};
 
 /// Kernels, and their derivatives with respect to r^2 in units of the edge.
 pub(super) type Kernels<const N: usize> = ([f64; N], [f64; N]);
 
 pub(super) fn far_kernels<const N: usize, const SLOPES: bool>(far: &[f64], half: f64, shares: &[f64; N]) -> Kernels<N> {
     let largest = shares.iter().copied().fold(0.0, f64::max).clamp(f64::MIN_POSITIVE, FAR);
-    let terms = (NEGLIGIBLE.log2() / log2_above(largest)) as usize + 2;
     // Even and odd powers, so that neither sum waits for the other.
     let (mut sums, mut slopes) = ([[0.0; N]; 2], [[0.0; N]; 2]);
     let square = shares.map(|z| z * z);
-    for pair in far[..far.len().min(terms.next_multiple_of(2))].rchunks_exact(2) {
+    for pair in far[..far.len().min(counting(largest).next_multiple_of(2))].rchunks_exact(2) {
         for (parity, term) in pair.iter().enumerate() {
             for lane in 0..N {
                 if SLOPES {
@@ -36,12 +35,6 @@ pub(super) fn far_kernels<const N: usize, const SLOPES: bool>(far: &[f64], half:
         }
     }
     (kernels, by_square)
-}
-
-/// The logarithm of a positive number to the base 2, or a little more: what the number has beyond a power of two is no more than 0.0861
-/// below its own.
-fn log2_above(x: f64) -> f64 {
-    x.to_bits() as f64 / (1_u64 << 52) as f64 - (1023.0 - 0.0861)
 }
 
 pub(super) fn near_kernels<const N: usize, const SLOPES: bool>(
