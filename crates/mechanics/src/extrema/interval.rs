@@ -6,7 +6,9 @@ use super::super::profile::StressRadius;
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
 /// derivative has structure of every size from the whole interval down to the ring's depth.
 const KINK_STEP: f64 = 0.511;
-/// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
+/// The same towards a rim, whose inverse of the distance outweighs the kinks beyond sooner than a root does.
+const RIM_STEP: f64 = 1.4;
+/// Sampling ends this far below the depth of the ring beyond, where the kink or rim itself outweighs all else.
 const KINK_FLOOR: f64 = 1e-3;
 /// The same limit where the profile makes the derivative infinite: at this part of the square of the radius, half that
 /// of the radius.
@@ -113,7 +115,7 @@ impl SmoothInterval {
                 let strides = std::iter::successors(Some(0.25), |place| Some(place * KNOT_STRIDE));
                 strides.take_while(|&place| place < floor).chain([floor]).collect()
             }
-            EndBehaviour::Inverse(beyond) => by_steps(1.0, (half / (KINK_FLOOR * beyond)).ln().clamp(0.0, floor)),
+            EndBehaviour::Inverse(beyond) => by_steps(RIM_STEP, (half / (KINK_FLOOR * beyond)).ln().clamp(0.0, floor)),
         }
     }
 }

@@ -22,8 +22,8 @@ const SPARSE_ABOVE: usize = 100;
 /// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself. The
 /// stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
-/// A step of interpolation this short, likewise, is one that leaves less than this resolution.
-const QUICK_STEP: f64 = 1e-7;
+/// A step of interpolation this short, likewise, ends at the root: its error is of third order, in steps of which this is the shortest.
+const LAST_STEP: f64 = 1e-7;
 /// After this many steps towards a root every second one halves the interval.
 const QUICK_STEPS: usize = 12;
 
@@ -207,7 +207,8 @@ impl Search<'_, '_, '_> {
         for (index, pair) in samples.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
-                self.find_root(interval, before, after);
+                let beyond = samples.get(index + 2).copied().filter(|sample| sample.place.is_finite());
+                self.find_root(interval, before, after, beyond);
             } else if !interval.one_change
                 && let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
@@ -217,8 +218,8 @@ impl Search<'_, '_, '_> {
                 && let Some(dip) = self.dip(interval, before, next)
             {
                 // Two roots between samples of one sign.
-                self.find_root(interval, before, dip);
-                self.find_root(interval, dip, next);
+                self.find_root(interval, before, dip, None);
+                self.find_root(interval, dip, next, None);
             }
         }
     }
@@ -245,19 +246,17 @@ impl Search<'_, '_, '_> {
     }
 
     /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving (Chandrupatla
-    /// 1997). There is no value at an end that is infinitely far.
-    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample) {
+    /// 1997). There is no value at an end that is infinitely far. A sample `beyond` them, if there is one, is for the first step.
+    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample, beyond: Option<Sample>) {
         let known = |sample: Sample| if sample.place.is_finite() { sample.value } else { f64::NAN };
         // The last place and the one across the root from it.
         let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
         let mut across = Sample { place: from.place.max(-MAX_PLACE), value: known(from) };
-        let mut share = 0.5;
-        let mut quick = false;
+        let mut share = beyond.and_then(|beyond| inverse_quadratic(last, across, beyond)).unwrap_or(0.5);
         let sign = from.value.signum();
         let mut last_is_low = false;
         for step in 0.. {
-            let before = last.place;
-            let next = self.sample(interval, before + share * (across.place - before));
+            let next = self.sample(interval, last.place + share * (across.place - last.place));
             if next.value.abs() <= 0.0 {
                 // Beyond this it is lost in round-off.
                 (last, across) = (next, next);
@@ -268,20 +267,18 @@ impl Search<'_, '_, '_> {
             (last, last_is_low) = (next, low);
             let width = (across.place - last.place).abs();
             let least = RESOLUTION * (1.0 + last.place.abs());
-            let stepped = (next.place - before).abs();
-            if quick && stepped <= QUICK_STEP * (1.0 + last.place.abs()) {
-                // What is left is less than the square of this step.
-                across = last;
-                break;
-            }
             if width <= 2.0 * least {
                 break;
             }
             let halve = step > QUICK_STEPS && step % 2 == 0;
             let quadratic = if halve { None } else { inverse_quadratic(last, across, third) };
+            if let Some(share) = quadratic.filter(|share| share * width <= LAST_STEP * (1.0 + last.place.abs())) {
+                last.place += share * (across.place - last.place);
+                across = last;
+                break;
+            }
             // No step is so short that it could leave the root just beyond its end.
             share = quadratic.map_or(0.5, |share| share.clamp(least / width, 1.0 - least / width));
-            quick = quadratic.is_some();
         }
         let (low, high) = if last_is_low { (last.place, across.place) } else { (across.place, last.place) };
         self.sign = -sign;

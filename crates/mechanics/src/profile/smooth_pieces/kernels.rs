@@ -1,7 +1,8 @@
 //! The kernel of one piece at several radii side by side, in the three forms of [`super`], and its derivative with respect to r^2.
 
 use super::super::logarithm::ln_1p;
-use super::{FAR, MEANS, counting};
+use super::moments::MEANS;
+use super::{FAR, counting};
 
 /// Kernels, and their derivatives with respect to r^2 in units of the edge.
 pub(super) type Kernels<const N: usize> = ([f64; N], [f64; N]);
