@@ -146,7 +146,7 @@ impl<'a> SmoothPieces<'a> {
             (outer, radius) = (low, kink);
         }
         if outer > ring.inner.square {
-            let left = Span::of(ring, 0.0, 0.0);
+            let left = Span::of(ring, profile.gap_of(ring), 0.0);
             self.tip.extend(left.below(outer, outer.value().sqrt()).map(|span| (span, weight)));
         }
         Some(())
