@@ -6,7 +6,9 @@ use super::super::profile::StressRadius;
 /// Towards a kink of the slip history each distance is smaller by this factor, as a logarithm: beneath a thin ring the
 /// derivative has structure of every size from the whole interval down to the ring's depth.
 const KINK_STEP: f64 = 0.511;
-/// Sampling ends this far below the depth of the ring beyond, where the kink itself outweighs all else.
+/// The same towards a rim, whose inverse of the distance outweighs the kinks beyond sooner than a root does.
+const RIM_STEP: f64 = 1.4;
+/// Sampling ends this far below the depth of the ring beyond, where the kink or rim itself outweighs all else.
 const KINK_FLOOR: f64 = 1e-3;
 /// The same limit where the profile makes the derivative infinite: at this part of the square of the radius, half that
 /// of the radius.
@@ -25,8 +27,8 @@ pub(super) enum EndBehaviour {
     InverseRoot(f64),
     /// It is infinite as the logarithm of the distance, or a power nearly so.
     Logarithm,
-    /// It is infinite as the inverse of the distance.
-    Inverse,
+    /// It is infinite as the inverse of the distance; the distance of the next kink beyond the end, in squares, m^2, or zero.
+    Inverse(f64),
 }
 
 /// An interval of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner end
@@ -71,7 +73,7 @@ impl SmoothInterval {
         match end {
             EndBehaviour::Smooth | EndBehaviour::Logarithm => 1.0,
             EndBehaviour::InverseRoot(_) => (-0.5 * place.abs()).exp(),
-            EndBehaviour::Inverse => (-place.abs()).exp(),
+            EndBehaviour::Inverse(_) => (-place.abs()).exp(),
         }
     }
 
@@ -99,7 +101,7 @@ impl SmoothInterval {
         if self.one_change {
             // As many as are found side by side.
             let unknown = end == EndBehaviour::Logarithm && sign.abs() <= 0.0;
-            return [1.0, 3.0, 9.0].into_iter().chain(unknown.then_some(floor.max(10.0))).collect();
+            return [3.0].into_iter().chain(unknown.then_some(floor.max(4.0))).collect();
         }
         match end {
             EndBehaviour::Smooth => vec![0.6, 1.6, 4.0],
@@ -113,7 +115,7 @@ impl SmoothInterval {
                 let strides = std::iter::successors(Some(0.25), |place| Some(place * KNOT_STRIDE));
                 strides.take_while(|&place| place < floor).chain([floor]).collect()
             }
-            EndBehaviour::Inverse => by_steps(1.0, floor),
+            EndBehaviour::Inverse(beyond) => by_steps(RIM_STEP, (half / (KINK_FLOOR * beyond)).ln().clamp(0.0, floor)),
         }
     }
 }

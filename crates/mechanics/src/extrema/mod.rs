@@ -22,6 +22,8 @@ const SPARSE_ABOVE: usize = 100;
 /// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much of itself. The
 /// stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
+/// A step of interpolation this short, likewise, ends at the root: its error is of third order, in steps of which this is the shortest.
+const LAST_STEP: f64 = 1e-7;
 /// After this many steps towards a root every second one halves the interval.
 const QUICK_STEPS: usize = 12;
 
@@ -78,7 +80,8 @@ impl Contact {
             let begins = knots.partition_point(|&knot| knot <= from.radius);
             let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
             let sparse = ends - begins > SPARSE_ABOVE;
-            let within = knots[begins..ends].iter().map(|&knot| {
+            let within = (begins..ends).map(|index| {
+                let knot = knots[index];
                 let at = StressRadius::new(knot);
                 let rim = singular.contains(&knot);
                 // At the same distance on either side a logarithm has the same value: one sample serves both.
@@ -92,7 +95,9 @@ impl Contact {
                 };
                 if rim && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
-                    (at, (EndBehaviour::Inverse, -infinite), (EndBehaviour::Inverse, infinite))
+                    let next = if index + 1 < ends { DoubleDouble::square_of(knots[index + 1]) } else { to.square };
+                    let end = EndBehaviour::Inverse((next - at.square).value());
+                    (at, (end, -infinite), (end, infinite))
                 } else {
                     (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
@@ -141,7 +146,7 @@ impl Contact {
         let sign = derivative.at(from);
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
-            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse }
+            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse(0.0) }
         } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
             return (EndBehaviour::Logarithm, 0.0);
         } else {
@@ -202,7 +207,8 @@ impl Search<'_, '_, '_> {
         for (index, pair) in samples.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
             if before.value * after.value < 0.0 {
-                self.find_root(interval, before, after);
+                let beyond = samples.get(index + 2).copied().filter(|sample| sample.place.is_finite());
+                self.find_root(interval, before, after, beyond);
             } else if !interval.one_change
                 && let Some(&next) = samples.get(index + 2)
                 && after.value * next.value > 0.0
@@ -212,8 +218,8 @@ impl Search<'_, '_, '_> {
                 && let Some(dip) = self.dip(interval, before, next)
             {
                 // Two roots between samples of one sign.
-                self.find_root(interval, before, dip);
-                self.find_root(interval, dip, next);
+                self.find_root(interval, before, dip, None);
+                self.find_root(interval, dip, next, None);
             }
         }
     }
@@ -240,13 +246,13 @@ impl Search<'_, '_, '_> {
     }
 
     /// Finds the change of sign between two samples: inverse quadratic interpolation where it is safe, else halving (Chandrupatla
-    /// 1997). There is no value at an end that is infinitely far.
-    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample) {
+    /// 1997). There is no value at an end that is infinitely far. A sample `beyond` them, if there is one, is for the first step.
+    fn find_root(&mut self, interval: &SmoothInterval, from: Sample, to: Sample, beyond: Option<Sample>) {
         let known = |sample: Sample| if sample.place.is_finite() { sample.value } else { f64::NAN };
         // The last place and the one across the root from it.
         let mut last = Sample { place: to.place.min(MAX_PLACE), value: known(to) };
         let mut across = Sample { place: from.place.max(-MAX_PLACE), value: known(from) };
-        let mut share = 0.5;
+        let mut share = beyond.and_then(|beyond| inverse_quadratic(last, across, beyond)).unwrap_or(0.5);
         let sign = from.value.signum();
         let mut last_is_low = false;
         for step in 0.. {
@@ -266,6 +272,11 @@ impl Search<'_, '_, '_> {
             }
             let halve = step > QUICK_STEPS && step % 2 == 0;
             let quadratic = if halve { None } else { inverse_quadratic(last, across, third) };
+            if let Some(share) = quadratic.filter(|share| share * width <= LAST_STEP * (1.0 + last.place.abs())) {
+                last.place += share * (across.place - last.place);
+                across = last;
+                break;
+            }
             // No step is so short that it could leave the root just beyond its end.
             share = quadratic.map_or(0.5, |share| share.clamp(least / width, 1.0 - least / width));
         }

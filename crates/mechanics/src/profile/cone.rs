@@ -108,7 +108,7 @@ impl Shape for Cone {
     }
 
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        Some(place.power(0.0, -0.5).scaled(self.slope(1.0)))
+        Some(place.power(self.slope(1.0), -0.5))
     }
 
     fn surface_slope(&self, _r: f64) -> f64 {

@@ -14,6 +14,8 @@ use super::{Profile, Ring, StressRadius, gauss};
 const PANEL_TERMS: usize = 8;
 /// Fewer kernels than this, rings times radii, are summed sooner than clusters are made.
 pub(super) const FEW: usize = 256;
+/// Few extrema are as near to the centre as this part of the radius of the core.
+const CORE: f64 = 0.1;
 /// A ring is near if it is nearer than this, in squares of radii over that of the edge: a smaller difference has lost digits.
 const NEAR: f64 = 1e-3;
 
@@ -44,7 +46,8 @@ impl Profile {
 impl Profile {
     /// The derivatives of the weighted sum of kernels, if there is a way that is quicker than ring by ring.
     pub(crate) fn kernel_slopes<'a>(&'a self, rings: &[(Ring, f64)]) -> Option<KernelSlopes<'a>> {
-        let pieces = SmoothPieces::new(self, rings, 0.0).map(KernelSlopes::Pieces);
+        let core = rings.first().map_or(0.0, |(ring, _)| ring.outer.radius);
+        let pieces = SmoothPieces::new(self, rings, CORE * core).map(KernelSlopes::Pieces);
         pieces.or_else(|| match self {
             Profile::Tabulated(table) => WeightedPanels::new(table, rings).map(KernelSlopes::Panels),
             _ => None,
@@ -85,6 +88,40 @@ impl KernelSlopes<'_> {
                 let slope = |at| if goes_on(PANEL_TERMS) { panels.slope(at) } else { (0.0, 0.0) };
                 radii.iter().map(slope).collect()
             }
+        }
+    }
+}
+
+/// The weighted sum of the kernels of rings that are added one by one, from an edge inward.
+pub(crate) struct InwardSum<'a> {
+    profile: &'a Profile,
+    rings: Vec<(Ring, f64)>,
+    /// What is quicker than the rings, if anything.
+    pieces: Option<SmoothPieces<'a>>,
+}
+
+impl<'a> InwardSum<'a> {
+    /// No ring as yet, of about so many inside an edge at a radius, m.
+    pub(crate) fn new(profile: &'a Profile, edge: f64, rings: usize) -> InwardSum<'a> {
+        // The kernels of a cone and of a parabola are quicker still.
+        let quick = Shape::slope_series(profile, edge).is_some_and(|series| series.len() <= 2);
+        let pieces = (!quick).then(|| SmoothPieces::within(profile, edge, 0.0, rings));
+        InwardSum { profile, rings: Vec::with_capacity(rings), pieces }
+    }
+
+    /// Adds a ring that ends where the last begins.
+    pub(crate) fn add(&mut self, ring: Ring, weight: f64) {
+        if self.pieces.as_mut().is_some_and(|pieces| pieces.add(&ring, weight).is_none()) {
+            self.pieces = None;
+        }
+        self.rings.push((ring, weight));
+    }
+
+    /// The sum at a radius.
+    pub(crate) fn at(&self, at: &StressRadius) -> f64 {
+        match &self.pieces {
+            Some(pieces) => pieces.sum(at),
+            None => self.rings.iter().map(|(ring, weight)| weight * self.profile.kernel(at, ring)).sum(),
         }
     }
 }

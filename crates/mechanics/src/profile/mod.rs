@@ -52,7 +52,7 @@ mod truncated_sphere;
 
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
-pub(super) use kernel_sums::KernelSlopes;
+pub(super) use kernel_sums::{InwardSum, KernelSlopes};
 pub use load_curve::LoadCurve;
 pub use ring::{Moments, Point, Ring, StressRadius};
 pub use sum::Sum;

@@ -362,7 +362,7 @@ impl Shape for PowerLaw {
     }
 
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        (self.exponent <= STEEPEST).then(|| place.power(0.0, 0.5 * self.exponent - 1.0).scaled(self.slope(1.0)))
+        (self.exponent <= STEEPEST).then(|| place.power(self.exponent * self.scale, 0.5 * self.exponent - 1.0))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {

@@ -1,11 +1,23 @@
 //! Short power series in Y, -1 <= Y <= 1, of functions of x^2 = X + h Y: what a family says about g'/x for [`super::smooth_pieces`].
 //!
-//! Each coefficient is as exact as its own size: products and integrals of binomial series lose nothing that counts.
+//! They follow from their differential equations, each coefficient from those before it. Of the two solutions of each the one that grows
+//! faster is wanted, so that errors of rounding do not grow.
 
 use super::DoubleDouble;
 
 /// The most terms of a series: 5^-28 is less than rounding.
 pub(super) const TERMS: usize = 28;
+
+/// One over 1, 2 and so on.
+const RECIPROCALS: [f64; TERMS] = {
+    let mut recips = [1.0; TERMS];
+    let mut k = 1;
+    while k < TERMS {
+        recips[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    recips
+};
 
 /// Where a series is wanted.
 #[derive(Clone, Copy)]
@@ -22,60 +34,78 @@ pub(super) struct Place {
 #[derive(Clone, Copy)]
 pub(super) struct Series {
     pub(super) coefficients: [f64; TERMS],
-    terms: usize,
+}
+
+/// What the functions of a family with a kink at b are made of beyond it, t^2 = x^2 - b^2.
+pub(super) struct BeyondKink<'a> {
+    place: &'a Place,
+    b: f64,
+    x: f64,
+    t: f64,
+    /// 1/(x t).
+    pub(super) inverse: Series,
 }
 
 impl Place {
-    /// (x^2 - s)^power, s being the square of a radius, m, inside the place.
-    pub(super) fn power(&self, inside: f64, power: f64) -> Series {
-        let middle = (self.middle - DoubleDouble::square_of(inside)).value();
+    /// A multiple of (x^2)^power.
+    pub(super) fn power(&self, factor: f64, power: f64) -> Series {
+        let middle = self.middle.value();
         let share = self.half / middle;
-        let mut term = if power.to_bits() == 0.5f64.to_bits() { middle.sqrt() } else { middle.powf(power) };
-        self.by(|k| {
-            let this = term;
-            term *= (power - k) / (k + 1.0) * share;
-            this
-        })
+        self.by(factor * middle.powf(power), |k, [last, _]| (power - k) * share * last)
     }
 
     /// A constant.
     pub(super) fn constant(&self, value: f64) -> Series {
-        self.by(|k| if k > 0.0 { 0.0 } else { value })
+        self.by(value, |_, _| 0.0)
     }
 
-    /// The angle atan(t/b), t^2 = x^2 - b^2: its derivative with respect to x^2 is b/(2 x^2 t). `over_t` is the series of 1/t.
-    pub(super) fn angle(&self, b: f64, over_t: &Series) -> Series {
-        let t = (self.middle - DoubleDouble::square_of(b)).value().sqrt();
-        let slope = self.power(0.0, -1.0).times(over_t).scaled(0.5 * b * self.half);
-        let mut before = t.atan2(b);
-        self.by(|k| {
-            let this = before;
-            before = slope.coefficients[k as usize] / (k + 1.0);
-            this
-        })
+    /// The functions beyond a kink at b, m; `None` below it.
+    pub(super) fn beyond(&self, b: f64) -> Option<BeyondKink<'_>> {
+        let above = (self.middle - DoubleDouble::square_of(b)).value();
+        if above <= 0.0 {
+            return None;
+        }
+        let middle = self.middle.value();
+        let (x, t) = (middle.sqrt(), above.sqrt());
+        let (share, share_above) = (self.half / middle, self.half / above);
+        let (sum, product) = (share + share_above, share * share_above);
+        let inverse = self.by((x * t).recip(), |k, [last, before]| -(k + 0.5) * sum * last - k * product * before);
+        Some(BeyondKink { place: self, b, x, t, inverse })
     }
 
-    fn by(&self, mut term: impl FnMut(f64) -> f64) -> Series {
-        let mut series = Series { coefficients: [0.0; TERMS], terms: self.terms.min(TERMS) };
-        for (k, coefficient) in series.coefficients[..series.terms].iter_mut().enumerate() {
-            *coefficient = term(k as f64);
+    /// The series of this constant term, of which each next one, k + 1, is `next` of k and the two terms before it, over k + 1.
+    fn by(&self, first: f64, next: impl Fn(f64, [f64; 2]) -> f64) -> Series {
+        let mut series = Series { coefficients: [0.0; TERMS] };
+        let (mut last, mut before) = (first, 0.0);
+        for (k, coefficient) in series.coefficients[..self.terms.min(TERMS)].iter_mut().enumerate() {
+            *coefficient = last;
+            (last, before) = (next(k as f64, [last, before]) * RECIPROCALS[k], last);
         }
         series
     }
 }
 
-impl Series {
-    /// The product of two series.
-    pub(super) fn times(&self, other: &Series) -> Series {
-        let mut product = Series { coefficients: [0.0; TERMS], terms: self.terms };
-        for (k, &a) in self.coefficients[..self.terms].iter().enumerate() {
-            for (sum, b) in product.coefficients[k..self.terms].iter_mut().zip(&other.coefficients) {
-                *sum += a * b;
-            }
-        }
-        product
+impl BeyondKink<'_> {
+    /// phi/x, phi = atan(t/b).
+    pub(super) fn angle(&self) -> Series {
+        self.following((self.t / self.b).atan() / self.x, 0.5, 0.5 * self.b)
     }
 
+    /// 1 - t/x.
+    pub(super) fn lacking(&self) -> Series {
+        let square = self.b * self.b;
+        self.following(square / (self.x * (self.x + self.t)), 0.0, -0.5 * square)
+    }
+
+    /// y of x^2 dy/d(x^2) + rate y = factor/(x t), by its constant term.
+    fn following(&self, first: f64, rate: f64, factor: f64) -> Series {
+        let share = self.place.half / (self.x * self.x);
+        let source = &self.inverse.coefficients;
+        self.place.by(first, |k, [last, _]| factor * share * source[k as usize] - (k + rate) * share * last)
+    }
+}
+
+impl Series {
     /// The sum of two series.
     pub(super) fn plus(&self, other: &Series) -> Series {
         let mut sum = *self;
@@ -83,21 +113,12 @@ impl Series {
         sum
     }
 
-    /// A multiple.
-    pub(super) fn scaled(&self, factor: f64) -> Series {
-        Series { coefficients: self.coefficients.map(|a| factor * a), terms: self.terms }
-    }
-
-    /// One over it.
-    pub(super) fn inverse(&self) -> Series {
-        let first = self.coefficients[0].recip();
-        let mut inverse = Series { coefficients: [0.0; TERMS], terms: self.terms };
-        inverse.coefficients[0] = first;
-        for k in 1..self.terms {
-            let sum: f64 = (1..=k).map(|j| self.coefficients[j] * inverse.coefficients[k - j]).sum();
-            inverse.coefficients[k] = -first * sum;
-        }
-        inverse
+    /// A constant and multiples of series.
+    pub(super) fn sum<const N: usize>(constant: f64, parts: [(f64, &Series); N]) -> Series {
+        let term = |k| parts.iter().map(|(factor, series)| factor * series.coefficients[k]).sum();
+        let mut sum = Series { coefficients: std::array::from_fn(term) };
+        sum.coefficients[0] += constant;
+        sum
     }
 }
 

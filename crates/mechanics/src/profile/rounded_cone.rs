@@ -50,7 +50,7 @@ impl RoundedCone {
 impl Flank {
     fn load_at(&self, t: f64) -> f64 {
         let (b, x) = (self.tip_radius, self.radius_at(t));
-        0.5 * self.slope * (x * x * (t.atan2(b) + 4.0 / 3.0 * b / (x + t)) + b * t / 3.0)
+        0.5 * self.slope * (x * x * ((t / b).atan() + 4.0 / 3.0 * b / (x + t)) + b * t / 3.0)
     }
 }
 
@@ -61,18 +61,18 @@ impl SmoothCoordinate for Flank {
 
     fn level_at(&self, t: f64) -> f64 {
         let (b, x) = (self.tip_radius, self.radius_at(t));
-        self.slope * x * (b / (x + t) + t.atan2(b))
+        self.slope * x * (b / (x + t) + (t / b).atan())
     }
 
     fn slope_at(&self, t: f64) -> f64 {
         let (b, x) = (self.tip_radius, self.radius_at(t));
-        self.slope * (t / x) * (2.0 * b / (x + t) + t.atan2(b))
+        self.slope * (t / x) * (2.0 * b / (x + t) + (t / b).atan())
     }
 
     fn bend_at(&self, t: f64) -> f64 {
         // t gamma' - gamma = -T (t/x) ((t/x)^2 Q + b^3 t/(x (x + t))^2 x), from Q' = -b^3/(x^2 (x + t)^2).
         let (b, x) = (self.tip_radius, self.radius_at(t));
-        let q = 2.0 * b / (x + t) + t.atan2(b);
+        let q = 2.0 * b / (x + t) + (t / b).atan();
         let (u, w) = (t / x, b / (x + t));
         -self.slope * u * (u * u * q + u * (b / x) * w * w)
     }
@@ -90,7 +90,7 @@ impl SmoothCoordinate for Flank {
         } else {
             u.atan() - b * (dt + dx) / ends
         };
-        self.slope * (x_top * turn + (b / (x + t) + t.atan2(b)) * dx)
+        self.slope * (x_top * turn + (b / (x + t) + (t / b).atan()) * dx)
     }
 
     fn upper_bound(&self, level: f64) -> f64 {
@@ -200,13 +200,11 @@ impl Shape for RoundedCone {
 
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         let Flank { slope, tip_radius: b, .. } = self.flank;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return self.tip.slope_over_radius_series(place);
-        }
-        // T (2 b/(x + t) + phi)/x.
-        let both = place.power(0.0, 0.5).plus(&place.power(b, 0.5)).inverse().scaled(2.0 * b);
-        let sum = both.plus(&place.angle(b, &place.power(b, -0.5)));
-        Some(place.power(0.0, -0.5).times(&sum).scaled(slope))
+        // T (2 b/(x + t) + phi)/x = T (2 (1 - t/x)/b + phi/x).
+        place.beyond(b).map_or_else(
+            || self.tip.slope_over_radius_series(place),
+            |beyond| Some(Series::sum(0.0, [(2.0 * slope / b, &beyond.lacking()), (slope, &beyond.angle())])),
+        )
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {

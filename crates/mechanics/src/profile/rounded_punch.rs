@@ -4,7 +4,7 @@
 //! positive through t - b phi = b (u - atan u), u = t/b.
 
 use super::angle::{angles, tangent_less_angle};
-use super::power_series::{KinkSeries, Place, Series};
+use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -57,15 +57,6 @@ impl SmoothCoordinate for RoundedPunch {
         t * t * (1.0 - excess * t / (x * x)) / (x * self.edge_radius)
     }
 
-    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
-        let b = self.flat_radius;
-        let (x, x_top) = (self.radius_at(t), self.radius_at(top));
-        let both = b * b + t * top;
-        // The angle between t and top is atan(b dt/both): what it falls short of dt/b is of third order.
-        let step = dt * t * top / both + b * tangent_less_angle(b * dt / both);
-        (x_top * step + self.excess(t) * dt * (t + top) / (x + x_top)) / self.edge_radius
-    }
-
     fn upper_bound(&self, level: f64) -> f64 {
         // t - b phi is above t - b pi/2; for t < b it is above t^3/(6 b^2).
         let (b, area) = (self.flat_radius, level * self.edge_radius);
@@ -85,15 +76,13 @@ impl SmoothCoordinate for RoundedPunch {
     }
 
     fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
-        let (b, x_top, whole) = (self.flat_radius, self.radius_at(top), self.excess(top));
-        let both = nodes.t.map(|t| b * b + t * top);
-        let (_, lacking) = angles::<N>(std::array::from_fn(|index| b * nodes.dt[index] / both[index]));
-        std::array::from_fn(|index| {
-            let (t, dt, x) = (nodes.t[index], nodes.dt[index], nodes.x[index]);
-            let step = dt * t * top / both[index] + b * lacking[index];
-            // What the difference of the two loses near the rim counts only beside the first term.
-            (x_top * step + (whole - step) * dt * (t + top) / (x + x_top)) / self.edge_radius
-        })
+        let (b, curvature) = (self.flat_radius, self.edge_radius.recip());
+        let tangents = nodes.tangents(b, top);
+        let (_, lacking) = angles(tangents);
+        // What the angle falls short of dt/b is of third order.
+        let step = |index: usize| tangents[index] * nodes.t[index] * (top / b) + b * lacking[index];
+        let steps: [f64; N] = std::array::from_fn(|index| curvature * step(index));
+        nodes.rises((self.radius_at(top), curvature * self.excess(top)), &steps)
     }
 
     fn solve(&self, level: f64) -> f64 {
@@ -120,13 +109,12 @@ impl SmoothCoordinate for RoundedPunch {
 flat_core!(RoundedPunch {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         // (2 t - b phi)/(R x).
-        let b = self.flat_radius;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return Some(place.constant(0.0));
-        }
-        let angle = place.angle(b, &place.power(b, -0.5)).scaled(-b);
-        let sum = place.power(b, 0.5).scaled(2.0).plus(&angle);
-        Some(place.power(0.0, -0.5).times(&sum).scaled(self.edge_radius.recip()))
+        let (b, curvature) = (self.flat_radius, self.edge_radius.recip());
+        let series = |beyond: BeyondKink<'_>| {
+            let parts = [(-2.0 * curvature, &beyond.lacking()), (-b * curvature, &beyond.angle())];
+            Series::sum(2.0 * curvature, parts)
+        };
+        Some(place.beyond(b).map_or(place.constant(0.0), series))
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {

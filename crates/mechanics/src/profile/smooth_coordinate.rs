@@ -39,10 +39,14 @@ pub(super) trait SmoothCoordinate {
     /// t gamma' - gamma (pure number): t^2 times the slope of gamma/t.
     fn bend_at(&self, t: f64) -> f64;
 
-    /// g(top) - g(t), m, to round-off of itself; `dt` = top - t.
-    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64;
+    /// g(top) - g(t), m, to round-off of itself; `dt` = top - t. A family has this of its own, or the next.
+    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
+        let dx = dt * (t + top) / (self.radius_at(t) + self.radius_at(top));
+        let [rise] = self.rises_at(&Nodes { t: [t], dt: [dt], dx: [dx] }, top);
+        rise
+    }
 
-    /// The same at several t side by side, each with its `dt` and its radius.
+    /// The same at several t side by side.
     fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
         std::array::from_fn(|index| self.rise_at(nodes.t[index], top, nodes.dt[index]))
     }
@@ -107,8 +111,21 @@ pub(super) struct Nodes<const N: usize> {
     pub(super) t: [f64; N],
     /// How far below the outer end they are, m.
     pub(super) dt: [f64; N],
-    /// Their radii, m.
-    pub(super) x: [f64; N],
+    /// The same of their radii, m.
+    pub(super) dx: [f64; N],
+}
+
+impl<const N: usize> Nodes<N> {
+    /// The tangents of the angles that atan(t/b) is below that of the outer end `top`.
+    pub(super) fn tangents(&self, b: f64, top: f64) -> [f64; N] {
+        std::array::from_fn(|index| b * self.dt[index] / (b * b + self.t[index] * top))
+    }
+
+    /// The rises of a g = x s up to an outer end, where x and s have these values, by those of s.
+    pub(super) fn rises(&self, (x, s): (f64, f64), steps: &[f64; N]) -> [f64; N] {
+        // What the difference of the two s loses near the rim counts only beside the first term.
+        std::array::from_fn(|index| x * steps[index] + (s - steps[index]) * self.dx[index])
+    }
 }
 
 /// The t of a level, from above.
@@ -242,14 +259,20 @@ fn add_panel<const N: usize>(
     rule: &[(f64, f64); N],
     [first, second]: &mut [f64; 2],
 ) {
-    let square = family.kink_radius() * family.kink_radius();
+    let (square, x_high) = (family.kink_radius() * family.kink_radius(), family.radius_at(high));
     let dt = rule.map(|(u, _)| done + width * u);
     let t = dt.map(|dt| (high - dt).max(0.0));
-    let x = t.map(|t| (square + t * t).sqrt());
-    let nodes = Nodes { t, dt, x };
-    let h = family.rises_at(&nodes, high);
+    // One division for both t/x and the difference of the radii.
+    let (mut stretch, mut dx) = ([0.0; N], [0.0; N]);
+    for index in 0..N {
+        let x = (square + t[index] * t[index]).sqrt();
+        let inverse = (x * (x + x_high)).recip();
+        stretch[index] = t[index] * (x + x_high) * inverse;
+        dx[index] = dt[index] * (t[index] + high) * x * inverse;
+    }
+    let h = family.rises_at(&Nodes { t, dt, dx }, high);
     for (index, (_, weight)) in rule.iter().enumerate() {
-        let area = width * weight * h[index] * (nodes.t[index] / nodes.x[index]);
+        let area = width * weight * h[index] * stretch[index];
         *first += area;
         *second += area * h[index];
     }

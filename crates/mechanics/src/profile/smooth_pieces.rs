@@ -17,16 +17,20 @@
 //! All series end where their terms no longer count, so that the error is that of rounding.
 
 mod kernels;
+mod moments;
+
+use std::ops::Range;
 
 #[cfg(test)]
 use super::call_count;
-use super::power_series::{KINK_TERMS, KinkSeries, Place, TERMS};
+use super::power_series::{KinkSeries, Place, TERMS};
 use super::shape::Shape;
 use super::{DoubleDouble, Profile, Ring, Span, StressRadius};
 use kernels::{far_kernels, kink_kernels, near_kernels};
+use moments::{kink_moments, moments};
 
 /// Radii that are summed for side by side.
-const LANES: usize = 8;
+const LANES: usize = 4;
 /// From this h/D on a piece is near.
 const FAR: f64 = 0.2;
 /// A piece is no wider than this share of its distance from a singularity.
@@ -34,7 +38,7 @@ const WIDEST: f64 = 0.5;
 /// The part of the distance to the next singularity, in squares, up to which the series in t of a kink is taken.
 const KINK: f64 = 1.0 / 16.0;
 /// Terms whose size is below this share of the largest do not count.
-const NEGLIGIBLE: f64 = 1e-18;
+const NEGLIGIBLE: f64 = 1e-17;
 /// The smallest radius, over that of the edge, that pieces reach down to at a tip where q is not smooth.
 const INNERMOST: f64 = 1e-3;
 /// The pieces reach down to this share of the smallest radius, whose square has digits that it has lost itself.
@@ -44,34 +48,15 @@ const MOST_CUTS: f64 = 48.0;
 /// Squares of radii that differ by less, over that of the outer one, have lost digits that the depth of their ring has.
 const THIN: f64 = 1e-3;
 
-/// binom(-1/2, k).
-const BINOMIALS: [f64; TERMS] = {
-    let mut binomials = [1.0; TERMS];
-    let mut k = 1;
-    while k < TERMS {
-        binomials[k] = binomials[k - 1] * -(k as f64 - 0.5) / k as f64;
-        k += 1;
-    }
-    binomials
-};
-/// The even numbers.
-const PAIRS: [f64; TERMS / 2] = {
-    let mut pairs = [0.0; TERMS / 2];
-    let mut index = 1;
-    while index < pairs.len() {
-        pairs[index] = pairs[index - 1] + 2.0;
-        index += 1;
-    }
-    pairs
-};
-
 /// The pieces of a profile's rings, from the edge inward.
 pub(crate) struct SmoothPieces<'a> {
     profile: &'a Profile,
     pieces: Vec<Piece>,
-    /// The radius, m, that the pieces reach down to, and what is left of a ring inside it, with its weight.
+    /// The coefficients of all of them.
+    terms: Vec<f64>,
+    /// The radius, m, that the pieces reach down to, and what is left of rings inside it, with their weights.
     innermost: f64,
-    tip: Option<(Span, f64)>,
+    tip: Vec<(Span, f64)>,
     /// 1/a^2, m^-2: lengths are in units of the edge.
     unit: f64,
 }
@@ -87,15 +72,15 @@ struct Piece {
     weight: f64,
     near: Near,
     /// The coefficients of z^k for far radii.
-    far: Vec<f64>,
+    far: Range<usize>,
 }
 
-/// What serves near radii.
+/// What serves near radii, among the coefficients.
 enum Near {
     /// c_k.
-    Smooth(Vec<f64>),
+    Smooth(Range<usize>),
     /// g_k times the k-th power of the t where the piece ends, for even and for odd k.
-    Kink { even: Vec<f64>, odd: Vec<f64> },
+    Kink { even: Range<usize>, odd: Range<usize> },
 }
 
 /// Weighted sums of kernels, of their derivatives, and of the sizes of these.
@@ -109,21 +94,24 @@ impl<'a> SmoothPieces<'a> {
     /// The pieces of rings and their weights best for radii of at least `least`, m; `None` if the profile has no such series, or
     /// levels at a vertical edge.
     pub(super) fn new(profile: &'a Profile, rings: &[(Ring, f64)], least: f64) -> Option<SmoothPieces<'a>> {
-        let edge = rings.last()?.0.outer.radius;
-        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
-        let mut made = SmoothPieces { profile, pieces: Vec::new(), innermost, tip: None, unit: 1.0 / (edge * edge) };
-        for (ring, weight) in rings.iter().rev() {
-            if profile.edge_depth(ring) > 0.0 {
-                return None;
-            }
-            made.cut(ring, *weight)?;
-        }
+        let mut made = SmoothPieces::within(profile, rings.last()?.0.outer.radius, least, rings.len());
+        rings.iter().rev().try_for_each(|(ring, weight)| made.add(ring, *weight))?;
         Some(made)
     }
 
+    /// None as yet, of so many rings inside an edge at a radius, m.
+    pub(super) fn within(profile: &'a Profile, edge: f64, least: f64, rings: usize) -> SmoothPieces<'a> {
+        let innermost = if profile.smooth_tip() { 0.0 } else { (CLEAR * least).max(INNERMOST * edge) };
+        let (pieces, terms) = (Vec::with_capacity(2 * rings), Vec::with_capacity(2 * TERMS * rings));
+        SmoothPieces { profile, pieces, terms, innermost, tip: Vec::new(), unit: 1.0 / (edge * edge) }
+    }
+
     /// Adds the pieces of a ring, from its outer end inward.
-    fn cut(&mut self, ring: &Ring, weight: f64) -> Option<()> {
+    pub(super) fn add(&mut self, ring: &Ring, weight: f64) -> Option<()> {
         let profile = self.profile;
+        if profile.edge_depth(ring) > 0.0 {
+            return None;
+        }
         let plain = (ring.outer.square - ring.inner.square).value();
         let thin = plain <= THIN * ring.outer.square.value();
         let (mut outer, mut radius) = (ring.outer.square, ring.outer.radius);
@@ -147,9 +135,10 @@ impl<'a> SmoothPieces<'a> {
                     self.smooth((from, outer), (gap - reach, false), (reach, weight))?;
                 }
                 let KinkSeries { even, odd } = profile.kink_series(kink, top.sqrt())?;
-                let (even, odd) = (counted(&even, 1.0), counted(&odd, 1.0));
-                let far = kink_moments(&even, &odd, (top * self.unit).sqrt());
-                self.push((base, from), (top, thin && gap <= reach), weight, (Near::Kink { even, odd }, far));
+                let (even, odd) = (counted(&even), counted(&odd));
+                let far = kink_moments(even, odd, (top * self.unit).sqrt());
+                let near = Near::Kink { even: self.keep(even, 1.0), odd: self.keep(odd, 1.0) };
+                self.push((base, from), (top, thin && gap <= reach), weight, (near, far));
             } else {
                 let above = if kink > 0.0 || !profile.smooth_tip() { above } else { f64::INFINITY };
                 self.smooth((low, outer), (gap, thin), (above, weight))?;
@@ -157,8 +146,8 @@ impl<'a> SmoothPieces<'a> {
             (outer, radius) = (low, kink);
         }
         if outer > ring.inner.square {
-            let left = Span::of(ring, 0.0, 0.0);
-            self.tip = left.below(outer, outer.value().sqrt()).map(|span| (span, weight));
+            let left = Span::of(ring, profile.gap_of(ring), 0.0);
+            self.tip.extend(left.below(outer, outer.value().sqrt()).map(|span| (span, weight)));
         }
         Some(())
     }
@@ -171,11 +160,12 @@ impl<'a> SmoothPieces<'a> {
         (above, weight): (f64, f64),
     ) -> Option<()> {
         let growth = gap / above;
-        let cuts = (growth.ln_1p() / WIDEST.ln_1p()).ceil().max(1.0);
-        if cuts.is_nan() || cuts > MOST_CUTS {
+        let steps = if growth <= WIDEST { 0.0 } else { growth.ln_1p() };
+        let cuts = (steps / WIDEST.ln_1p()).ceil().max(1.0);
+        if growth.is_nan() || cuts > MOST_CUTS {
             return None;
         }
-        let step = growth.ln_1p() / cuts;
+        let step = steps / cuts;
         let mut outer = high;
         for index in (0..cuts as u32).rev() {
             let last = index == 0;
@@ -183,17 +173,25 @@ impl<'a> SmoothPieces<'a> {
             let gap = if cuts > 1.0 { (outer - inner).value() } else { gap };
             let half = 0.5 * gap;
             let below = if above < f64::INFINITY { above + (inner - low).value() } else { above };
-            // Each term is smaller than the one before by half over half + below.
-            let terms = (-NEGLIGIBLE.ln() / (below / half).ln_1p()).ceil() + 1.0;
-            // Without a singularity q is a polynomial, whose terms end by themselves.
-            let terms = if below < f64::INFINITY { TERMS.min(terms as usize) } else { TERMS };
+            // Each term is smaller than the one before by this. Without a singularity q is a polynomial, whose terms end by themselves.
+            let ratio = half / (half + below);
+            let terms = if ratio > 0.0 { counting(ratio).min(TERMS) } else { TERMS };
             let place = Place { middle: outer - DoubleDouble::from(half), half, terms };
-            let near = counted(&self.profile.slope_over_radius_series(&place)?.coefficients, self.unit.sqrt().recip());
-            let far = moments(&near, half * self.unit);
-            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (Near::Smooth(near), far));
+            let series = self.profile.slope_over_radius_series(&place)?;
+            let (series, edge) = (counted(&series.coefficients), self.unit.sqrt().recip());
+            let far = moments(series, half * self.unit * edge);
+            let near = Near::Smooth(self.keep(series, edge));
+            self.push((inner, outer), (gap, thin && cuts <= 1.0), weight, (near, far));
             outer = inner;
         }
         Some(())
+    }
+
+    /// Keeps coefficients, each times `unit`.
+    fn keep(&mut self, series: &[f64], unit: f64) -> Range<usize> {
+        let start = self.terms.len();
+        self.terms.extend(series.iter().map(|c| unit * c));
+        start..self.terms.len()
     }
 
     fn push(
@@ -201,8 +199,9 @@ impl<'a> SmoothPieces<'a> {
         (inner, outer): (DoubleDouble, DoubleDouble),
         (gap, thin): (f64, bool),
         weight: f64,
-        (near, far): (Near, Vec<f64>),
+        (near, far): (Near, [f64; TERMS]),
     ) {
+        let far = self.keep(&far, 1.0);
         let (inner, outer, gap) = (inner.parts(), outer.parts(), gap * self.unit);
         self.pieces.push(Piece { inner, outer, gap, thin, weight, near, far });
     }
@@ -225,10 +224,16 @@ impl<'a> SmoothPieces<'a> {
         sums
     }
 
+    /// The sum at one radius.
+    pub(super) fn sum(&self, at: &StressRadius) -> f64 {
+        let [kernel] = self.lanes::<1, false>(&[at.square]).kernels;
+        kernel + self.in_tip(at, |span| Shape::kernel(self.profile, at, span))
+    }
+
     /// A share of what lies inside all pieces, for radii there.
     fn in_tip(&self, at: &StressRadius, share: impl Fn(&Span) -> f64) -> f64 {
-        let tip = self.tip.as_ref().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
-        tip.map_or(0.0, |(span, weight)| weight * share(span))
+        let tip = self.tip.iter().filter(|(_, weight)| at.radius < self.innermost && weight.abs() > 0.0);
+        tip.map(|(span, weight)| weight * share(span)).sum()
     }
 
     /// The derivatives of the sum with respect to r^2, 1/m^2, each with the sum of the sizes of what it adds up from. `goes_on` is told
@@ -275,14 +280,17 @@ impl<'a> SmoothPieces<'a> {
             let half = 0.5 * piece.gap;
             let shares: [f64; N] = below.map(|below| half / (below + half));
             let distant = shares.map(|z| z > 0.0 && z <= FAR);
-            let far = || far_kernels::<N, SLOPES>(&piece.far, half, &shares);
+            let far = || far_kernels::<N, SLOPES>(&self.terms[piece.far.clone()], half, &shares);
             let (kernel, slope) = if distant.iter().all(|&distant| distant) {
                 far()
             } else {
                 let above = piece.above(&below, excess);
+                let terms = |range: &Range<usize>| &self.terms[range.clone()];
                 let near = match &piece.near {
-                    Near::Smooth(series) => near_kernels::<N, SLOPES>(series, piece.gap, &below, &above),
-                    Near::Kink { even, odd } => kink_kernels::<N, SLOPES>(even, odd, piece.gap, &below, &above),
+                    Near::Smooth(series) => near_kernels::<N, SLOPES>(terms(series), piece.gap, &below, &above),
+                    Near::Kink { even, odd } => {
+                        kink_kernels::<N, SLOPES>(terms(even), terms(odd), piece.gap, &below, &above)
+                    }
                 };
                 if distant.iter().any(|&distant| distant) {
                     let far = far();
@@ -327,46 +335,18 @@ fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a > b { a } else { b }
 }
 
-/// The terms of a series that count, each times `unit`.
-fn counted(series: &[f64], unit: f64) -> Vec<f64> {
-    let size = series.iter().fold(0.0f64, |size, c| size.max(c.abs()));
+/// How many powers of a ratio below one count. The logarithm is taken from the bits: what a number has beyond a power of two is no more
+/// than 0.0861 below that of its own.
+fn counting(ratio: f64) -> usize {
+    let logarithm = ratio.to_bits() as f64 / (1_u64 << 52) as f64 - (1023.0 - 0.0861);
+    (NEGLIGIBLE.log2() / logarithm) as usize + 2
+}
+
+/// The terms of a series that count beside the first two.
+fn counted(series: &[f64]) -> &[f64] {
+    let size = series[0].abs().max(series[1].abs());
     let last = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * size).map_or(0, |last| last + 1);
-    series[..last].iter().map(|c| unit * c).collect()
-}
-
-/// binom(-1/2, k) times what `moment` gives for k.
-fn binomials(mut moment: impl FnMut(usize) -> f64) -> Vec<f64> {
-    (0..TERMS).map(|k| BINOMIALS[k] * moment(k)).collect()
-}
-
-/// The coefficients of z^k of a smooth piece: (h/2) binom(-1/2, k) m_k.
-fn moments(series: &[f64], half: f64) -> Vec<f64> {
-    // m_k for even and for odd k, side by side.
-    let mut sums = [[0.0; TERMS / 2]; 2];
-    for (j, c) in series.iter().enumerate() {
-        let odd = j % 2;
-        let first = (j + odd + 1) as f64;
-        for (index, sum) in sums[odd].iter_mut().enumerate() {
-            *sum += c / (first + PAIRS[index]);
-        }
-    }
-    binomials(|k| half * sums[k % 2][k / 2])
-}
-
-/// Those of a piece at a kink that ends at the t `top`: in units of that, Y = 2 t^2 - 1.
-fn kink_moments(even: &[f64], odd: &[f64], top: f64) -> Vec<f64> {
-    let mut product = vec![0.0; 2 * (KINK_TERMS + TERMS)];
-    for (terms, first) in [(even, 0), (odd, 1)] {
-        product[first..].iter_mut().step_by(2).zip(terms).for_each(|(power, c)| *power = *c);
-    }
-    binomials(|k| {
-        if k > 0 {
-            for power in (0..product.len()).rev() {
-                product[power] = 2.0 * power.checked_sub(2).map_or(0.0, |below| product[below]) - product[power];
-            }
-        }
-        top * product.iter().enumerate().map(|(power, c)| c / (power + 1) as f64).sum::<f64>()
-    })
+    &series[..last]
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::angle::angles;
-use super::power_series::{KinkSeries, Place, Series};
+use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, Nodes, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -26,9 +26,14 @@ impl TruncatedCone {
         Ok(TruncatedCone { slope: range::SLOPE.check(slope)?, flat_radius: range::FLAT_RADIUS.check(flat_radius)? })
     }
 
+    /// phi.
+    fn angle(&self, t: f64) -> f64 {
+        (t / self.flat_radius).atan()
+    }
+
     fn load_at(&self, t: f64) -> f64 {
         let b = self.flat_radius;
-        0.5 * self.slope * ((b * b + t * t) * t.atan2(b) + b * t)
+        0.5 * self.slope * ((b * b + t * t) * self.angle(t) + b * t)
     }
 }
 
@@ -38,25 +43,18 @@ impl SmoothCoordinate for TruncatedCone {
     }
 
     fn level_at(&self, t: f64) -> f64 {
-        self.slope * self.radius_at(t) * t.atan2(self.flat_radius)
+        self.slope * self.radius_at(t) * self.angle(t)
     }
 
     fn slope_at(&self, t: f64) -> f64 {
         let b = self.flat_radius;
-        self.slope * (t * t.atan2(b) + b) / self.radius_at(t)
+        self.slope * (t * self.angle(t) + b) / self.radius_at(t)
     }
 
     fn bend_at(&self, t: f64) -> f64 {
         // gamma' = T phi b^2/x^3.
         let (b, x) = (self.flat_radius, self.radius_at(t));
-        -self.slope * (t.atan2(b) * t * t * t / (x * x) + b) / x
-    }
-
-    fn rise_at(&self, t: f64, top: f64, dt: f64) -> f64 {
-        let b = self.flat_radius;
-        let (x, x_top) = (self.radius_at(t), self.radius_at(top));
-        let turn = (b * dt).atan2(b * b + t * top);
-        self.slope * (x_top * turn + t.atan2(b) * dt * (t + top) / (x + x_top))
+        -self.slope * (self.angle(t) * t * t * t / (x * x) + b) / x
     }
 
     fn upper_bound(&self, level: f64) -> f64 {
@@ -74,14 +72,8 @@ impl SmoothCoordinate for TruncatedCone {
     }
 
     fn rises_at<const N: usize>(&self, nodes: &Nodes<N>, top: f64) -> [f64; N] {
-        let (b, x_top, whole) = (self.flat_radius, self.radius_at(top), top.atan2(self.flat_radius));
-        let both = nodes.t.map(|t| b * b + t * top);
-        let (turn, _) = angles::<N>(std::array::from_fn(|index| b * nodes.dt[index] / both[index]));
-        std::array::from_fn(|index| {
-            let (t, dt, x) = (nodes.t[index], nodes.dt[index], nodes.x[index]);
-            // What the difference of the angles loses near the rim counts only beside the first term.
-            self.slope * (x_top * turn[index] + (whole - turn[index]) * dt * (t + top) / (x + x_top))
-        })
+        let (turns, _) = angles(nodes.tangents(self.flat_radius, top));
+        nodes.rises((self.radius_at(top), self.slope * self.angle(top)), &turns.map(|turn| self.slope * turn))
     }
 
     fn solve(&self, level: f64) -> f64 {
@@ -106,13 +98,9 @@ impl SmoothCoordinate for TruncatedCone {
 flat_core!(TruncatedCone {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
         // T (phi + b/t)/x.
-        let b = self.flat_radius;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return Some(place.constant(0.0));
-        }
-        let over_t = place.power(b, -0.5);
-        let sum = place.angle(b, &over_t).plus(&over_t.scaled(b));
-        Some(place.power(0.0, -0.5).times(&sum).scaled(self.slope))
+        let (b, slope) = (self.flat_radius, self.slope);
+        let series = |beyond: BeyondKink<'_>| Series::sum(0.0, [(slope * b, &beyond.inverse), (slope, &beyond.angle())]);
+        Some(place.beyond(b).map_or(place.constant(0.0), series))
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {

@@ -7,7 +7,7 @@
 //! dx = p_outer (1 - e/u^2) du/2. Split as 1 - e/u^2 = 2 t_inner/p_inner + e (u^2 - r^2)/(r u)^2, every integral is a power of 1 - r times a
 //! polynomial of r without a negative coefficient, so that nothing cancels.
 
-use super::power_series::{KinkSeries, Place, Series};
+use super::power_series::{BeyondKink, KinkSeries, Place, Series};
 use super::smooth_coordinate::{self, SmoothCoordinate, flat_core};
 use super::{DoubleDouble, Error, Moments, Ring, Span, StressRadius, range};
 
@@ -114,13 +114,13 @@ impl SmoothCoordinate for TruncatedSphere {
 
 flat_core!(TruncatedSphere {
     fn slope_over_radius_series(&self, place: &Place) -> Option<Series> {
-        // (2 x^2 - b^2)/(R x t).
-        let b = self.flat_radius;
-        if place.middle <= DoubleDouble::square_of(b) {
-            return Some(place.constant(0.0));
-        }
-        let rest = place.power(0.0, 0.5).scaled(2.0).plus(&place.power(0.0, -0.5).scaled(-b * b));
-        Some(place.power(b, -0.5).times(&rest).scaled(self.curvature_radius.recip()))
+        // (2 x^2 - b^2)/(R x t) = (2 t/x + b^2/(x t))/R.
+        let (b, curvature) = (self.flat_radius, self.curvature_radius.recip());
+        let series = |beyond: BeyondKink<'_>| {
+            let parts = [(-2.0 * curvature, &beyond.lacking()), (b * b * curvature, &beyond.inverse)];
+            Series::sum(2.0 * curvature, parts)
+        };
+        Some(place.beyond(b).map_or(place.constant(0.0), series))
     }
 
     fn kink_series(&self, b: f64, top: f64) -> Option<KinkSeries> {

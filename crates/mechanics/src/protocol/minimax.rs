@@ -5,8 +5,8 @@
 //! other from the edge inwards: each where the stress first meets E with the other sign. E is then lowered until the
 //! centre meets it too.
 
-use super::super::profile::{Point, Ring, StressRadius};
-use super::{DoubleDouble, Profile};
+use super::super::profile::{InwardSum, Point, Ring, StressRadius};
+use super::{DoubleDouble, Profile, alternating};
 
 /// The largest number of evaluations of E, after it has been bracketed.
 const MAX_EVALUATIONS: usize = 80;
@@ -55,13 +55,39 @@ pub(super) struct Problem<'a> {
     pub(super) reversals: usize,
 }
 
-impl Problem<'_> {
-    /// Shear stress over G* m/pi after the kinks, but for the sign of the last stroke.
-    fn shear(&self, kinks: &[Point], at: &StressRadius) -> f64 {
-        self.shear_down_to(self.profile.point(DoubleDouble::ZERO), kinks, at)
+/// The kinks from the edge inward, and the rings between them.
+struct Strokes<'a> {
+    problem: &'a Problem<'a>,
+    kinks: Vec<Point>,
+    beyond: InwardSum<'a>,
+}
+
+impl Strokes<'_> {
+    /// The innermost kink, the edge without any.
+    fn last(&self) -> &Point {
+        self.kinks.last().unwrap_or(&self.problem.edge)
     }
 
-    /// The share of that of the rings beyond `least`.
+    /// The sign of the ring inside it.
+    fn sign(&self) -> f64 {
+        alternating(self.kinks.len(), 1.0)
+    }
+
+    fn turn_at(&mut self, kink: Point) {
+        self.beyond.add(Ring::between(kink, *self.last()), self.sign());
+        self.kinks.push(kink);
+    }
+
+    /// Shear stress over G* m/pi, but for the sign of the last stroke, up to the innermost kink.
+    fn shear(&self, at: &StressRadius) -> f64 {
+        let profile = self.problem.profile;
+        let core = Ring::between(profile.point(DoubleDouble::ZERO), *self.last());
+        self.beyond.at(at) + self.sign() * profile.kernel(at, &core)
+    }
+}
+
+impl Problem<'_> {
+    /// The shear stress over G* m/pi after kinks, but for the sign of the last stroke, of the rings beyond `least`.
     pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &StressRadius) -> f64 {
         let (mut outer, mut sign, mut sum) = (self.edge, 1.0, 0.0);
         for inner in kinks.iter().copied().chain([least]) {
@@ -74,14 +100,20 @@ impl Problem<'_> {
         sum
     }
 
+    /// No kinks as yet.
+    fn edge_alone(&self) -> Strokes<'_> {
+        let beyond = InwardSum::new(self.profile, self.edge.radius, self.reversals);
+        Strokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond }
+    }
+
     /// The first level below the last kink where the stress meets `limit`, if there is one beyond the cut-off.
-    fn next(&self, kinks: &[Point], limit: f64) -> Option<Point> {
-        let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
-        let top = kinks.last().unwrap_or(&self.edge).level.value();
+    fn next(&self, strokes: &Strokes<'_>, limit: f64) -> Option<Point> {
+        let (kinks, sign) = (strokes.kinks.as_slice(), strokes.sign());
+        let top = strokes.last().level.value();
         let least = if self.cutoff > 0.0 { self.profile.level(self.cutoff) } else { 0.0 };
         let missing = |level: f64| {
             let point = self.profile.point(DoubleDouble::from(level));
-            limit - sign * self.shear(kinks, &StressRadius::of_point(&point))
+            limit - sign * strokes.shear(&StressRadius::of_point(&point))
         };
         // Steps of a fraction of the last spacing, and ever longer ones: a stress that turns back is not stepped over.
         let before = match kinks {
@@ -129,11 +161,11 @@ impl Problem<'_> {
     }
 
     /// The largest stress of the core, with the sign that the next kink would stop it at.
-    fn core(&self, kinks: &[Point]) -> f64 {
-        let sign = if kinks.len().is_multiple_of(2) { 1.0 } else { -1.0 };
-        let width = kinks.last().unwrap_or(&self.edge).radius - self.cutoff;
+    fn core(&self, strokes: &Strokes<'_>) -> f64 {
+        let sign = strokes.sign();
+        let width = strokes.last().radius - self.cutoff;
         let looks = if self.profile.kernel_falls() { 1 } else { CORE };
-        let value = |part: f64| sign * self.shear(kinks, &StressRadius::new(self.cutoff + width * part));
+        let value = |part: f64| sign * strokes.shear(&StressRadius::new(self.cutoff + width * part));
         let looked = (0..looks).map(|index| index as f64 / CORE as f64).map(|part| (part, value(part)));
         let (best, mut largest) = looked.fold((0.0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
         if looks > 1 {
@@ -161,18 +193,18 @@ impl Problem<'_> {
         (index, share): (usize, f64),
         keep_going: &dyn Fn() -> bool,
     ) -> Option<KinkSequence> {
-        let mut kinks = Vec::with_capacity(self.reversals);
-        while kinks.len() < self.reversals {
+        let mut strokes = self.edge_alone();
+        while strokes.kinks.len() < self.reversals {
             if !keep_going() {
                 return None;
             }
-            match self.next(&kinks, if kinks.len() == index { share * limit } else { limit }) {
-                Some(kink) => kinks.push(kink),
-                None => return Some(KinkSequence { kinks, excess: None }),
+            match self.next(&strokes, if strokes.kinks.len() == index { share * limit } else { limit }) {
+                Some(kink) => strokes.turn_at(kink),
+                None => return Some(KinkSequence { kinks: strokes.kinks, excess: None }),
             }
         }
-        let excess = self.core(&kinks) / limit - 1.0;
-        Some(KinkSequence { kinks, excess: Some(excess) })
+        let excess = self.core(&strokes) / limit - 1.0;
+        Some(KinkSequence { kinks: strokes.kinks, excess: Some(excess) })
     }
 
     /// Closes the bracket of an E that is too small and one that is not.
@@ -212,7 +244,7 @@ impl Problem<'_> {
     /// The smallest E, and its kinks; `None` if `keep_going` returned false, or there is no such E.
     pub(super) fn solve(&self, keep_going: &dyn Fn() -> bool) -> Option<EqualExtrema> {
         let middle = StressRadius::new(0.5 * (self.cutoff + self.edge.radius));
-        let guess = self.shear(&[], &middle) / (self.reversals as f64).sqrt();
+        let guess = self.edge_alone().shear(&middle) / (self.reversals as f64).sqrt();
         if !(guess > 0.0 && guess.is_finite()) {
             return None;
         }
@@ -258,7 +290,9 @@ impl Problem<'_> {
                 break;
             }
         }
-        let ratio = (self.core(&best.kinks) / high).clamp(0.0, 1.0);
+        let mut strokes = self.edge_alone();
+        best.kinks.iter().for_each(|kink| strokes.turn_at(*kink));
+        let ratio = (self.core(&strokes) / high).clamp(0.0, 1.0);
         Some(EqualExtrema { levels: best.kinks.iter().map(|kink| kink.level.value()).collect(), ratio, limit: high })
     }
 }

@@ -1,27 +1,41 @@
 //! The kernel of one piece at several radii side by side, in the three forms of [`super`], and its derivative with respect to r^2.
 
 use super::super::logarithm::ln_1p;
-use super::{FAR, NEGLIGIBLE};
+use super::moments::MEANS;
+use super::{FAR, counting};
 
 /// Kernels, and their derivatives with respect to r^2 in units of the edge.
 pub(super) type Kernels<const N: usize> = ([f64; N], [f64; N]);
 
 pub(super) fn far_kernels<const N: usize, const SLOPES: bool>(far: &[f64], half: f64, shares: &[f64; N]) -> Kernels<N> {
     let largest = shares.iter().copied().fold(0.0, f64::max).clamp(f64::MIN_POSITIVE, FAR);
-    let terms = (NEGLIGIBLE.ln() / largest.ln()).ceil() as usize + 1;
-    let (mut sum, mut slope) = ([0.0; N], [0.0; N]);
-    for &term in far[..terms.min(far.len())].iter().rev() {
-        for lane in 0..N {
-            if SLOPES {
-                slope[lane] = slope[lane] * shares[lane] + sum[lane];
+    // Even and odd powers, so that neither sum waits for the other.
+    let (mut sums, mut slopes) = ([[0.0; N]; 2], [[0.0; N]; 2]);
+    let square = shares.map(|z| z * z);
+    for pair in far[..far.len().min(counting(largest).next_multiple_of(2))].rchunks_exact(2) {
+        for (parity, term) in pair.iter().enumerate() {
+            for lane in 0..N {
+                if SLOPES {
+                    slopes[parity][lane] = slopes[parity][lane] * square[lane] + sums[parity][lane];
+                }
+                sums[parity][lane] = sums[parity][lane] * square[lane] + term;
             }
-            sum[lane] = sum[lane] * shares[lane] + term;
         }
     }
-    // 1/sqrt(D), D = h/z.
-    let root: [f64; N] = shares.map(|z| (z / half).sqrt());
-    let by_distance = |lane: usize| root[lane] * shares[lane] / half * (0.5 * sum[lane] + shares[lane] * slope[lane]);
-    (std::array::from_fn(|lane| root[lane] * sum[lane]), std::array::from_fn(by_distance))
+    let unit = half.recip();
+    let (mut kernels, mut by_square) = ([0.0; N], [0.0; N]);
+    for lane in 0..N {
+        let z = shares[lane];
+        // 1/sqrt(D), D = h/z.
+        let root = (z * unit).sqrt();
+        let sum = sums[0][lane] + z * sums[1][lane];
+        kernels[lane] = root * sum;
+        if SLOPES {
+            let slope = sums[1][lane] + 2.0 * z * (slopes[0][lane] + z * slopes[1][lane]);
+            by_square[lane] = root * z * unit * (0.5 * sum + z * slope);
+        }
+    }
+    (kernels, by_square)
 }
 
 pub(super) fn near_kernels<const N: usize, const SLOPES: bool>(
@@ -36,15 +50,16 @@ pub(super) fn near_kernels<const N: usize, const SLOPES: bool>(
     let (mut this, mut other, mut carried) = ([0.0; N], [0.0; N], [0.0; N]);
     let (mut this_slope, mut other_slope, mut carried_slope) = ([0.0; N], [0.0; N], [0.0; N]);
     for (k, &c) in series.iter().enumerate().rev() {
-        let (share, twice) = (1.0 / (2 * k + 1) as f64, (2 * k) as f64);
+        let (share, twice) = (MEANS[k], (2 * k) as f64);
         for lane in 0..N {
-            let a = (c + carried[lane]) * share;
+            let whole = c + carried[lane];
+            let (a, step) = (share * whole, twice * share * s[lane]);
             if SLOPES {
                 let slope = carried_slope[lane] * share;
-                carried_slope[lane] = twice * (a + s[lane] * slope);
+                carried_slope[lane] = twice * a + step * carried_slope[lane];
                 (this_slope[lane], other_slope[lane]) = (other_slope[lane], this_slope[lane] + slope);
             }
-            carried[lane] = twice * s[lane] * a;
+            carried[lane] = step * whole;
             (this[lane], other[lane]) = (other[lane], this[lane] + a);
         }
     }

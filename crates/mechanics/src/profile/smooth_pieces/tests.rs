@@ -56,3 +56,24 @@ fn derivatives_of_a_sum_are_those_of_its_rings() {
         }
     }
 }
+
+#[test]
+fn all_rings_inside_the_innermost_piece_count() {
+    for profile in [power(1.3), power(2.7)] {
+        // The pieces end at 1e-3 of the edge.
+        let radii = [0.0, 1e-4, 5e-4, 0.5, 1.0].map(|share| EDGE * share);
+        let points = radii.map(|radius| profile.point(DoubleDouble::from(profile.level(radius))));
+        let rings = points.windows(2).zip([1.0, -0.7, 0.9, -1.0]);
+        let rings: Vec<(Ring, f64)> = rings.map(|(pair, weight)| (Ring::between(pair[0], pair[1]), weight)).collect();
+        let pieces = SmoothPieces::new(&profile, &rings, 0.0).unwrap();
+        for share in [0.0, 3e-5, 2e-4, 7e-4] {
+            let at = StressRadius::new(EDGE * share);
+            let terms = rings.iter().filter(|(ring, _)| ring.outer.radius >= at.radius);
+            let terms: Vec<f64> = terms.map(|(ring, weight)| weight * profile.kernel(&at, ring)).collect();
+            let (sum, size) = terms.iter().fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()));
+            let found = pieces.sums(&[at])[0];
+            assert!((found - sum).abs() <= 1e-13 * size, "{profile:?} at {share}: {found:e} is not {sum:e}");
+            assert_eq!(found.to_bits(), pieces.sum(&at).to_bits(), "{profile:?} at {share}");
+        }
+    }
+}
