@@ -81,10 +81,8 @@ impl KernelSlopes<'_> {
     pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         match self {
             KernelSlopes::Pieces(pieces) => pieces.slopes(radii, goes_on),
-            KernelSlopes::Panels(panels) => {
-                let slope = |at| if goes_on(PANEL_TERMS) { panels.slope(at) } else { (0.0, 0.0) };
-                radii.iter().map(slope).collect()
-            }
+            KernelSlopes::Panels(panels) if goes_on(PANEL_TERMS * radii.len()) => panels.slopes(radii),
+            KernelSlopes::Panels(_) => vec![(0.0, 0.0); radii.len()],
         }
     }
 }

@@ -13,6 +13,7 @@ mod angle;
 mod asperities;
 #[cfg(test)]
 pub(crate) mod call_count;
+mod cluster_tree;
 mod cone;
 mod curve_family;
 mod distant_rings;
@@ -27,6 +28,7 @@ mod kernel_sums;
 mod load_curve;
 mod logarithm;
 mod moment_tree;
+mod multipole;
 mod polynomial;
 mod power_law;
 mod power_series;

@@ -4,7 +4,6 @@
 //! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
 
 use super::super::far_field::{FarField, Sampled};
-use super::LEAF;
 use super::panel::{self, Panel};
 use super::spline::Knot;
 use super::{DoubleDouble, gauss};
@@ -40,7 +39,7 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
         })
         .collect();
     let bounds: Vec<f64> = knots.iter().map(|knot| knot.radius * knot.radius).collect();
-    let far = FarField::new(&bounds, LEAF, |index, add| {
+    let far = FarField::new(&bounds, 1, |index, add| {
         let (segment, width) = (&segments[index], knots[index + 1].radius - knots[index].radius);
         gauss::Panel::fine(width).visit(|step, weight| {
             let r = segment.start + step;
