@@ -57,10 +57,10 @@ impl<S> ClusterTree<S> {
 
     /// Goes through the items `items`: `far` is offered what stands for whole clusters and says whether it has taken it, `near` gets the
     /// items that are left, run by run.
-    pub(super) fn visit(
-        &self,
+    pub(super) fn visit<'a>(
+        &'a self,
         items: Range<usize>,
-        far: &mut impl FnMut(&Cluster<S>) -> bool,
+        far: &mut impl FnMut(&'a Cluster<S>) -> bool,
         near: &mut impl FnMut(Range<usize>),
     ) {
         if let Some(root) = self.root() {
@@ -68,11 +68,11 @@ impl<S> ClusterTree<S> {
         }
     }
 
-    fn descend(
-        &self,
+    fn descend<'a>(
+        &'a self,
         number: usize,
         items: &Range<usize>,
-        far: &mut impl FnMut(&Cluster<S>) -> bool,
+        far: &mut impl FnMut(&'a Cluster<S>) -> bool,
         near: &mut impl FnMut(Range<usize>),
     ) {
         let cluster = &self.0[number];
