@@ -72,7 +72,7 @@ impl Kernel {
                     return 0.0;
                 }
                 let rise = smooth_coordinate::rise(panel, span);
-                let integral = smooth_coordinate::displacement_integral(panel, at, span, 0.0);
+                let integral = smooth_coordinate::displacement_integral(panel, at, span);
                 self.angle(span.inner_radius, below) * rise + self.sign() * integral
             }
         }

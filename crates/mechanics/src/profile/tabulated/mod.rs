@@ -122,7 +122,7 @@ impl Tabulated {
             });
         };
         let end = (last.end().1, level, load);
-        let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
+        let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span(None)), panel.depth());
         let tree = MomentTree::new(panels.iter().map(leaf));
         let sources = weighted_panels::sources(&panels);
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();

@@ -35,8 +35,7 @@ impl Tabulated {
 
     /// A panel as a span, up to the very square where the next one begins.
     pub(super) fn span_of_panel(&self, index: usize) -> Span {
-        let panel = &self.panels[index];
-        self.panels.get(index + 1).map_or_else(|| panel.span(), |next| panel.span_up_to(next))
+        self.panels[index].span(self.panels.get(index + 1))
     }
 
     /// The sum of a kernel of what lies beyond r over a span.

@@ -45,7 +45,7 @@ pub(super) type SumAndSize = (f64, f64);
 pub(super) fn sources(panels: &[Panel]) -> ClusterTree<Multipole> {
     ClusterTree::new(panels.len(), 1, |items, halves| {
         let last = &panels[items.end - 1];
-        let end = panels.get(items.end).map_or_else(|| last.end().0, |next| next.square);
+        let end = last.span(panels.get(items.end)).outer;
         let mut sources = Multipole::empty((panels[items.start].square.value(), end.value()));
         match halves {
             Some(halves) => halves.into_iter().for_each(|half: &Multipole| sources.add(half, 1.0)),
