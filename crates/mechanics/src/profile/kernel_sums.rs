@@ -111,7 +111,11 @@ impl Sources<'_> {
             let (inner, outer) = (&rings[items.start].0.inner, &rings[items.end - 1].0.outer);
             let mut sources = Multipole::empty((inner.square.value(), outer.square.value()));
             match halves {
-                Some(halves) => halves.into_iter().try_for_each(|half| Some(sources.add(half.as_ref()?, 1.0)))?,
+                Some(halves) => {
+                    for half in halves {
+                        sources.add(half.as_ref()?, 1.0);
+                    }
+                }
                 None => add_ring(&mut sources, profile, &rings[items.start], edge.level.value())?,
             }
             Some(sources)

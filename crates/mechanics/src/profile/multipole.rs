@@ -198,11 +198,13 @@ mod tests {
         for interval in [part.interval, (3.0, 4.6), (2.2, 3.8), (2.9, 3.81)] {
             let mut whole = Multipole::empty(interval);
             whole.add(&part, 0.7);
-            for distance in [1.0, 1.5, 4.0, 1e3] {
+            for distance in [1.0, 1.02, 1.5, 2.5, 4.0, 10.0, 1e3] {
                 let below = interval.0 - distance * (interval.1 - interval.0);
                 let exact: f64 = sources.iter().map(|&(x, w)| 0.7 * w / (x - below).sqrt()).sum();
-                let [ours] = whole.potentials([below]);
-                assert!((ours / exact - 1.0).abs() < 3e-15, "{interval:?} {distance}: {ours} {exact}");
+                let ([alone], [beside, _]) = (whole.potentials([below]), whole.potentials([below; 2]));
+                for ours in [alone, beside] {
+                    assert!((ours / exact - 1.0).abs() < 3e-15, "{interval:?} {distance}: {ours} {exact}");
+                }
                 let exact: f64 = sources.iter().map(|&(x, w)| 0.35 * w / (x - below).powf(1.5)).sum();
                 let [ours] = whole.potential_slopes([below]);
                 assert!((ours / exact - 1.0).abs() < 1e-14, "{interval:?} {distance}: {ours} {exact}");

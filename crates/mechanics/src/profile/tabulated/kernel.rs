@@ -1,4 +1,4 @@
-//! What is summed over the sources dg of a table: a kernel of their radius x and of r.
+//! What is summed over the sources dg of a table: a kernel of their radius x and of r, whole clusters at once where they are far.
 //!
 //! Of X = x^2 = c + h xi the angles T below r have the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at X = 0 and at r^2. An
 //! interval that is as far from both as it is wide counts as far: a polynomial through the derivative at twenty Gauss points misses it by

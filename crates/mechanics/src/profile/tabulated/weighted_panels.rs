@@ -200,7 +200,10 @@ impl WeightedPanels<'_> {
         }
         let index = cluster.items.start;
         let whole = weight.map(|weight| [(index, self.table.span_of_panel(index), weight)]);
-        let parts = whole.as_ref().map_or_else(|| self.parts_of(index), |whole| whole);
+        let parts = match &whole {
+            Some(whole) => whole,
+            None => self.parts_of(index),
+        };
         for (_, span, weight) in parts.iter().filter(|part| part.2.abs() > 0.0) {
             for (held, sum) in radii.iter().zip(&mut *sums) {
                 add_to(sum, weight * kernel.near(&self.table.panels[index], &held.at, span));
