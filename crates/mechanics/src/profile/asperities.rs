@@ -101,10 +101,9 @@ impl Asperities {
 impl Set {
     fn new(gaps: Vec<f64>, roots: Vec<f64>) -> Set {
         let last = gaps[gaps.len() - 1];
-        let bounds: Vec<f64> = gaps.iter().copied().chain([last]).collect();
-        let clusters = FarField::new(&bounds, LEAF, |index, add| add(gaps[index], roots[index]));
+        let clusters = FarField::new(&gaps, &roots, LEAF);
         // Above the last gap cells double in width, until all asperities are one cluster far below.
-        let start = bounds[gaps.len().saturating_sub(LEAF)];
+        let start = gaps[gaps.len().saturating_sub(LEAF)];
         let width = last - if start < last { start } else { 0.0 };
         let beyond: Vec<f64> = std::iter::successors(Some((last, width)), |&(end, width)| {
             (end < 2.0 * last).then_some((end + width, 2.0 * width))
@@ -149,7 +148,7 @@ impl Set {
             each(some);
         } else {
             let far = &mut |gaps: &[f64; _], roots: &[f64; _]| add(&mut far, gaps, roots, &term);
-            self.clusters.visit_clusters(some, (here, here), far, &mut each);
+            self.clusters.visit(some, (here, here), far, &mut each);
         }
         std::array::from_fn(|index| far[index].iter().sum::<f64>() + near[index].iter().sum::<f64>())
     }

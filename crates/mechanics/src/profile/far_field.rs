@@ -1,34 +1,28 @@
-//! Sums of w/sqrt(|X - Y|), or of another power, over many sources Y, far from X: sources in clusters, each replaced by a few at
-//! fixed points.
+//! Sums of functions of the distance X - Y over many sources Y, far from X: sources in clusters, each replaced by a few at fixed points.
 //!
 //! A cluster's sources are moved to the Chebyshev points of its interval with the weights that interpolation gives; where the
-//! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009). The Abel integral that gives g' of a
-//! table from f' uses it (X = x^2, Y = r^2), the kernels of many rings (the other way about) and the sums over many asperities
-//! (X a level, Y a gap), for which all that is far below an interval of X is gathered, once, in a series over it ([`Local`]).
+//! distance is no less than the interval, twenty points do to round-off (Fong & Darve 2009), whatever the function: the sums over many
+//! asperities need several (X a level, Y a gap). All that is far below an interval of X is gathered, once, in a series over it ([`Local`]).
+//! Where the function is 1/sqrt(X - Y) alone, [`multipole`](super::multipole) is quicker.
 
 use std::ops::Range;
+
+use super::cluster_tree::{Cluster, ClusterTree};
 
 /// Points that replace a cluster.
 const PROXIES: usize = 20;
 
-/// Sources of the items `first..last`.
+/// Sources in an interval, and the weights of the points that replace them.
 #[derive(Clone, Debug, PartialEq)]
-struct Cluster {
-    first: usize,
-    last: usize,
+struct Proxies {
     low: f64,
     high: f64,
     weights: [f64; PROXIES],
-    children: Option<(usize, usize)>,
 }
 
-/// A tree of clusters over items in rising order.
+/// A tree of clusters over sources, one an item, in rising order.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct FarField {
-    /// Items in the smallest clusters.
-    leaf: usize,
-    clusters: Vec<Cluster>,
-}
+pub(super) struct FarField(ClusterTree<Proxies>);
 
 /// The Chebyshev points of -1..1, cos(pi (k + 1/2)/20).
 const POINTS: [f64; PROXIES] = [
@@ -102,102 +96,53 @@ pub(super) fn total(terms: &[f64; PROXIES]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-impl FarField {
-    /// The clusters of items that fill the intervals between consecutive `bounds`, the smallest of `leaf` items; `sources` gives an
-    /// item's sources, place and weight each.
-    pub(super) fn new(bounds: &[f64], leaf: usize, sources: impl Fn(usize, &mut dyn FnMut(f64, f64))) -> FarField {
-        let mut far = FarField { leaf, clusters: Vec::new() };
-        if bounds.len() > 1 {
-            far.build(bounds, &sources, 0, bounds.len() - 1);
+impl Proxies {
+    /// The points that replace the sources.
+    fn places(&self) -> [f64; PROXIES] {
+        std::array::from_fn(|index| place(self.low, self.high, index))
+    }
+
+    fn add(&mut self, at: f64, weight: f64) {
+        for (sum, share) in self.weights.iter_mut().zip(shares(self.low, self.high, at)) {
+            *sum += weight * share;
         }
-        far
+    }
+}
+
+impl FarField {
+    /// The clusters of sources of these places and weights, the smallest of up to `leaf`; each reaches up to where the next one begins.
+    pub(super) fn new(places: &[f64], weights: &[f64], leaf: usize) -> FarField {
+        FarField(ClusterTree::new(places.len(), leaf, |items, halves| {
+            let (low, high) = (places[items.start], places[items.end.min(places.len() - 1)]);
+            let mut proxies = Proxies { low, high, weights: [0.0; PROXIES] };
+            match halves {
+                Some(halves) => halves.into_iter().for_each(|half: &Proxies| {
+                    half.places().into_iter().zip(half.weights).for_each(|(at, weight)| proxies.add(at, weight));
+                }),
+                None => items.clone().for_each(|item| proxies.add(places[item], weights[item])),
+            }
+            proxies
+        }))
     }
 
-    fn build(
-        &mut self,
-        bounds: &[f64],
-        sources: &impl Fn(usize, &mut dyn FnMut(f64, f64)),
-        first: usize,
-        last: usize,
-    ) -> usize {
-        let (low, high) = (bounds[first], bounds[last]);
-        let mut weights = [0.0; PROXIES];
-        let mut add = |at: f64, weight: f64| {
-            for (sum, share) in weights.iter_mut().zip(shares(low, high, at)) {
-                *sum += weight * share;
-            }
-        };
-        let children = if last - first <= self.leaf {
-            for item in first..last {
-                sources(item, &mut add);
-            }
-            None
-        } else {
-            let middle = first.midpoint(last);
-            let pair = (self.build(bounds, sources, first, middle), self.build(bounds, sources, middle, last));
-            for child in [pair.0, pair.1] {
-                let child = &self.clusters[child];
-                for (index, &weight) in child.weights.iter().enumerate() {
-                    add(place(child.low, child.high, index), weight);
-                }
-            }
-            Some(pair)
-        };
-        self.clusters.push(Cluster { first, last, low, high, weights, children });
-        self.clusters.len() - 1
-    }
-
-    /// Goes through the items `items`, seen from the interval `from`: whole clusters as sources where they are far, by `far`, else
-    /// item by item, by `near`.
+    /// Goes through the items `items`, seen from the interval `from`: whole clusters where they are far, by the places and weights of what
+    /// replaces them, else runs of items.
     pub(super) fn visit(
         &self,
         items: Range<usize>,
         from: (f64, f64),
-        far: &mut impl FnMut(f64, f64),
-        near: &mut impl FnMut(usize),
+        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
+        near: &mut impl FnMut(Range<usize>),
     ) {
-        let mut each = |places: &[f64; PROXIES], weights: &[f64; PROXIES]| {
-            places.iter().zip(weights).for_each(|(&place, &weight)| far(place, weight));
+        let mut take = |Cluster { sources, .. }: &Cluster<Proxies>| {
+            let distance = (sources.low - from.1).max(from.0 - sources.high);
+            let is_far = distance >= (sources.high - sources.low).max(from.1 - from.0);
+            if is_far {
+                far(&sources.places(), &sources.weights);
+            }
+            is_far
         };
-        self.visit_clusters(items, from, &mut each, &mut |items| items.for_each(&mut *near));
-    }
-
-    /// The same by whole clusters, each with its places and weights, and by runs of items.
-    pub(super) fn visit_clusters(
-        &self,
-        items: Range<usize>,
-        from: (f64, f64),
-        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
-        near: &mut impl FnMut(Range<usize>),
-    ) {
-        if let Some(root) = self.clusters.len().checked_sub(1) {
-            self.descend(root, &items, from, far, near);
-        }
-    }
-
-    fn descend(
-        &self,
-        index: usize,
-        items: &Range<usize>,
-        from: (f64, f64),
-        far: &mut impl FnMut(&[f64; PROXIES], &[f64; PROXIES]),
-        near: &mut impl FnMut(Range<usize>),
-    ) {
-        let cluster = &self.clusters[index];
-        let (first, last) = (cluster.first.max(items.start), cluster.last.min(items.end));
-        if first >= last {
-            return;
-        }
-        let distance = (cluster.low - from.1).max(from.0 - cluster.high);
-        let whole = first == cluster.first && last == cluster.last;
-        if whole && distance >= (cluster.high - cluster.low).max(from.1 - from.0) {
-            far(&std::array::from_fn(|index| place(cluster.low, cluster.high, index)), &cluster.weights);
-        } else if let Some((low, high)) = cluster.children {
-            self.descend(low, items, from, far, near);
-            self.descend(high, items, from, far, near);
-        } else {
-            near(first..last);
-        }
+        self.0.visit(items, &mut take, near);
     }
 }
 
@@ -247,7 +192,7 @@ impl FarField {
             let offsets = POINTS.map(|point| 0.5 * (high - low) * (1.0 + point));
             let mut samples =
                 wide.map_or([0.0; PROXIES], |wide| wide.at(offsets.map(|offset| low - wide.low + offset)));
-            let mut add = |place: f64, weight: f64| {
+            let mut add = |(place, weight): (&f64, &f64)| {
                 for (sample, offset) in samples.iter_mut().zip(offsets) {
                     *sample += weight * term(low - place + offset);
                 }
@@ -255,20 +200,21 @@ impl FarField {
             let first_near = self.start(sources.0.partition_point(|&place| low - place > high - low), depth);
             let mut alone = Vec::new();
             let added = wide.map_or(0, |wide| wide.first_near)..first_near;
-            self.visit(added, (low, high), &mut add, &mut |item| alone.push(item));
-            alone.into_iter().for_each(|item| add(sources.0[item], sources.1[item]));
+            let far = &mut |places: &[f64; _], weights: &[f64; _]| places.iter().zip(weights).for_each(&mut add);
+            self.visit(added, (low, high), far, &mut |items| alone.extend(items));
+            alone.into_iter().for_each(|item| add((&sources.0[item], &sources.1[item])));
             let dot = |row: &[f64; PROXIES]| row.iter().zip(samples).map(|(share, sample)| share * sample).sum();
             Local { low, high, first_near, items, series: transform.each_ref().map(dot) }
         };
         let (mut locals, mut open) = (Vec::new(), Vec::new());
-        let of = |wide: Option<&Local>, index: usize, depth: usize| {
-            let cluster = &self.clusters[index];
-            (cluster, narrowed(wide, (cluster.low, cluster.high), cluster.first..cluster.last, depth), depth)
+        let of = |wide: Option<&Local>, number: usize, depth: usize| {
+            let Cluster { items, sources, halves } = self.0.cluster(number);
+            (*halves, narrowed(wide, (sources.low, sources.high), items.clone(), depth), depth)
         };
-        open.extend(self.clusters.len().checked_sub(1).map(|root| of(None, root, 0)));
-        while let Some((cluster, local, depth)) = open.pop() {
-            if let Some((low, high)) = cluster.children {
-                open.extend([high, low].map(|child| of(Some(&local), child, depth + 1)));
+        open.extend(self.0.root().map(|root| of(None, root, 0)));
+        while let Some((halves, local, depth)) = open.pop() {
+            if let Some([low, high]) = halves {
+                open.extend([high, low].map(|half| of(Some(&local), half, depth + 1)));
             } else {
                 locals.push(local);
             }
@@ -280,12 +226,12 @@ impl FarField {
 
     /// The first item of the cluster, this many halvings below the whole, that holds an item.
     fn start(&self, item: usize, depth: usize) -> usize {
-        let mut cluster = self.clusters.last();
+        let mut number = self.0.root().unwrap_or(0);
         for _ in 0..depth {
-            let Some((low, high)) = cluster.and_then(|cluster| cluster.children) else { break };
-            cluster = self.clusters.get(if item < self.clusters[high].first { low } else { high });
+            let Some([low, high]) = self.0.cluster(number).halves else { break };
+            number = if item < self.0.cluster(high).items.start { low } else { high };
         }
-        cluster.map_or(0, |cluster| cluster.first)
+        self.0.cluster(number).items.start
     }
 }
 
@@ -314,20 +260,22 @@ mod tests {
 
     #[test]
     fn far_and_near_together_are_the_whole() {
-        let bounds: Vec<f64> = (0..=100u32).map(|i| f64::from(i * i)).collect();
-        let source = |item: usize| (0.3 * bounds[item] + 0.7 * bounds[item + 1], 1.0 + bounds[item].sin());
-        let far = FarField::new(&bounds, 4, |item, add| {
-            let (at, weight) = source(item);
-            add(at, weight);
-        });
-        let exact: f64 = (10..90).map(source).map(|(at, weight)| weight / (at - 64.0f64).abs().sqrt()).sum();
-        let (mut sum, mut extra, mut calls) = (0.0, 0.0, 0);
-        far.visit(10..90, (64.0, 64.0), &mut |at, weight| sum += weight / (at - 64.0f64).abs().sqrt(), &mut |item| {
-            let (at, weight) = source(item);
-            extra += weight / (at - 64.0f64).abs().sqrt();
-            calls += 1;
-        });
-        assert!(((sum + extra) / exact - 1.0).abs() < 1e-15);
+        let places: Vec<f64> = (0..=100u32).map(|i| f64::from(i * i)).collect();
+        let weights: Vec<f64> = places.iter().map(|place| 1.0 + place.sin()).collect();
+        let term = |(at, weight): (&f64, &f64)| weight / (at - 70.0).abs().sqrt();
+        let sum = |places: &[f64], weights: &[f64]| -> f64 { places.iter().zip(weights).map(term).sum() };
+        let (mut far, mut near, mut calls) = (0.0, 0.0, 0);
+        FarField::new(&places, &weights, 4).visit(
+            10..90,
+            (70.0, 70.0),
+            &mut |places, weights| far += sum(places, weights),
+            &mut |items| {
+                calls += items.len();
+                near += sum(&places[items.clone()], &weights[items]);
+            },
+        );
+        let exact = sum(&places[10..90], &weights[10..90]);
+        assert!(((far + near) / exact - 1.0).abs() < 1e-15);
         assert!(calls < 40, "{calls}");
     }
 }

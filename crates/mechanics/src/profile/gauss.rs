@@ -57,6 +57,13 @@ const TWENTY: [(f64, f64); 10] = [
     (0.461_736_739_433_251_35, 0.076_376_693_565_362_93),
 ];
 
+/// The integrals over 0..1 of a function and of its square, by its values at the points of a rule.
+pub(super) fn first_and_second<const N: usize>(rule: &[(f64, f64); N], values: [f64; N]) -> (f64, f64) {
+    rule.iter()
+        .zip(values)
+        .fold((0.0, 0.0), |(first, second), (&(_, weight), h)| (first + weight * h, second + weight * h * h))
+}
+
 /// A stretch below the top of what is still to be integrated: its width and the rule for it.
 #[derive(Clone, Copy)]
 pub(crate) struct Panel {

@@ -1,14 +1,16 @@
 //! The kernels of many adjoining rings, weighted and summed, at many radii.
 //!
-//! A ring that is far from r acts by the points of a Gauss rule over its radii, and many of them as one cluster ([`FarField`]); only near
+//! A ring that is far from r acts by the points of a Gauss rule over its radii, and many of them as one cluster ([`Multipole`]); only near
 //! rings are asked for their kernels. A rule counts as good where it finds the depth of its ring, which is known.
 
-use super::far_field::FarField;
+use super::cluster_tree::ClusterTree;
+use super::gauss::TWENTY_POINTS;
+use super::multipole::Multipole;
 use super::shape::Shape;
 use super::slope_series::SeriesRings;
 use super::smooth_pieces::SmoothPieces;
 use super::tabulated::WeightedPanels;
-use super::{Profile, Ring, StressRadius, gauss};
+use super::{Profile, Ring, StressRadius};
 
 /// What the derivative of a table's kernels counts for, in terms of a sum over rings.
 const PANEL_TERMS: usize = 8;
@@ -84,10 +86,8 @@ impl KernelSlopes<'_> {
     pub(crate) fn at(&self, radii: &[StressRadius], goes_on: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         match self {
             KernelSlopes::Pieces(pieces) => pieces.slopes(radii, goes_on),
-            KernelSlopes::Panels(panels) => {
-                let slope = |at| if goes_on(PANEL_TERMS) { panels.slope(at) } else { (0.0, 0.0) };
-                radii.iter().map(slope).collect()
-            }
+            KernelSlopes::Panels(panels) if goes_on(PANEL_TERMS * radii.len()) => panels.slopes(radii),
+            KernelSlopes::Panels(_) => vec![(0.0, 0.0); radii.len()],
         }
     }
 }
@@ -130,59 +130,71 @@ impl<'a> InwardSum<'a> {
 struct Sources<'a> {
     profile: &'a Profile,
     rings: &'a [(Ring, f64)],
-    tree: FarField,
-    /// Whether a ring is in the tree.
-    resolved: Vec<bool>,
-    /// The square of the radius of the edge, m^2.
-    edge: f64,
+    /// Empty of few rings and radii.
+    tree: ClusterTree<Far>,
+    /// [`NEAR`] in m^2.
+    margin: f64,
 }
+
+/// What stands for a cluster of rings from afar; none if the rule is not good for one of them.
+type Far = Option<Multipole>;
 
 impl Sources<'_> {
     /// The sources of rings and their weights, in a tree if there are `many`.
     fn new<'a>(profile: &'a Profile, rings: &'a [(Ring, f64)], many: bool) -> Sources<'a> {
-        let (top, edge) =
-            rings.last().map_or((0.0, 0.0), |(ring, _)| (ring.outer.level.value(), ring.outer.square.value()));
-        let sources: Vec<Vec<(f64, f64)>> = rings
-            .iter()
-            .map(|(ring, weight)| {
-                let (mut points, mut sum) = (Vec::new(), 0.0);
-                if many {
-                    let (low, high) = (ring.inner.radius, ring.outer.radius);
-                    gauss::Panel::fine(high - low).visit(|below, share| {
-                        let rise = share * profile.slope(high - below);
-                        points.push(((high - below) * (high - below), rise));
-                        sum += rise;
-                    });
+        let edge = rings.last().map(|(ring, _)| ring.outer).unwrap_or_default();
+        let clusters = if many { rings.len() } else { 0 };
+        let tree = ClusterTree::new(clusters, 1, |items, halves: Option<[&Far; 2]>| {
+            let (inner, outer) = (&rings[items.start].0.inner, &rings[items.end - 1].0.outer);
+            let mut sources = Multipole::empty((inner.square.value(), outer.square.value()));
+            match halves {
+                Some(halves) => {
+                    for half in halves {
+                        sources.add(half.as_ref()?, 1.0);
+                    }
                 }
-                let good = sum > 0.0 && (sum - ring.depth).abs() <= 4.0 * f64::EPSILON * top;
-                points.iter_mut().for_each(|(_, rise)| *rise *= weight * ring.depth / sum);
-                if good { points } else { Vec::new() }
-            })
-            .collect();
-        let ends =
-            rings.first().map(|(ring, _)| ring.inner).into_iter().chain(rings.iter().map(|(ring, _)| ring.outer));
-        let bounds: Vec<f64> = ends.filter(|_| many).map(|end| end.square.value()).collect();
-        let tree = FarField::new(&bounds, 1, |index, add| sources[index].iter().for_each(|&(at, rise)| add(at, rise)));
-        let resolved = sources.iter().map(|points| !points.is_empty()).collect();
-        Sources { profile, rings, tree, resolved, edge }
+                None => add_ring(&mut sources, profile, &rings[items.start], edge.level.value())?,
+            }
+            Some(sources)
+        });
+        Sources { profile, rings, tree, margin: NEAR * edge.square.value() }
     }
 
     fn sum(&self, at: &StressRadius) -> f64 {
         let square = at.square.value();
-        let margin = NEAR * self.edge;
         let first = self.rings.partition_point(|(ring, _)| ring.outer.radius < at.radius);
-        let kernel = |index: usize| {
-            let (ring, weight) = &self.rings[index];
+        let kernel = |(ring, weight): &(Ring, f64)| {
             if weight.abs() > 0.0 { weight * self.profile.kernel(at, ring) } else { 0.0 }
         };
-        let alone = (first..self.rings.len()).filter(|&index| !self.resolved[index]);
-        let (mut far, mut near) = (0.0, alone.map(kernel).sum::<f64>());
+        if self.tree.root().is_none() {
+            return self.rings[first..].iter().map(kernel).sum();
+        }
+        let (mut far, mut near) = (0.0, 0.0);
         self.tree.visit(
             first..self.rings.len(),
-            (square, square + margin),
-            &mut |place, rise| far += rise / (place - square).sqrt(),
-            &mut |index| near += if self.resolved[index] { kernel(index) } else { 0.0 },
+            &mut |cluster| {
+                let beyond = square + self.margin;
+                let away = |sources: &&Multipole| sources.is_far(beyond) && sources.interval.0 - beyond >= self.margin;
+                let sources = cluster.sources.as_ref().filter(away);
+                far += sources.map_or(0.0, |sources| sources.potentials([square])[0]);
+                sources.is_some()
+            },
+            &mut |items| near += self.rings[items].iter().map(kernel).sum::<f64>(),
         );
         far + near
     }
+}
+
+/// Adds the points of a ring; `None` if they miss its depth by more than the rounding of the level `top`, m.
+fn add_ring(sources: &mut Multipole, profile: &Profile, (ring, weight): &(Ring, f64), top: f64) -> Option<()> {
+    let (low, high) = (ring.inner.radius, ring.outer.radius);
+    let nodes = TWENTY_POINTS.map(|(u, share)| (low + (high - low) * u, (high - low) * share));
+    let rises = nodes.map(|(x, share)| share * profile.slope(x));
+    let sum: f64 = rises.iter().sum();
+    if !(sum > 0.0 && (sum - ring.depth).abs() <= 4.0 * f64::EPSILON * top) {
+        return None;
+    }
+    sources
+        .add_sources(&nodes.map(|(x, _)| (x - low) * (x + low)), &rises.map(|rise| weight * ring.depth / sum * rise));
+    Some(())
 }

@@ -3,7 +3,7 @@
 //! Differences are taken by divided differences, sums of positive terms. g is convex, so that Newton's steps from above come down on X(y);
 //! the rule of eight points integrates h^2 exactly, up to a degree of seven for g.
 
-use super::gauss::EIGHT_POINTS;
+use super::gauss::{EIGHT_POINTS, first_and_second};
 use super::roots::descend;
 use super::shape::Shape;
 use super::{Moments, Profile, Ring, Span};
@@ -107,11 +107,7 @@ impl Polynomial {
     pub(super) fn moments(&self, span: &Span) -> Moments {
         let width = span.width();
         let h = self.rises(span.outer_radius, EIGHT_POINTS.map(|(u, _)| width * u));
-        let (mut first, mut second) = (0.0, 0.0);
-        for (h, (_, weight)) in h.into_iter().zip(EIGHT_POINTS) {
-            first += weight * h;
-            second += weight * h * h;
-        }
+        let (first, second) = first_and_second(&EIGHT_POINTS, h);
         Moments { width, first: width * first, second: width * second }
     }
 }

@@ -3,7 +3,7 @@
 //! K(r, c) = n B I_(n-1) with I_m = int x^m dx/sqrt(x^2 - r^2): for whole n by a recursion ([`slope_series`](super::slope_series)) of
 //! positive terms (Galin 1946; Sneddon 1965); else over x = r cosh s; from 1e8 r on, where x^2 - r^2 is x^2 to round-off, in closed form.
 
-use super::gauss::{EIGHT_POINTS, Singular};
+use super::gauss::{EIGHT_POINTS, Singular, first_and_second};
 use super::power_series::{Place, Series};
 use super::shape::Shape;
 use super::smooth_coordinate::{self, SmoothCoordinate};
@@ -85,12 +85,8 @@ impl PowerLaw {
                 *chord = *chord * (1.0 - below) + 1.0;
             }
         }
-        let (mut first, mut second) = (0.0, 0.0);
-        for ((chord, below), (_, weight)) in chords.into_iter().zip(below).zip(EIGHT_POINTS) {
-            let h = below * chord;
-            first += weight * h;
-            second += weight * h * h;
-        }
+        let rises = std::array::from_fn(|index| below[index] * chords[index]);
+        let (first, second) = first_and_second(&EIGHT_POINTS, rises);
         (share * first, share * second)
     }
 

@@ -201,7 +201,6 @@ impl SeriesRings<'_> {
         let rings: Vec<(f64, f64)> = self.rings.iter().map(|ring| (ring.gap, ring.weight)).collect();
         let distant = DistantRings::new(&rings);
         let (order, mut sums) = (StressRadius::rising(radii), vec![0.0; radii.len()]);
-        let (mut far, mut near) = (Vec::new(), Vec::new());
         let mut antiderivative = Antiderivative::of(self.series);
         for order in order.chunks(LANES) {
             let place = Place::of(order.iter().map(|&index| radii[index].square));
@@ -213,11 +212,9 @@ impl SeriesRings<'_> {
                 let square = self.rings[index].end.square;
                 (square * (1.0 - 4.0 * f64::EPSILON) - place.greatest) * self.unit
             };
-            distant.divide(last, distance, &mut far, &mut near);
-            for run in &near {
-                self.add(run.clone(), &place, &antiderivative, &mut lanes);
-            }
-            let sum = distant.sum(&far, |index| place.excess(&self.rings[index].end, self.unit));
+            let excess = |index: usize| place.excess(&self.rings[index].end, self.unit);
+            let near = |run: Range<usize>| self.add(run, &place, &antiderivative, &mut lanes);
+            let sum = distant.sum(self.rings.len().min(last + 1), distance, excess, near);
             for ((&index, near), far) in order.iter().zip(lanes).zip(sum) {
                 sums[index] = near + 0.5 * self.series[1] * far;
             }

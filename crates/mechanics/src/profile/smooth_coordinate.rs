@@ -278,15 +278,10 @@ fn add_panel<const N: usize>(
     }
 }
 
-/// The span as one interval above the kink.
-fn interval(family: &impl SmoothCoordinate, span: &Span) -> SmoothInterval {
-    SmoothInterval::new(span, family.kink_radius(), family.singularity(), f64::INFINITY, 2.0)
-}
-
-/// The displacement integral of a span above the core, `above` the level added to h.
-pub(super) fn displacement_integral(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span, above: f64) -> f64 {
-    let interval = interval(family, span);
-    interval.displacement_integral(span, at, above, |node| family.rise_at(node.t, interval.high, node.dt))
+/// The displacement integral of a span above the core.
+pub(super) fn displacement_integral(family: &impl SmoothCoordinate, at: &StressRadius, span: &Span) -> f64 {
+    let interval = SmoothInterval::new(span, family.kink_radius(), family.singularity(), f64::INFINITY, 2.0);
+    interval.displacement_integral(span, at, 0.0, |node| family.rise_at(node.t, interval.high, node.dt))
 }
 
 /// Implements `Shape` for a family with a flat core through its [`SmoothCoordinate`]: all but its loads and the given methods.
@@ -324,7 +319,7 @@ macro_rules! flat_core {
                 smooth_coordinate::moments(self, span)
             }
             fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
-                smooth_coordinate::displacement_integral(self, at, span, 0.0)
+                smooth_coordinate::displacement_integral(self, at, span)
             }
             fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
                 smooth_coordinate::kernel(self, at, span)

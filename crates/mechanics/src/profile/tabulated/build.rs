@@ -1,13 +1,15 @@
 //! Builds the panels of a table from f'.
 //!
 //! g'(x) = int_0^x (r f')' dr/sqrt(x^2 - r^2), and (r f')' = A + 2 C r between knots, so each segment gives
-//! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones through [`FarField`], once for a block of panels.
+//! A (asin) + 2 C (sqrt) in closed form. Near segments are summed so; far ones as [`Multipole`]s, once for a block of panels.
 
-use super::super::far_field::{FarField, Sampled};
-use super::LEAF;
+use super::super::cluster_tree::{Cluster, ClusterTree};
+use super::super::far_field::Sampled;
+use super::super::multipole::Multipole;
+use super::DoubleDouble;
+use super::gauss::TWENTY_POINTS;
 use super::panel::{self, Panel};
 use super::spline::Knot;
-use super::{DoubleDouble, gauss};
 
 /// Panels that share one far field.
 const BLOCK: usize = 4;
@@ -39,14 +41,7 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
             Segment { start: pair[0].radius, constant: pair[0].slope - curvature * pair[0].radius, curvature }
         })
         .collect();
-    let bounds: Vec<f64> = knots.iter().map(|knot| knot.radius * knot.radius).collect();
-    let far = FarField::new(&bounds, LEAF, |index, add| {
-        let (segment, width) = (&segments[index], knots[index + 1].radius - knots[index].radius);
-        gauss::Panel::fine(width).visit(|step, weight| {
-            let r = segment.start + step;
-            add(r * r, weight * (segment.constant + 2.0 * segment.curvature * r));
-        });
-    });
+    let far = sources(knots, &segments);
     let stretches = stretches(knots, &segments);
     let transform = panel::transform();
     let (mut panels, mut falls_at) = (Vec::with_capacity(stretches.len()), None);
@@ -75,6 +70,24 @@ pub(super) fn panels(knots: &[Knot], whole: bool) -> (Vec<Panel>, Option<f64>) {
         }
     }
     (panels, falls_at)
+}
+
+/// The sources (r f')' dr of segments over X = -r^2, so that the radii of g lie below them.
+fn sources(knots: &[Knot], segments: &[Segment]) -> ClusterTree<Multipole> {
+    ClusterTree::new(segments.len(), 1, |items, halves| {
+        let (start, end) = (knots[items.start].radius, knots[items.end].radius);
+        let mut sources = Multipole::empty((-end * end, -start * start));
+        match halves {
+            Some(halves) => halves.into_iter().for_each(|half: &Multipole| sources.add(half, 1.0)),
+            None => {
+                let Segment { constant, curvature, .. } = segments[items.start];
+                let nodes = TWENTY_POINTS.map(|(u, share)| (start + (end - start) * u, (end - start) * share));
+                let above = nodes.map(|(r, _)| (end - r) * (end + r));
+                sources.add_sources(&above, &nodes.map(|(r, weight)| weight * (constant + 2.0 * curvature * r)));
+            }
+        }
+        sources
+    })
 }
 
 impl Stretch {
@@ -121,20 +134,23 @@ struct Field {
 }
 
 impl Field {
-    fn new(block: &[Stretch], segments: &[Segment], far: &FarField) -> Field {
+    fn new(block: &[Stretch], segments: &[Segment], far: &ClusterTree<Multipole>) -> Field {
         let (first, last) = (&block[0], &block[block.len() - 1]);
         let low = first.base * first.base + first.low * first.low;
         let high = last.base * last.base + last.high * last.high;
-        let mut sources = Vec::new();
-        let mut near = Vec::new();
-        far.visit(0..first.knot, (low, high), &mut |at, weight| sources.push((at, weight)), &mut |index| {
-            near.push(index)
-        });
+        let (mut sources, mut near) = (Vec::new(), Vec::new());
+        far.visit(
+            0..first.knot,
+            &mut |Cluster { sources: cluster, .. }| {
+                let is_far = cluster.is_far(-low) && cluster.interval.0 + low >= high - low;
+                sources.extend(is_far.then_some(cluster));
+                is_far
+            },
+            &mut |items| near.extend(items),
+        );
         near.extend(first.knot..segments.len().min(last.knot + 1));
-        let sampled = Sampled::new(low, high, |square| {
-            sources.iter().map(|&(at, weight)| weight / (square - at).abs().sqrt()).sum()
-        });
-        Field { near, far: sampled }
+        let potential = |square: f64| sources.iter().map(|sources| sources.potentials([-square])[0]).sum();
+        Field { near, far: Sampled::new(low, high, potential) }
     }
 
     /// g' at t of a stretch.

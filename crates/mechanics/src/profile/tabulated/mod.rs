@@ -10,41 +10,38 @@
 mod build;
 mod displacement;
 mod interpolation_error;
-mod kernel_sums;
-mod legendre;
+mod kernel;
 mod lookup;
-mod many_radii;
 mod near_kernel;
 mod noise;
 mod panel;
 mod panel_integrals;
 mod panels;
 mod ring_moments;
-mod source_tree;
 mod spline;
 #[cfg(test)]
 mod tests;
+mod weighted_panels;
 
 use super::super::error::TableFault;
+use super::cluster_tree::ClusterTree;
 use super::kernel_sums::FEW;
 use super::moment_tree::MomentTree;
+use super::multipole::Multipole;
 use super::shape::{self, End, Shape};
 use super::smooth_coordinate::{self, SmoothCoordinate};
 use super::smooth_interval::{Node, SmoothInterval};
 use super::{DoubleDouble, Error, Moments, Point, Ring, Span, StressRadius, gauss, range};
 pub use interpolation_error::InterpolationError;
-pub(super) use kernel_sums::WeightedPanels;
+use kernel::Kernel;
 use lookup::Lookup;
 use panel::Panel;
-use source_tree::SourceTree;
 use spline::Knot;
+pub(super) use weighted_panels::WeightedPanels;
 
 /// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the panel's end: it is
 /// ln(2 t/s), or less.
 const LOGARITHM: f64 = 40.0;
-
-/// Panels in the smallest cluster of the kernel's sources.
-const LEAF: usize = 1;
 
 /// A tabulated profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +58,7 @@ pub struct Tabulated {
     /// Moments and depth of all runs of panels.
     tree: MomentTree,
     /// The kernel's sources.
-    sources: SourceTree,
+    sources: ClusterTree<Multipole>,
     knots: Vec<f64>,
     /// The sums of [`Panel::steepest`] before each panel.
     steepest: Vec<f64>,
@@ -125,9 +122,9 @@ impl Tabulated {
             });
         };
         let end = (last.end().1, level, load);
-        let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span()), panel.depth());
+        let leaf = |panel: &Panel| (smooth_coordinate::moments(panel, &panel.span(None)), panel.depth());
         let tree = MomentTree::new(panels.iter().map(leaf));
-        let sources = SourceTree::new(&panels);
+        let sources = weighted_panels::sources(&panels);
         let mut knots: Vec<f64> = panels.iter().map(|panel| panel.base).filter(|&base| base > 0.0).collect();
         knots.dedup_by(|a, b| a.to_bits() == b.to_bits());
         let steepest = panels.iter().scan(0.0, |sum, panel| Some(std::mem::replace(sum, *sum + panel.steepest())));
@@ -270,18 +267,6 @@ impl Shape for Tabulated {
         smooth_coordinate::gap(&self.panels[first], &inside, depth)
     }
 
-    fn displacement_integral(&self, at: &StressRadius, span: &Span) -> f64 {
-        let (low, whole, high) = self.parts(span);
-        let whole = whole.map(|index| (index, self.panels[index].span_up_to(&self.panels[index + 1])));
-        let (mut sum, mut above) = (0.0, 0.0);
-        for (index, span) in high.into_iter().chain(whole.rev()).chain(low) {
-            let panel = &self.panels[index];
-            sum += smooth_coordinate::displacement_integral(panel, at, &span, above);
-            above += smooth_coordinate::rise(panel, &span);
-        }
-        sum
-    }
-
     fn rim(&self) -> Option<(f64, f64)> {
         Some((self.end.0, self.end.1))
     }
@@ -313,27 +298,23 @@ impl Shape for Tabulated {
     }
 
     fn kernel(&self, at: &StressRadius, span: &Span) -> f64 {
-        self.gather(
-            at,
-            span,
-            |panel, span| panels::kernel_of_part(panel, at, span),
-            |index| self.kernel_of_panel(index, at),
-            legendre::potential,
-        )
+        self.sum(Kernel::Root, at, span)
+    }
+
+    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
+        self.sum(Kernel::RootSlope, at, span)
     }
 
     fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
-        if rings.len() * radii.len() > FEW { kernel_sums::sums(self, rings, radii) } else { None }
+        if rings.len() * radii.len() <= FEW {
+            return None;
+        }
+        let sums = WeightedPanels::new(self, rings)?.sums(Kernel::Root, radii);
+        Some(sums.into_iter().map(|(sum, _)| sum).collect())
     }
 
     fn displacements(&self, rings: &[(Ring, f64)], ends: (f64, f64), radii: &[StressRadius]) -> Option<Vec<f64>> {
         displacement::displacements(self, rings, ends, radii)
-    }
-
-    fn kernel_slope(&self, at: &StressRadius, span: &Span) -> f64 {
-        let part = |panel: &Panel, span: &Span| smooth_coordinate::kernel_slope(panel, at, span);
-        let whole = |index: usize| part(&self.panels[index], &self.panels[index].span());
-        self.gather(at, span, part, whole, legendre::potential_slope)
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {

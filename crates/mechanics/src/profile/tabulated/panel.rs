@@ -129,11 +129,6 @@ impl Panel {
         panel
     }
 
-    /// g from the beginning to t, m, to round-off of that over all of the panel.
-    pub(super) fn rise_to(&self, t: f64) -> f64 {
-        chebyshev(&self.primitive, self.place(t)) - chebyshev(&self.primitive, -1.0)
-    }
-
     /// t as a place from -1 to 1.
     pub(super) fn place(&self, t: f64) -> f64 {
         ((t - self.low) - (self.high - t)) / (self.high - self.low)
@@ -161,18 +156,12 @@ impl Panel {
         self.rise_at(self.low, self.high, self.high - self.low)
     }
 
-    /// All of it.
-    pub(super) fn span(&self) -> Span {
-        let (outer, outer_radius) = self.end();
-        let gap = (self.high - self.low) * (self.high + self.low);
+    /// All of it, up to the very square where the next one begins, if there is one: its own end is rounded, and 1/sqrt(r^2 - x^2) would
+    /// turn a gap of one unit in the last place beneath r into 1e-8 of a displacement.
+    pub(super) fn span(&self, next: Option<&Panel>) -> Span {
+        let (outer, outer_radius) = next.map_or_else(|| self.end(), |next| (next.square, next.radius));
+        let gap = (outer - self.square).value();
         Span { inner: self.square, outer, inner_radius: self.radius, outer_radius, gap, edge: 0.0 }
-    }
-
-    /// All of it, up to the very square where the next one begins: its own end is rounded, and 1/sqrt(r^2 - x^2) would turn a gap of
-    /// one unit in the last place beneath r into 1e-8 of a displacement.
-    pub(super) fn span_up_to(&self, next: &Panel) -> Span {
-        let gap = (next.square - self.square).value();
-        Span { outer: next.square, outer_radius: next.radius, gap, ..self.span() }
     }
 
     /// The t of a radius that lies in it.

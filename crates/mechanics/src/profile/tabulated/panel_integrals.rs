@@ -10,6 +10,7 @@
 //! W H^2 ([`PanelIntegrals::resolve`]), as they are for a ring that holds a whole panel of this size beside the part. Thinner rings are
 //! integrated numerically.
 
+use super::super::smooth_coordinate::SmoothCoordinate;
 use super::panel::{Panel, Transform, places, series};
 use super::{Moments, near_kernel};
 
@@ -30,7 +31,7 @@ impl PanelIntegrals {
         let (low, high) = (panel.low, panel.high);
         let stretch = |t: f64| if panel.base > 0.0 { t / (panel.base * panel.base + t * t).sqrt() } else { 1.0 };
         let places = places(low, high);
-        let rises = places.map(|t| panel.rise_to(t));
+        let rises = places.map(|t| panel.rise_at(low, t, t - low));
         let area = std::array::from_fn(|index| rises[index] * stretch(places[index]));
         let square = std::array::from_fn(|index| rises[index] * area[index]);
         let primitives = [area, square].map(|values| primitive(&series(&values, transform), 0.5 * (high - low)));
@@ -39,7 +40,7 @@ impl PanelIntegrals {
         let areas: Box<[[f64; 2]]> =
             (0..length).map(|index| primitives.each_ref().map(|series| term(series, index))).collect();
         let whole = areas.iter().fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
-        let depth = panel.rise_to(high);
+        let depth = panel.depth();
         let width = (high - low) * (high + low) / (panel.radius + panel.end().1);
         PanelIntegrals { areas, width, depth, whole }
     }

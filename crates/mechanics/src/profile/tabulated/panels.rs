@@ -1,8 +1,8 @@
-//! The panels of a table that a span meets, and sums of the kernel over them.
+//! The panels of a table that a span meets, and sums of kernels over them.
 
-use super::legendre::{self, LegendreMoments};
-use super::panel::Panel;
-use super::{Span, StressRadius, Tabulated, near_kernel, smooth_coordinate};
+use std::ops::Range;
+
+use super::{Kernel, Span, StressRadius, Tabulated};
 
 /// A stretch within the panel of this index.
 pub(super) type Piece = (usize, Span);
@@ -20,7 +20,7 @@ impl Tabulated {
     }
 
     /// The parts of a span in its innermost and its outermost panel, and the whole panels between.
-    pub(super) fn parts(&self, span: &Span) -> (Option<Piece>, std::ops::Range<usize>, Option<Piece>) {
+    pub(super) fn parts(&self, span: &Span) -> (Option<Piece>, Range<usize>, Option<Piece>) {
         let (inner, outer) = self.ends(span);
         if inner == outer {
             return (None, outer..outer, Some((outer, *span)));
@@ -35,44 +35,26 @@ impl Tabulated {
 
     /// A panel as a span, up to the very square where the next one begins.
     pub(super) fn span_of_panel(&self, index: usize) -> Span {
-        let panel = &self.panels[index];
-        self.panels.get(index + 1).map_or_else(|| panel.span(), |next| panel.span_up_to(next))
+        self.panels[index].span(self.panels.get(index + 1))
     }
 
-    /// The kernel of a whole panel.
-    pub(super) fn kernel_of_panel(&self, index: usize, at: &StressRadius) -> f64 {
-        kernel_of_part(&self.panels[index], at, &self.span_of_panel(index))
-    }
-
-    /// Sums over the panels of a span beyond r: `part` of one that the span cuts, `whole` of others, and `far` of clusters of them.
-    pub(super) fn gather(
-        &self,
-        at: &StressRadius,
-        span: &Span,
-        part: impl Fn(&Panel, &Span) -> f64,
-        whole: impl Fn(usize) -> f64,
-        far: impl Fn((f64, f64), &LegendreMoments, f64) -> f64,
-    ) -> f64 {
+    /// The sum of a kernel of what lies beyond r over a span.
+    pub(super) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
-        let (low, between, high) = self.parts(&span);
-        let mut sum = 0.0;
-        for (index, span) in [low, high].into_iter().flatten() {
-            sum += part(&self.panels[index], &span);
-        }
-        let below = at.square.value();
-        let (mut distant, mut close) = (0.0, 0.0);
+        let (low, whole, high) = self.parts(&span);
+        let part = |(index, span): Piece| kernel.near(&self.panels[index], at, &span);
+        let (square, mut far, mut near) = (at.square.value(), 0.0, 0.0);
         self.sources.visit(
-            self.sources.root(),
-            &between,
-            &|interval| legendre::is_far(interval, below),
-            &mut |cluster| distant += far(cluster.interval, &cluster.moments, below),
-            &mut |index| close += whole(index),
+            whole,
+            &mut |cluster| {
+                let is_far = kernel.is_far(&cluster.sources, square);
+                if is_far {
+                    far += kernel.far(&cluster.sources, [square])[0];
+                }
+                is_far
+            },
+            &mut |panels| near += panels.map(|index| part((index, self.span_of_panel(index)))).sum::<f64>(),
         );
-        sum + close + distant
+        low.into_iter().chain(high).map(part).sum::<f64>() + near + far
     }
-}
-
-/// The kernel of a part of a panel.
-pub(super) fn kernel_of_part(panel: &Panel, at: &StressRadius, span: &Span) -> f64 {
-    near_kernel::kernel(panel, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, at, span))
 }

@@ -1,0 +1,111 @@
+//! The integrals over rings of a profile: what moves, stresses and displacements are sums of. What a ring crosses at a vertical edge is
+//! added here, to what a family says of the face.
+
+#[cfg(test)]
+use super::call_count;
+use super::ring_quadrature::RingNodes;
+use super::shape::Shape;
+use super::{Asperities, Count, Ellipsoid, Moments, Profile, Ring, Span, StressRadius};
+
+impl Profile {
+    /// The integrals over a ring, each to round-off of itself however thin the ring is.
+    #[must_use]
+    #[inline]
+    pub fn moments(&self, ring: &Ring) -> Moments {
+        #[cfg(test)]
+        call_count::add(|calls| &mut calls.moments);
+        // As for a point; and the ring need not be written to memory.
+        if let Profile::Sphere(sphere) = self { sphere.moments_between(ring) } else { self.moments_of_any(ring) }
+    }
+
+    #[inline(never)]
+    fn moments_of_any(&self, ring: &Ring) -> Moments {
+        each!(self, shape => shape.ring_moments(ring))
+    }
+
+    /// Difference of the squares of the radii of a ring, m^2, to round-off of itself.
+    pub(super) fn gap_of(&self, ring: &Ring) -> f64 {
+        each!(self, shape => shape.span(ring).gap)
+    }
+
+    /// The levels of a ring that lie on a vertical edge, m.
+    pub(crate) fn edge_depth(&self, ring: &Ring) -> f64 {
+        each!(self, shape => shape.span(ring).edge)
+    }
+
+    /// The nodes of a quadrature over the radii of a ring, for integrands with roots of the depth h below its outer level and
+    /// of `total` - h, and with waves in the angle whose cosine is 1 - 2 h/total, up to cos(`turns` th).
+    pub(crate) fn ring_nodes(&self, ring: &Ring, total: f64, turns: usize) -> RingNodes {
+        each!(self, shape => shape.ring_nodes(ring, total, turns))
+    }
+
+    /// int dy / sqrt(X(y)^2 - r^2) over the levels of the ring whose radius is above r (pure number): the ring's share of a
+    /// stress. For a smooth profile this is K(r, x_outer) - K(r, max(r, x_inner)), K(r, c) = int_r^c g'(x)/sqrt(x^2 - r^2) dx.
+    /// Infinite at the tip of a cone, where f' jumps, and at a vertical edge; never NaN.
+    #[must_use]
+    pub fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
+        #[cfg(test)]
+        call_count::add(|calls| &mut calls.kernel);
+        each!(self, shape => {
+            let span = shape.span(ring);
+            let face = shape.kernel(at, &span);
+            if span.edge > 0.0 { face + edge(at, &span) } else { face }
+        })
+    }
+
+    /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner radius.
+    #[must_use]
+    pub fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
+        #[cfg(test)]
+        call_count::add(|calls| &mut calls.kernel_slope);
+        each!(self, shape => {
+            let span = shape.span(ring);
+            let face = shape.kernel_slope(at, &span);
+            if span.edge > 0.0 { face + edge_slope(at, &span) } else { face }
+        })
+    }
+
+    /// int (y_outer - g(x)) dx / sqrt(r^2 - x^2) over the radii x of the ring below r, m: the ring's share of the displacement
+    /// of the surface at r.
+    #[must_use]
+    pub fn displacement_integral(&self, at: &StressRadius, ring: &Ring) -> f64 {
+        #[cfg(test)]
+        call_count::add(|calls| &mut calls.displacement_integral);
+        each!(self, shape => {
+            let span = shape.span(ring);
+            let face = shape.displacement_integral(at, &span);
+            if span.edge > 0.0 { face + span.edge * span.arc(at) } else { face }
+        })
+    }
+
+    /// (2/pi) int v dx/sqrt(r^2 - x^2) over the radii x of the contact below r, m, at each of `radii`, at once: v, m, is straight in g over
+    /// rings that adjoin each other from the centre to the edge, each with its dv/dg, and `ends` are its values at the centre and at the edge.
+    /// `None` where ring by ring is no slower.
+    pub(crate) fn displacements(
+        &self,
+        rings: &[(Ring, f64)],
+        ends: (f64, f64),
+        radii: &[StressRadius],
+    ) -> Option<Vec<f64>> {
+        Shape::displacements(self, rings, ends, radii)
+    }
+
+    /// int dx / sqrt(r^2 - x^2) over the radii x of the ring below r (pure number). What lies inside X(0), a flat core, belongs
+    /// to no ring: there it is asin(min(1, X(0)/r)).
+    #[must_use]
+    pub fn arc(&self, at: &StressRadius, ring: &Ring) -> f64 {
+        each!(self, shape => shape.span(ring).arc(at))
+    }
+}
+
+/// The contribution of the levels at a vertical edge to a kernel.
+fn edge(at: &StressRadius, span: &Span) -> f64 {
+    let square = (span.outer - at.square).value();
+    if square < 0.0 { 0.0 } else { span.edge / square.sqrt() }
+}
+
+/// Their contribution to its slope.
+fn edge_slope(at: &StressRadius, span: &Span) -> f64 {
+    let square = (span.outer - at.square).value();
+    if square < 0.0 { 0.0 } else { 0.5 * span.edge / square / square.sqrt() }
+}

@@ -1,0 +1,143 @@
+//! What is summed over the sources dg of a table: a kernel of their radius x and of r, whole clusters at once where they are far.
+//!
+//! Of X = x^2 = c + h xi the angles T below r have the derivative -+h/(2 sqrt(X (r^2 - X))) by xi, which is singular at X = 0 and at r^2. An
+//! interval that is as far from both as it is wide counts as far: a polynomial through the derivative at twenty Gauss points misses it by
+//! 0.1716^20 = 5e-16 of itself and a small factor (Trefethen 2008). T is its value at the centre and the primitive of that polynomial, whose
+//! parts the moments of the sources weigh ([`Multipole`]). In a panel that is near, int T dg is T at the lower end times the rise,
+//! -+ int h dx/sqrt(r^2 - x^2), h = g at the upper end less g.
+
+use std::ops::Range;
+use std::sync::LazyLock;
+
+#[cfg(test)]
+use super::super::call_count;
+use super::super::far_field::total;
+use super::super::multipole::{Multipole, ORDERS, add_polynomials};
+use super::panel::Panel;
+use super::{Span, StressRadius, gauss, near_kernel, smooth_coordinate};
+
+/// A kernel.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Kernel {
+    /// 1/sqrt(x^2 - r^2), of x beyond r: that of the stress.
+    Root,
+    /// Its derivative with respect to r^2.
+    RootSlope,
+    /// arccos(x/r), of x below r: that of the displacement of the contact.
+    Arccos,
+    /// arcsin(x/r), of x below r: that of what lies around it.
+    Arcsin,
+}
+
+impl Kernel {
+    /// Whether it is of what lies below r.
+    pub(super) fn is_angle(self) -> bool {
+        matches!(self, Kernel::Arccos | Kernel::Arcsin)
+    }
+
+    /// Whether panels have a share at the radii in a panel.
+    pub(super) fn meets(self, panels: &Range<usize>, panel: usize) -> bool {
+        if self.is_angle() { panels.start <= panel } else { panels.end > panel }
+    }
+
+    /// Whether sources are far from a radius of this square.
+    pub(super) fn is_far(self, sources: &Multipole, square: f64) -> bool {
+        let (low, high) = sources.interval;
+        if self.is_angle() { (square - high).min(low) >= high - low } else { sources.is_far(square) }
+    }
+
+    /// The sums over sources that are far from radii of these squares.
+    pub(super) fn far<const N: usize>(self, sources: &Multipole, squares: [f64; N]) -> [f64; N] {
+        match self {
+            Kernel::Root => sources.potentials(squares),
+            Kernel::RootSlope => sources.potential_slopes(squares),
+            Kernel::Arccos | Kernel::Arcsin => self.far_angles(sources, squares),
+        }
+    }
+
+    /// The sum over a part of a panel.
+    pub(super) fn near(self, panel: &Panel, at: &StressRadius, span: &Span) -> f64 {
+        match self {
+            Kernel::Root => {
+                near_kernel::kernel(panel, at, span).unwrap_or_else(|| smooth_coordinate::kernel(panel, at, span))
+            }
+            Kernel::RootSlope => {
+                #[cfg(test)]
+                call_count::add(|calls| &mut calls.kernel_slope);
+                smooth_coordinate::kernel_slope(panel, at, span)
+            }
+            Kernel::Arccos | Kernel::Arcsin => {
+                let below = (at.square - span.inner).value();
+                if below <= 0.0 {
+                    return 0.0;
+                }
+                let rise = smooth_coordinate::rise(panel, span);
+                let integral = smooth_coordinate::displacement_integral(panel, at, span);
+                self.angle(span.inner_radius, below) * rise + self.sign() * integral
+            }
+        }
+    }
+
+    /// The angle at x, where r^2 - x^2 is `beyond`.
+    fn angle(self, x: f64, beyond: f64) -> f64 {
+        let root = beyond.max(0.0).sqrt();
+        if self == Kernel::Arccos { root.atan2(x) } else { x.atan2(root) }
+    }
+
+    /// -1 of an angle that falls with x.
+    fn sign(self) -> f64 {
+        if self == Kernel::Arccos { -1.0 } else { 1.0 }
+    }
+
+    fn far_angles<const N: usize>(self, sources: &Multipole, squares: [f64; N]) -> [f64; N] {
+        let (low, high) = sources.interval;
+        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let mut sums = [0.0; N];
+        for (differences, place) in NODES.primitives.iter().zip(&NODES.places) {
+            let products: [f64; ORDERS] = std::array::from_fn(|order| differences[order] * sources.moments[order]);
+            let (x_square, share) = (centre + half * place, total(&products));
+            for (sum, square) in sums.iter_mut().zip(squares) {
+                *sum += share / (x_square * (square - x_square)).sqrt();
+            }
+        }
+        let at_centre = squares.map(|square| self.angle(centre.sqrt(), square - centre) * sources.moments[0]);
+        std::array::from_fn(|lane| at_centre[lane] + self.sign() * 0.5 * half * sums[lane])
+    }
+}
+
+/// Gauss's points, and what turns moments into the weights there of a derivative: of each point and order, the part of P_k in the primitive
+/// from 0 on of the polynomial that is one at the point and zero at the others.
+struct Nodes {
+    places: [f64; ORDERS],
+    primitives: [[f64; ORDERS]; ORDERS],
+}
+
+static NODES: LazyLock<Nodes> = LazyLock::new(|| {
+    let mut nodes = Nodes { places: [0.0; ORDERS], primitives: [[0.0; ORDERS]; ORDERS] };
+    for (index, (below, share)) in gauss::Panel::fine(2.0).nodes().enumerate() {
+        let place = 1.0 - below;
+        nodes.places[index] = place;
+        // The polynomial is the sum of share (j + 1/2) P_j(place) P_j, and the primitive of P_j is (P_(j+1) - P_(j-1))/(2j + 1).
+        let (here, centre) = (polynomials(place), polynomials(0.0));
+        let primitive = &mut nodes.primitives[index];
+        for order in 0..ORDERS {
+            let part = 0.5 * share * here[order];
+            if order + 1 < ORDERS {
+                primitive[order + 1] += part;
+                primitive[0] -= part * centre[order + 1];
+            }
+            if order > 0 {
+                primitive[order - 1] -= part;
+                primitive[0] += part * centre[order - 1];
+            }
+        }
+    }
+    nodes
+});
+
+/// The Legendre polynomials at a place.
+fn polynomials(place: f64) -> [f64; ORDERS] {
+    let mut values = [0.0; ORDERS];
+    add_polynomials(&mut values, &[place], &[1.0]);
+    values
+}
