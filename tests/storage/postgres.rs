@@ -4,6 +4,7 @@ use crate::common;
 use crate::fixtures::soon;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use common::create;
 use common::postgres::Cluster;
@@ -11,6 +12,7 @@ use futures::future::join_all;
 use jiff::Timestamp;
 use stickslip::store::{PostgresStore, Receipt, Record, Reply, RequestKey, Session, Store, StoreError, Tenant};
 use stickslip_wire::{ContactDefinition, Move, Regime, State};
+use tokio_postgres::{Client, NoTls};
 use uuid::Uuid;
 
 fn session() -> Session {
@@ -59,6 +61,12 @@ fn receipt(key: &str) -> Option<Receipt> {
 
 async fn open() -> PostgresStore {
     PostgresStore::open(&Cluster::shared().database().await).await.unwrap()
+}
+
+async fn connected(url: &str) -> Client {
+    let (client, connection) = tokio_postgres::connect(url, NoTls).await.unwrap();
+    tokio::spawn(connection);
+    client
 }
 
 #[tokio::test]
@@ -142,6 +150,42 @@ async fn one_that_fails_does_not_fail_those_beside_it() {
     assert_eq!(store.receipt("unused").await.unwrap(), None);
     assert_eq!(store.receipt("unused too").await.unwrap(), None);
     assert_eq!(store.receipt("fresh").await.unwrap(), receipt("fresh"));
+}
+
+#[tokio::test]
+async fn a_batch_that_waits_for_a_row_sees_what_was_committed_meanwhile() {
+    let url = Cluster::shared().database().await;
+    let store = PostgresStore::open(&url).await.unwrap();
+    let (raced, free) = (session(), session());
+    for new in [&raced, &free] {
+        store.create(new.clone(), None).await.unwrap();
+    }
+    let [other, watcher] = [connected(&url).await, connected(&url).await];
+    other.batch_execute("BEGIN").await.unwrap();
+    // Another process moves one of the two, and has not committed when the batch begins.
+    let taken = other.execute("UPDATE contacts SET sequence = 1 WHERE id = $1", &[&raced.id]).await.unwrap();
+    assert_eq!(taken, 1);
+    let waits = "SELECT 1 FROM pg_stat_activity WHERE datname = current_database() AND wait_event_type = 'Lock'";
+    let commit = async {
+        while watcher.query_opt(waits, &[]).await.unwrap().is_none() {
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+        other.batch_execute("COMMIT").await.unwrap();
+    };
+    let (lost, won, ()) = futures::join!(
+        store.append(raced.id, 0, vec![record(1, 1.0)], receipt("lost")),
+        store.append(free.id, 0, vec![record(1, 1.0)], receipt("won")),
+        commit,
+    );
+    assert!(matches!(lost, Err(StoreError::Stale { found: 1 })), "{lost:?}");
+    assert!(won.is_ok(), "{won:?}");
+    assert_eq!(store.find(raced.id).await.unwrap().sequence, 1);
+    let written =
+        "SELECT (SELECT count(*) FROM moves WHERE contact = $1), (SELECT count(*) FROM moves WHERE contact = $2)";
+    let written = other.query_one(written, &[&raced.id, &free.id]).await.unwrap();
+    assert_eq!((written.get::<_, i64>(0), written.get::<_, i64>(1)), (0, 1));
+    assert_eq!(store.receipt("lost").await.unwrap(), None);
+    assert_eq!(store.receipt("won").await.unwrap(), receipt("won"));
 }
 
 #[tokio::test]

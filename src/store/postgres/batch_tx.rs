@@ -1,9 +1,10 @@
-//! One batch of requests: a whole transaction sent at once, which costs one round trip however many requests it has.
+//! One batch of requests: a transaction of one round trip however many requests it has, and of one statement unless it both moves
+//! and makes sessions.
 
 use std::collections::HashMap;
 
-use futures::future::try_join_all;
-use tokio_postgres::{Client, Error, Statement};
+use futures::future::try_join;
+use tokio_postgres::{Client, Statement};
 use uuid::Uuid;
 
 use super::client_pool::{ANSWER, ClientPool, Parameter};
@@ -18,11 +19,9 @@ const ANNOUNCED: usize = 200;
 /// The writer's connection.
 pub(super) struct WriterConnection {
     client: Client,
-    lock: Statement,
     append: Statement,
     create: Statement,
-    /// None where the database has no notifications.
-    notify: Option<Statement>,
+    announces: bool,
 }
 
 /// A batch as columns.
@@ -41,12 +40,10 @@ impl WriterConnection {
     pub(super) async fn open(pool: &ClientPool) -> Result<WriterConnection, Fault> {
         let open = async {
             let client = pool.target.open().await?;
-            let statements = [sql::LOCK, sql::APPEND, sql::CREATE].map(|statement| client.prepare(statement));
-            let statements = try_join_all(statements).await?;
-            let notify = if pool.announces { Some(client.prepare(sql::NOTIFY).await?) } else { None };
-            let [lock, append, create] = <[Statement; 3]>::try_from(statements)
-                .map_err(|_| Fault::Lost("a statement was not prepared".to_owned()))?;
-            Ok(WriterConnection { client, lock, append, create, notify })
+            client.batch_execute(sql::PREPARE_WRITER).await?;
+            let append = sql::append(pool.announces);
+            let (append, create) = try_join(client.prepare(&append), client.prepare(sql::CREATE)).await?;
+            Ok(WriterConnection { client, append, create, announces: pool.announces })
         };
         pool.answer(ANSWER, open).await
     }
@@ -65,41 +62,37 @@ impl WriterConnection {
     ) -> Result<HashMap<Uuid, u64>, Fault> {
         let columns = Columns::of(requests);
         let appended = columns.requests.parameters().into_iter().chain(columns.moves.parameters());
-        let appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
-        let created = created(&columns.sessions, &columns.first_receipts);
-
-        let locked: [Parameter<'_>; 1] = [&columns.requests.id];
-        let announced: [Parameter<'_>; 2] = [&sql::CHANNEL, &columns.announcements];
-
-        // Polled in this order, and sent as they are polled.
-        let transaction = async {
-            Ok(futures::join!(
-                self.client.batch_execute(sql::BEGIN),
-                self.client.query(&self.lock, &locked),
-                self.execute(Some(&self.append).filter(|_| !columns.requests.id.is_empty()), &appended),
-                self.execute(Some(&self.create).filter(|_| !columns.sessions.id.is_empty()), &created),
-                self.execute(self.notify.as_ref(), &announced),
-                self.client.batch_execute(sql::COMMIT),
-            ))
-        };
-        let answers = pool.answer(ANSWER, transaction).await?;
-        // The first failure is the cause of the others, and of a commit that did nothing.
-        let (begun, found, appended, created, notified, committed) = answers;
-        begun?;
-        let found = found?;
-        appended?;
-        created?;
-        notified?;
-        committed?;
-        Ok(found.iter().map(|row| (row.get(0), from_bigint(row.get(1)))).collect())
-    }
-
-    /// Executes a statement if there is one.
-    async fn execute(&self, statement: Option<&Statement>, parameters: &[Parameter<'_>]) -> Result<u64, Error> {
-        match statement {
-            Some(statement) => self.client.execute(statement, parameters).await,
-            None => Ok(0),
+        let mut appended: Vec<_> = appended.chain(columns.receipts.parameters()).collect();
+        if self.announces {
+            appended.extend([&sql::CHANNEL as Parameter<'_>, &columns.announcements]);
         }
+        let created = created(&columns.sessions, &columns.first_receipts);
+        let (appends, creates) = (!columns.requests.id.is_empty(), !columns.sessions.id.is_empty());
+
+        // The driver returns once the database is ready again, and so after the commit of a statement without `BEGIN`.
+        let transaction = async {
+            Ok(match (appends, creates) {
+                (true, false) => self.client.query(&self.append, &appended).await?,
+                (false, _) => self.client.execute(&self.create, &created).await.map(|_| Vec::new())?,
+                // Polled in this order, and sent as they are polled.
+                (true, true) => {
+                    let (begun, found, created, committed) = futures::join!(
+                        self.client.batch_execute(sql::BEGIN),
+                        self.client.query(&self.append, &appended),
+                        self.client.execute(&self.create, &created),
+                        self.client.batch_execute(sql::COMMIT),
+                    );
+                    // The first failure is the cause of the others, and of a commit that did nothing.
+                    begun?;
+                    let found = found?;
+                    created?;
+                    committed?;
+                    found
+                }
+            })
+        };
+        let found = pool.answer(ANSWER, transaction).await?;
+        Ok(found.iter().map(|row| (row.get(0), from_bigint(row.get(1)))).collect())
     }
 }
 

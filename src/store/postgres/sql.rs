@@ -13,20 +13,27 @@ pub(super) const ALLOW_LONG: &str = "SET LOCAL statement_timeout = '60s'";
 pub(super) const BEGIN: &str = "BEGIN ISOLATION LEVEL READ COMMITTED";
 pub(super) const COMMIT: &str = "COMMIT";
 
-/// Locks the sessions of a batch in the order of their identifiers, so that two batches never wait for each other, and
-/// returns their sequences.
-pub(super) const LOCK: &str = "SELECT id, sequence FROM contacts WHERE id = ANY($1) ORDER BY id FOR UPDATE";
+/// Settings of the writer's connection, where the database has them. A statement of a batch is a transaction of its own. To plan it
+/// for each batch takes as long as to execute it for a few contacts, so that its plan is kept; and while the tables grow too, so that
+/// it uses their indexes however small they are.
+pub(super) const PREPARE_WRITER: &str = "SET SESSION CHARACTERISTICS AS TRANSACTION ISOLATION LEVEL READ COMMITTED;
+SELECT set_config(name, CASE name WHEN 'enable_seqscan' THEN 'off' ELSE 'force_generic_plan' END, false)
+FROM pg_settings WHERE name IN ('plan_cache_mode', 'enable_seqscan')";
 
-/// Appends moves to the sessions that are at the expected sequence, and stores the receipts of these alone.
-pub(super) const APPEND: &str = "
-WITH won AS (
+/// Locks the sessions of a batch in the order of their identifiers, so that two batches never wait for each other, and
+/// returns their sequences. Appends moves to those of them that are at the expected sequence, and stores the receipts of these alone.
+const APPEND: &str = "
+WITH locked AS (
+    SELECT id, sequence FROM contacts WHERE id = ANY($1::uuid[]) ORDER BY id FOR UPDATE
+), won AS (
     UPDATE contacts
     SET sequence = request.sequence,
         updated_at = coalesce(request.at, contacts.updated_at),
         updated_ns = coalesce(request.ns, contacts.updated_ns)
     FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[])
         AS request (id, expected, sequence, at, ns)
-    WHERE contacts.id = request.id AND contacts.sequence = request.expected
+    JOIN locked ON locked.id = request.id AND locked.sequence = request.expected
+    WHERE contacts.id = locked.id
     RETURNING contacts.id
 ), moved AS (
     INSERT INTO moves (contact, sequence, target_displacement, target_force, target_indentation, target_normal_force,
@@ -39,13 +46,25 @@ WITH won AS (
         $19::double precision[], $20::text[], $21::double precision[], $22::double precision[], $23::bigint[],
         $24::timestamptz[], $25::smallint[], $26::double precision[], $27::bigint[], $28::text[], $29::bigint[]) AS move (contact)
     JOIN won ON won.id = move.contact
-)
-INSERT INTO receipts (key, fingerprint, created, sequence, body)
-SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
-FROM unnest($30::uuid[], $31::text[], $32::bytea[], $33::uuid[], $34::bigint[], $35::bytea[])
-    AS receipt (contact, key, fingerprint, created, sequence, body)
-JOIN won ON won.id = receipt.contact
-ORDER BY receipt.key";
+), kept AS (
+    INSERT INTO receipts (key, fingerprint, created, sequence, body)
+    SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
+    FROM unnest($30::uuid[], $31::text[], $32::bytea[], $33::uuid[], $34::bigint[], $35::bytea[])
+        AS receipt (contact, key, fingerprint, created, sequence, body)
+    JOIN won ON won.id = receipt.contact
+    ORDER BY receipt.key
+)";
+
+/// Makes the changes of a batch to sessions that exist, and announces them if the database has notifications.
+pub(super) fn append(announces: bool) -> String {
+    let found = "SELECT locked.id, locked.sequence FROM locked";
+    if announces {
+        let told = "told AS (SELECT count(pg_notify($36, payload)) FROM unnest($37::text[]) AS payload)";
+        format!("{APPEND}, {told} {found}, told")
+    } else {
+        format!("{APPEND} {found}")
+    }
+}
 
 /// Makes sessions, and keeps the receipts.
 pub(super) const CREATE: &str = "
