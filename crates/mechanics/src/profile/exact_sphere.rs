@@ -6,6 +6,7 @@
 //! the equator, short series serve: [`shallow_sphere`], [`slope_series`](super::slope_series).
 
 use super::gauss::{Singular, along_strip};
+use super::power_series::{self, Series};
 use super::roots::increasing;
 use super::shallow_sphere::{self, LIMIT};
 use super::shape::{End, Shape};
@@ -312,6 +313,13 @@ impl Shape for ExactSphere {
             power *= u * u;
         }
         Some(series)
+    }
+
+    fn slope_over_radius_series(&self, place: &power_series::Place) -> Option<Series> {
+        let square = place.middle.value() + place.half;
+        let top = square.sqrt();
+        let odd: Vec<f64> = self.slope_series(top)?.iter().skip(1).step_by(2).map(|c| c / top).collect();
+        Some(place.polynomial(&odd, square))
     }
 
     fn least_fall(&self, inner: f64, outer: f64) -> f64 {

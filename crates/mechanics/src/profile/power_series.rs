@@ -59,6 +59,27 @@ impl Place {
         self.by(value, |_, _| 0.0)
     }
 
+    /// The sum of coefficients times the powers of x^2/`unit`, m^2.
+    pub(super) fn polynomial(&self, coefficients: &[f64], unit: f64) -> Series {
+        let mut series = Series { coefficients: [0.0; TERMS] };
+        let count = coefficients.len().min(TERMS);
+        let terms = &mut series.coefficients[..count];
+        terms.copy_from_slice(&coefficients[..count]);
+        let (middle, half) = (self.middle.value() / unit, self.half / unit);
+        // Horner's scheme, once for each term of Taylor's series.
+        for first in 0..count {
+            for k in (first + 1..count).rev() {
+                terms[k - 1] += middle * terms[k];
+            }
+        }
+        let mut power = 1.0;
+        for (k, term) in terms.iter_mut().enumerate() {
+            *term *= if k < self.terms { power } else { 0.0 };
+            power *= half;
+        }
+        series
+    }
+
     /// The functions beyond a kink at b, m; `None` below it.
     pub(super) fn beyond(&self, b: f64) -> Option<BeyondKink<'_>> {
         let above = (self.middle - DoubleDouble::square_of(b)).value();
