@@ -1,8 +1,8 @@
 //! The sums over pieces against the integral of each ring by itself.
 
 use super::super::{
-    Cone, DoubleDouble, PowerLaw, Profile, Ring, RoundedCone, RoundedPunch, Sphere, StressRadius, Sum, TruncatedCone,
-    TruncatedSphere,
+    Cone, DoubleDouble, ExactSphere, PowerLaw, Profile, Ring, RoundedCone, RoundedPunch, Sphere, StressRadius, Sum,
+    TruncatedCone, TruncatedSphere,
 };
 use super::SmoothPieces;
 
@@ -15,6 +15,7 @@ fn power(exponent: f64) -> Profile {
 
 fn families() -> Vec<Profile> {
     let sphere = || Profile::Sphere(Sphere::new(1.0).unwrap());
+    let ball = || Profile::ExactSphere(ExactSphere::new(1.2).unwrap());
     let cone = |flat| Profile::TruncatedCone(TruncatedCone::new(0.1, flat).unwrap());
     let worn = || Profile::TruncatedSphere(TruncatedSphere::new(1.0, 0.1).unwrap());
     let punch = || Profile::RoundedPunch(RoundedPunch::new(0.2, 1.0).unwrap());
@@ -22,8 +23,21 @@ fn families() -> Vec<Profile> {
     let tip = || Profile::Cone(Cone::new(0.1).unwrap());
     let sum = |parts: Vec<Profile>| Profile::Sum(Sum::new(parts).unwrap());
     let two = || sum(vec![cone(0.1), cone(0.103), tip()]);
-    let mixed = || sum(vec![worn(), power(2.7), rounded(), sphere()]);
-    vec![sphere(), tip(), power(1.3), power(2.7), power(4.0), cone(0.15), worn(), punch(), rounded(), two(), mixed()]
+    let mixed = || sum(vec![worn(), power(2.7), rounded(), ball()]);
+    vec![
+        sphere(),
+        ball(),
+        tip(),
+        power(1.3),
+        power(2.7),
+        power(4.0),
+        cone(0.15),
+        worn(),
+        punch(),
+        rounded(),
+        two(),
+        mixed(),
+    ]
 }
 
 /// Rings of all widths with weights of both signs, out to the edge.
