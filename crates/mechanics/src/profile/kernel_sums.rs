@@ -15,7 +15,9 @@ use super::{Profile, Ring, StressRadius};
 /// What the derivative of a table's kernels counts for, in terms of a sum over rings.
 const PANEL_TERMS: usize = 8;
 /// Fewer kernels than this, rings times radii, are summed sooner than clusters are made.
-pub(super) const FEW: usize = 256;
+const FEW: usize = 256;
+/// As many are summed sooner than pieces are made of the rings.
+const FEW_FOR_PIECES: usize = 40;
 /// Few extrema are as near to the centre as this part of the radius of the core.
 const CORE: f64 = 0.1;
 /// A ring is near if it is nearer than this, in squares of radii over that of the edge: a smaller difference has lost digits.
@@ -58,7 +60,7 @@ impl Profile {
 
     /// The sums by [`SmoothPieces`].
     fn sums_by_pieces(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Option<Vec<f64>> {
-        if rings.len() * radii.len() <= FEW {
+        if rings.len() * radii.len() <= FEW_FOR_PIECES {
             return None;
         }
         let least = radii.iter().map(|at| at.radius).filter(|&radius| radius > 0.0).fold(f64::INFINITY, f64::min);

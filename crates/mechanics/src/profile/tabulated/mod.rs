@@ -25,7 +25,6 @@ mod weighted_panels;
 
 use super::super::error::TableFault;
 use super::cluster_tree::ClusterTree;
-use super::kernel_sums::FEW;
 use super::moment_tree::MomentTree;
 use super::multipole::Multipole;
 use super::shape::{self, End, Shape};
@@ -42,6 +41,8 @@ pub(super) use weighted_panels::WeightedPanels;
 /// A bound of int dt/sqrt(t^2 - s^2) over any panel, for any radius that is further from a knot than e^-36 of the panel's end: it is
 /// ln(2 t/s), or less.
 const LOGARITHM: f64 = 40.0;
+/// As many kernels, rings times radii, are summed sooner than panels are weighted for all of them.
+const FEW: usize = 128;
 
 /// A tabulated profile.
 #[derive(Clone, Debug, PartialEq)]
