@@ -17,7 +17,7 @@ const RADII: [usize; 3] = [50, 200, 800];
 const REVERSALS: [usize; 4] = [3, 10, 30, 100];
 /// Those of a history that is summed by clusters.
 const MANY_REVERSALS: [usize; 3] = [300, 1_000, 3_000];
-const TABLE_POINTS: [u32; 4] = [100, 300, 1_000, 10_000];
+const TABLE_POINTS: [u32; 6] = [100, 300, 1_000, 2_000, 5_000, 10_000];
 const SWEEP_POINTS: [usize; 4] = [10, 100, 1_000, 10_000];
 
 /// Prints all of it, with the memory of a contact.
@@ -70,19 +70,23 @@ fn stress(virgin: &Contact, reversals: usize) -> [([f64; 5], f64); 3] {
     })
 }
 
-/// Tables with their points P: the law is a + b log2 P for a move and for the stress at 200 radii after 20 reversals.
+/// Tables with their points P: the law is a + b log2 P + c P for a move and for the stress at 200 radii after 20 reversals. A move looks
+/// up levels and radii; a stress weights every point once, and looks up clusters at every radius.
 fn tables() {
-    println!("\n| work on a table | of no points, us | for each doubling, us | off by |\n|---|---|---|---|");
-    let contacts = TABLE_POINTS.map(|points| (f64::from(points).log2(), contact(table(points))));
-    let moves = contacts.each_ref().map(|(doublings, virgin)| ([1.0, *doublings], path(virgin, 1_000).1 / 1e3));
-    let stresses = contacts.each_ref().map(|(doublings, virgin)| {
+    println!("\n| work on a table | of no points, us | for each doubling, us | each point, ns | off by |");
+    println!("|---|---|---|---|---|");
+    let contacts =
+        TABLE_POINTS.map(|points| ([1.0, f64::from(points).log2(), f64::from(points)], contact(table(points))));
+    let moves = contacts.each_ref().map(|(terms, virgin)| (*terms, path(virgin, 1_000).1 / 1e3));
+    let stresses = contacts.each_ref().map(|(terms, virgin)| {
         let contact = reversed(virgin, 20);
         let radii = radii(&contact, 200);
-        ([1.0, *doublings], seconds(|| drop(black_box(contact.shears(&radii)))))
+        (*terms, seconds(|| drop(black_box(contact.shears(&radii)))))
     });
     for (name, samples) in [("a move", moves), ("stress at 200 radii", stresses)] {
-        let ([fixed, doubling], error) = fit(&samples);
-        println!("| {name} | {:.2} | {:.2} | {:.0} % |", 1e6 * fixed, 1e6 * doubling, 100.0 * error);
+        let ([fixed, doubling, point], error) = fit(&samples);
+        let [fixed, doubling, point] = [1e6 * fixed, 1e6 * doubling, 1e9 * point];
+        println!("| {name} | {fixed:.2} | {doubling:.2} | {point:.2} | {:.0} % |", 100.0 * error);
     }
 }
 
