@@ -239,17 +239,18 @@ impl Work<'_> {
             let pressures = self.fields(states, &radii, Contact::pressures)?;
             let bound = |index: usize, place: usize| states[index].friction() * pressures[index][place];
             let last = states.len() - 1;
-            for place in 0..places.len() {
+            let work_at = |place: usize| -> f64 {
                 // Slip goes one way within a move, so that its steps add up.
-                let done = (0..states.len()).map(|index| {
+                let done = |index: usize| {
                     let from = if index == 0 { last } else { index - 1 };
                     // A ring that has just been touched has slipped nothing since.
                     let both = slips[index][place].zip(slips[from][place]);
                     let slipped = both.map_or(0.0, |(one, other)| (one - other).abs());
                     if slipped > 0.0 { 0.5 * (bound(from, place) + bound(index, place)) * slipped } else { 0.0 }
-                });
-                work.push(plain(done.sum(), None));
-            }
+                };
+                (0..states.len()).map(done).sum()
+            };
+            work.extend((0..places.len()).map(|place| plain(work_at(place), None)));
         }
         Ok(())
     }
