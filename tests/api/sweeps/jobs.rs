@@ -100,7 +100,7 @@ async fn a_cancelled_job_is_gone_with_its_result() {
 async fn jobs_are_bounded_in_number_and_work_until_some_are_gone() {
     let server = Server::start().await;
     let mut heavy = long(2_000_000);
-    heavy["base"]["path"]["falling_amplitude"]["reversals"] = json!(6_500);
+    heavy["base"]["path"]["falling_amplitude"]["reversals"] = json!(13_000);
     let (mut paths, mut refused) = (Vec::new(), None);
     for _ in 0..10 {
         let response = server.post("/sweep", &heavy).await;

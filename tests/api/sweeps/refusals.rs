@@ -138,7 +138,7 @@ async fn more_work_than_a_server_takes_on_is_refused_as_such() {
         axis("/contact/friction", "linear", json!({"from": 0.1, "to": 0.2, "count": 2_000_000})),
         json!(["/residual/max"]),
     );
-    huge["base"]["path"]["falling_amplitude"]["reversals"] = json!(4000);
+    huge["base"]["path"]["falling_amplitude"]["reversals"] = json!(16_000);
     let refusal = problem(server.post("/sweep", &huge).await).await;
     assert_eq!((refusal.status, refusal.code.as_str()), (422, "too_much_work"));
     // A job of a few of its points states the time of each that the refusal states.

@@ -251,6 +251,8 @@ impl Node {
                 self.sources.iter().for_each(|source| visit(source.t - r, source));
             }
             Some(below) => below.iter().for_each(|node| node.visit(r, z, visit, near)),
+            // A rise at one radius lies somewhere within the rounding of that radius, where it is no peak.
+            None if self.high <= self.low && away <= 0.0 => {}
             None if away >= self.high - self.low => {
                 self.sources.iter().for_each(|source| visit(source.t - r, source));
             }
